@@ -297,6 +297,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
                         first ? "reference" : "output", readable(first ? reference.rate : output.rate, "Hz", 6),
                         result.highest, least_frequency, narrowest_band));
     }
+    result.end = 0.5 * std::min({rate, reference.rate, output.rate});
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
         if (static_cast<double>(take->frames) < shortest * take->rate)
             throw Error(fmt::format("the {} is shorter than {} s", name, shortest));

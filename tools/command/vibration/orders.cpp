@@ -8,7 +8,7 @@
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/waterfall_figure.hpp"
+#include "tools/picture/spectra/waterfall_figure.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>

@@ -114,6 +114,7 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
 std::string nearest_text(const study::MarkLevel& level, const study::LevelReference& reference) {
     if (!level.nearest) return "; there is no line";
     const double offset = level.nearest->frequency - level.place.frequency;
+    if (std::abs(offset) > 0.5 * level.place.frequency) return "; no line near";
     return fmt::format("; nearest line {:.2f} Hz, {:.2f} Hz {}, {:.1f} dB rms", level.nearest->frequency,
                        std::abs(offset), offset < 0.0 ? "lower" : "higher", reference.db(level.nearest->power));
 }

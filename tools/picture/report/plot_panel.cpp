@@ -56,7 +56,8 @@ void PlotPanel::curve(const std::vector<double>& values, double step, display::C
     };
     for (std::size_t k = 1; k < values.size(); ++k) {
         const double hz = static_cast<double>(k) * step;
-        if (hz < hz_.lowest * 0.98 || hz > hz_.highest * 1.02) continue;
+        // The bins beside the range draw the curve to its edges.
+        if (hz < hz_.lowest - step || hz > hz_.highest + step) continue;
         const display::FigurePoint point{x_of(hz), y_of(values[k])};
         if (point.x < begin + column) {
             low = std::min(low, point.y);

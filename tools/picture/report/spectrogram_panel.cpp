@@ -3,7 +3,7 @@
 
 #include "dsp/core/readable.hpp"
 #include "tools/picture/report/axes.hpp"
-#include "tools/picture/report/heat.hpp"
+#include "tools/picture/spectra/heat.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/picture/report/spectrogram_panel.hpp"
-#include "tools/picture/report/spectrum_panel.hpp"
+#include "tools/picture/spectra/spectrum_panel.hpp"
 
 #include <fmt/format.h>
 

@@ -108,6 +108,7 @@ ComparedPair compare_files(const CompareSettings& settings) {
     o.output = settings.output;
     o.thresholds = settings.thresholds;
     o.touch = settings.touch;
+    o.plotted = settings.plotted;
     o.actuator_known = !settings.actuator.empty();
     const std::vector<std::pair<int, int>> channels = compared_channels(settings, o.notes);
     const auto open = [&](bool is_output, int channel) {
@@ -141,6 +142,9 @@ ComparedPair compare_files(const CompareSettings& settings) {
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(
             fmt::format("sampled at {} and {}", readable(reference.rate(), "Hz", 6), readable(output.rate(), "Hz", 6)));
+    if (o.plotted && o.plotted->first >= o.comparison.end)
+        throw Error(fmt::format("--band {}:{} Hz: the spectra that are compared end at {}", plain(o.plotted->first, 6),
+                                plain(o.plotted->second, 6), readable(o.comparison.end, "Hz", 6)));
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("judged from {:.0f} to {:.0f} Hz: what both can be trusted in",
                                       o.comparison.lowest, o.comparison.highest));

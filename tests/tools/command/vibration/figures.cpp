@@ -150,3 +150,22 @@ TEST_CASE("text and pages write numbers without exponents") {
         CHECK(at == std::string::npos);
     }
 }
+
+TEST_CASE(
+    "the figure of a comparison goes beyond the judged band, which it shows, or over the band that is asked for") {
+    const Folder folder;
+    std::vector<double> x = tones({{100.0, 0.3}, {2500.0, 0.2}}, 2.0);
+    add_noise(x, 0.01);
+    folder.sound("a.wav", x);
+    REQUIRE(folder.tactus("compare a.wav a.wav --plot whole.svg").code == 0);
+    const std::string whole = slurp(folder.path / "whole.svg");
+    CHECK_THAT(whole, ContainsSubstring(">2k<"));
+    CHECK_THAT(whole, ContainsSubstring("not judged"));
+    REQUIRE(folder.tactus("compare a.wav a.wav --plot part.svg --band 40:1000").code == 0);
+    const std::string part = slurp(folder.path / "part.svg");
+    CHECK_THAT(part, !ContainsSubstring(">2k<"));
+    CHECK_THAT(part, !ContainsSubstring("not judged"));
+    const Outcome beyond = folder.tactus("compare a.wav a.wav --plot no.svg --band 5000:6000");
+    CHECK(beyond.code == 2);
+    CHECK_THAT(beyond.err, ContainsSubstring("end at 4 kHz"));
+}

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
-#include "tools/picture/report/mark_lines.hpp"
 #include "tools/picture/report/plot_panel.hpp"
+#include "tools/picture/spectra/mark_lines.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <span>
@@ -24,11 +24,11 @@ struct DrawnSpectra {
     double lowest, highest;  ///< dB, of the axis
 };
 
-/// Curves, axes from the strongest value down by 80 dB, the limit of touch, marks. `unit`: of the levels.
+/// Curves, axes from the strongest value down to the weakest, 40 to 80 dB, the limit of touch, marks. `unit`: of the levels.
 DrawnSpectra draw_spectra(display::Figure& figure, const MarkedArea& area, std::span<const SpectrumCurve> curves,
                           const std::string& unit, std::span<const study::MarkPlace> marks);
 
-/// Spectra of envelopes from 0 Hz to `area.highest`, 60 dB deep, and marks.
+/// Spectra of envelopes from 0 Hz to `area.highest`, 30 to 60 dB deep, and marks.
 void draw_envelopes(display::Figure& figure, const MarkedArea& area, std::span<const SpectrumCurve> curves,
                     const std::string& title, const std::string& unit, std::span<const study::MarkPlace> marks);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/heat.hpp"
+#include "tools/picture/spectra/heat.hpp"
 
 #include <fmt/format.h>
 

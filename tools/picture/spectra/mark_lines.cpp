@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/mark_lines.hpp"
+#include "tools/picture/spectra/mark_lines.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/picture/report/spectrum_figure.hpp"
-#include "tools/picture/report/spectrum_panel.hpp"
+#include "tools/picture/spectra/spectrum_panel.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/waterfall_figure.hpp"
+#include "tools/picture/spectra/waterfall_figure.hpp"
 
 #include "dsp/core/readable.hpp"
 #include "tools/picture/report/axes.hpp"
-#include "tools/picture/report/heat.hpp"
+#include "tools/picture/spectra/heat.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>

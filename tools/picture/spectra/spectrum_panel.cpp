@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/spectrum_panel.hpp"
+#include "tools/picture/spectra/spectrum_panel.hpp"
 
 #include "tools/picture/report/axes.hpp"
 
@@ -12,14 +12,23 @@ namespace {
 
 constexpr display::Colour limit_colour{0x8A, 0x8F, 0x99};
 
-/// The next ten above the strongest level of all curves between two frequencies, with room for names above it.
-double top_of(std::span<const SpectrumCurve> curves, double lowest, double highest) {
-    double top = -400.0;
+struct LevelRange {
+    double low, high;  // dB
+};
+
+/// Whole tens around the levels of all curves between two frequencies, with room for names above them; `least` to `most`
+/// deep.
+LevelRange range_of(std::span<const SpectrumCurve> curves, double lowest, double highest, double least, double most) {
+    double low = 400.0, top = -400.0;
     for (const SpectrumCurve& curve : curves)
         for (std::size_t k = 1; k < curve.spectrum->power.size(); ++k)
-            if (const double f = curve.spectrum->frequency(k); f >= lowest && f <= highest)
-                top = std::max(top, curve.reference.db(curve.spectrum->power[k]));
-    return 10.0 * std::ceil(top / 10.0) + 10.0;
+            if (const double f = curve.spectrum->frequency(k); f >= lowest && f <= highest) {
+                const double level = curve.reference.db(curve.spectrum->power[k]);
+                low = std::min(low, level);
+                top = std::max(top, level);
+            }
+    top = 10.0 * std::ceil(top / 10.0) + 10.0;
+    return {top - std::clamp(top - 10.0 * std::floor(low / 10.0), least, most), top};
 }
 
 }  // namespace
@@ -33,10 +42,9 @@ double level_at(const SpectrumCurve& curve, double hz) {
 
 DrawnSpectra draw_spectra(display::Figure& figure, const MarkedArea& area, std::span<const SpectrumCurve> curves,
                           const std::string& unit, std::span<const study::MarkPlace> marks) {
-    constexpr double depth = 80.0;
-    const double top = top_of(curves, area.lowest, area.highest);
+    const LevelRange levels_shown = range_of(curves, area.lowest, area.highest, 40.0, 80.0);
     const PlotPanel panel(figure, area.x, area.y, area.width, area.height, {area.lowest, area.highest},
-                          {top - depth, top});
+                          {levels_shown.low, levels_shown.high});
     panel.axes(10.0, unit, true);
     if (area.highest > 500.0 && area.lowest < 500.0) {
         panel.upright(500.0, limit_colour, 4.0);
@@ -48,17 +56,21 @@ DrawnSpectra draw_spectra(display::Figure& figure, const MarkedArea& area, std::
         panel.curve(levels, curve.spectrum->df, curve.colour, curve.width, curve.dash);
     }
     draw_marks(figure, area, marks, [&](double hz) { return panel.x_of(hz); });
-    return {panel, top - depth, top};
+    return {panel, levels_shown.low, levels_shown.high};
 }
 
 void draw_envelopes(display::Figure& figure, const MarkedArea& area, std::span<const SpectrumCurve> curves,
                     const std::string& title, const std::string& unit, std::span<const study::MarkPlace> marks) {
-    constexpr double depth = 60.0;
     double step = area.highest;
     for (const SpectrumCurve& curve : curves) step = std::min(step, curve.spectrum->df);
-    const double top = top_of(curves, 2.0 * step, area.highest);
-    const Axes axes{
-        figure, area.x, area.y, area.width, area.height, {area.lowest, area.highest, false}, {top - depth, top, false}};
+    const LevelRange shown = range_of(curves, 2.0 * step, area.highest, 30.0, 60.0);
+    const Axes axes{figure,
+                    area.x,
+                    area.y,
+                    area.width,
+                    area.height,
+                    {area.lowest, area.highest, false},
+                    {shown.low, shown.high, false}};
     axes.draw(title, "frequency of the envelope, Hz", unit);
     for (const SpectrumCurve& curve : curves) {
         std::vector<display::FigurePoint> points;
@@ -68,7 +80,7 @@ void draw_envelopes(display::Figure& figure, const MarkedArea& area, std::span<c
                 points.push_back({f, curve.reference.db(curve.spectrum->power[k])});
         axes.curve(points, curve.colour, curve.dash, false);
     }
-    draw_marks(figure, area, marks, [&](double hz) { return axes.at(hz, top).x; });
+    draw_marks(figure, area, marks, [&](double hz) { return axes.at(hz, shown.low).x; });
 }
 
 double end_of_envelope(std::pair<double, double> band, std::span<const study::MarkPlace> marks) {
