@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus model: fits the model of a saw to its recordings.
+#include "assets/file/json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/saw_modelling.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::ModelDistance;
 using study::ModelledRecording;
 
@@ -33,7 +33,7 @@ Json rows_json(const study::SawModelling& modelling) {
     for (const ModelledRecording& row : modelling.recordings)
         rows.push_back({{"file", row.recording->file.string()},
                         {"state", row.recording->cutting ? "cutting" : "free_air"},
-                        {"used_s", {row.recording->used_from(), row.recording->used_to()}},
+                        {"used_s", Json::array({row.recording->used_from(), row.recording->used_to()})},
                         {"rate_hz", row.recording->rate},
                         {"load_N", row.recording->load},
                         {"density_kg_per_m3", row.recording->density > 0.0 ? Json(row.recording->density) : Json()},

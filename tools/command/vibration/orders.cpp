@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus orders: order analysis of a machine with a changing rate.
 #include "tools/study/vibration/orders.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
@@ -12,7 +13,6 @@
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct OrdersChoice : RecordChoice {
     study::OrdersSettings orders;
@@ -123,7 +123,7 @@ void write_waterfall(const study::Orders& found, const std::filesystem::path& re
     } else if (out.extension() == ".json") {
         Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", Json::array()}};
         for (const study::OrdersOfChannel& channel : found.channels) {
-            json["channels"].push_back({{"name", channel.name}});
+            json["channels"].push_back(Json{{"name", channel.name}});
             json["channels"].back().update(waterfall_json(*channel.waterfall));
         }
         file::write_whole_file(out, json.dump() + "\n");

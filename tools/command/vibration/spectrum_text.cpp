@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/spectrum_text.hpp"
 
+#include "assets/file/json.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
@@ -8,7 +9,6 @@
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::AnalysedChannel;
 using study::AnalysedFile;
 using study::band_deviation;

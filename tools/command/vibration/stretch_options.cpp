@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/stretch_options.hpp"
 
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>
@@ -31,7 +30,7 @@ sound::Stretch stretch_of(const StretchChoice& choice, std::size_t record) {
     return {pick(choice.from, 0.0), pick(choice.to, sound::Stretch::to_the_end)};
 }
 
-nlohmann::ordered_json stretch_json(const sound::ReadStretch& stretch) {
+file::Json stretch_json(const sound::ReadStretch& stretch) {
     return {{"from_s", stretch.from}, {"to_s", stretch.to}, {"of_s", stretch.of}};
 }
 

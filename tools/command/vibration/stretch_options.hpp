@@ -2,10 +2,9 @@
 // --from and --to: the stretch of a record that a verb analyses.
 #pragma once
 
+#include "assets/file/json.hpp"
 #include "assets/sound/stretch.hpp"
 #include "tools/command/options.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <vector>
 
@@ -23,6 +22,6 @@ void add_stretch_options(VerbOptions& verb, StretchChoice& choice, StretchOf of 
 sound::Stretch stretch_of(const StretchChoice& choice, std::size_t record = 0);
 
 /// {"from_s", "to_s", "of_s"}
-nlohmann::ordered_json stretch_json(const sound::ReadStretch& stretch);
+file::Json stretch_json(const sound::ReadStretch& stretch);
 
 }  // namespace tactus::command

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus validate: compares the handle's vibration in a patch with each recording that its saw plays.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
@@ -13,7 +14,6 @@
 #include "tools/picture/report/validation_page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -22,7 +22,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::Validation;
 using study::ValidationRun;
 

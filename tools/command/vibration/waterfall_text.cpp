@@ -4,7 +4,6 @@
 #include "tools/command/batch.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <iterator>
@@ -36,8 +35,8 @@ std::string waterfall_csv(const study::Orders& orders) {
     return csv;
 }
 
-nlohmann::ordered_json waterfall_json(const study::Waterfall& waterfall) {
-    using Json = nlohmann::ordered_json;
+file::Json waterfall_json(const study::Waterfall& waterfall) {
+    using file::Json;
     Json json{{"over", waterfall.settings.of_orders ? "orders" : "frequency"},
               {"against", waterfall.settings.against_speed ? "speed" : "time"},
               {"columns", Json::array()},

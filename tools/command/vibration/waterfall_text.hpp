@@ -2,9 +2,8 @@
 // Waterfalls as CSV and JSON.
 #pragma once
 
+#include "assets/file/json.hpp"
 #include "tools/study/vibration/orders.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 
@@ -15,6 +14,6 @@ namespace tactus::command {
 std::string waterfall_csv(const study::Orders& orders);
 
 /// The same of one channel: {"over", "against", "columns", "rows": [{"time_s", "rate_hz", "rms"}]}.
-nlohmann::ordered_json waterfall_json(const study::Waterfall& waterfall);
+file::Json waterfall_json(const study::Waterfall& waterfall);
 
 }  // namespace tactus::command
