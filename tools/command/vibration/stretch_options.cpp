@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/stretch_options.hpp"
 
-
 #include <algorithm>
 #include <string>
 
