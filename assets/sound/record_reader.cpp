@@ -35,6 +35,28 @@ std::size_t rows_at_limit(std::span<const double> values) {
     return count;
 }
 
+/// Keeps the rows of a stretch; times stay as they are.
+ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesystem::path& path) {
+    const auto rows = static_cast<double>(log.times.size());
+    const double start = log.times.front(), span = log.times.back() - start;
+    // Each row stands for one step of time.
+    const double length = rows > 1.0 ? span * rows / (rows - 1.0) : 0.0;
+    if (stretch.is_whole()) return {0.0, length, length};
+    const ReadStretch read = stretch_within(stretch, length, length > 0.0 ? rows / length : 1.0, path);
+    const auto row_at = [&](double time) {
+        return std::lower_bound(log.times.begin(), log.times.end(), start + time) - log.times.begin();
+    };
+    const std::ptrdiff_t first = row_at(read.from),
+                         last = read.to < length ? row_at(read.to) : static_cast<std::ptrdiff_t>(log.times.size());
+    const auto keep = [&](std::vector<double>& values) {
+        values.assign(values.begin() + first, values.begin() + last);
+    };
+    if (first == last) throw Error(fmt::format("{}: there is no row from {}", path.string(), read.text()));
+    keep(log.times);
+    for (std::vector<double>& column : log.columns) keep(column);
+    return read;
+}
+
 }  // namespace
 
 Calibration parse_calibration(const std::string& text) {
@@ -61,6 +83,8 @@ struct RecordReader::Source {
     std::optional<SoundReader> sound;
     signal::EvenRecord even;
     std::size_t piece = 0, at = 0, frames = 0;
+    std::size_t first = 0, done = 0;  // of a sound: first frame of the stretch, frames read of it
+    ReadStretch stretch;
     double rate = 0.0;
     std::vector<std::string> names;
     Calibration calibration;
@@ -70,18 +94,32 @@ struct RecordReader::Source {
 };
 
 RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSelection& selection,
-                           const std::optional<Calibration>& calibration)
+                           const std::optional<Calibration>& calibration, const Stretch& stretch)
     : source_(std::make_unique<Source>()) {
     source_->path = path;
     if (!is_log(path)) {
         source_->sound.emplace(path);
         source_->rate = source_->sound->rate();
         source_->frames = source_->sound->frames();
+        const double length = static_cast<double>(source_->frames) / source_->rate;
+        source_->stretch = {0.0, length, length};
+        if (!stretch.is_whole()) {
+            source_->stretch = stretch_within(stretch, length, source_->rate, path);
+            const auto frame_at = [&](double time) {
+                return std::min(source_->frames, static_cast<std::size_t>(std::ceil(time * source_->rate - 1e-6)));
+            };
+            source_->first = frame_at(source_->stretch.from);
+            source_->frames = frame_at(source_->stretch.to) - source_->first;
+            if (source_->frames == 0)
+                throw Error(fmt::format("{}: there is no sample from {}", path.string(), source_->stretch.text()));
+            source_->sound->skip(source_->first);
+        }
         for (std::size_t i = 1; i <= source_->sound->channels(); ++i) source_->names.push_back(std::to_string(i));
         source_->block = std::min(block_frames, source_->frames);
         source_->interleaved.resize(source_->block * source_->names.size());
     } else {
-        const table::SampleLog log = table::load_sample_log(path, selection);
+        table::SampleLog log = table::load_sample_log(path, selection);
+        source_->stretch = cut(log, stretch, path);
         try {
             source_->even = signal::regularise(log.times, log.columns);
         } catch (const Error& error) {
@@ -119,10 +157,14 @@ std::size_t RecordReader::frames() const noexcept { return source_->frames; }
 const std::vector<std::string>& RecordReader::channels() const noexcept { return source_->names; }
 const Calibration& RecordReader::calibration() const noexcept { return source_->calibration; }
 const std::optional<LogFacts>& RecordReader::log() const noexcept { return source_->log; }
+const ReadStretch& RecordReader::stretch() const noexcept { return source_->stretch; }
 
 void RecordReader::rewind() {
-    if (source_->sound) source_->sound.emplace(source_->path);
-    source_->piece = source_->at = 0;
+    if (source_->sound) {
+        source_->sound.emplace(source_->path);
+        source_->sound->skip(source_->first);
+    }
+    source_->piece = source_->at = source_->done = 0;
 }
 
 bool RecordReader::next(RecordBlock& block) {
@@ -132,7 +174,11 @@ bool RecordReader::next(RecordBlock& block) {
     block.channels.resize(channels);
     block.after_gap = false;
     if (source.sound) {
-        const std::size_t count = source.sound->read(source.interleaved.data(), source.block);
+        const std::size_t wanted = std::min(source.block, source.frames - source.done);
+        // The read after the last frame is where a sound that is cut short is noticed.
+        if (wanted == 0 && !source.stretch.is_whole()) return false;
+        const std::size_t count = source.sound->read(source.interleaved.data(), std::max<std::size_t>(1, wanted));
+        source.done += count;
         for (std::size_t c = 0; c < channels; ++c) {
             block.channels[c].resize(count);
             for (std::size_t i = 0; i < count; ++i)

@@ -2,6 +2,7 @@
 // Reads a vibration record in calibrated blocks: from a sound file, or from a CSV log resampled to a constant rate.
 #pragma once
 
+#include "assets/sound/stretch.hpp"
 #include "assets/table/sample_log.hpp"
 #include "dsp/signal/spectrum/level.hpp"
 
@@ -48,9 +49,10 @@ struct RecordBlock {
 class RecordReader {
 public:
     /// Opens .csv, .tsv, .txt and .log as logs, others as sound. Without a calibration the values are not scaled.
-    /// Throws Error when the file cannot be used.
+    /// Reads only `stretch`; all that is said of the record is then said of that. Throws Error when the file cannot be
+    /// used, or is shorter.
     RecordReader(const std::filesystem::path& path, const table::LogSelection& selection,
-                 const std::optional<Calibration>& calibration);
+                 const std::optional<Calibration>& calibration, const Stretch& stretch = {});
     ~RecordReader();
     RecordReader(RecordReader&&) noexcept;
 
@@ -59,10 +61,11 @@ public:
     const std::vector<std::string>& channels() const noexcept;  ///< names
     const Calibration& calibration() const noexcept;
     const std::optional<LogFacts>& log() const noexcept;
+    const ReadStretch& stretch() const noexcept;
 
     /// Reads at most 65536 values per channel; false at the end. Throws Error when the file is damaged.
     bool next(RecordBlock& block);
-    /// Returns to the start. Throws Error when the file is gone.
+    /// Returns to the start of the stretch. Throws Error when the file is gone.
     void rewind();
 
 private:

@@ -232,6 +232,19 @@ private:
 
 }  // namespace
 
+void cut(Recording& r, const Stretch& stretch) {
+    if (stretch.is_whole()) return;
+    const double length = static_cast<double>(r.samples.size()) / r.sample_rate;
+    const ReadStretch wanted = stretch_within(stretch, length, r.sample_rate, r.file);
+    const double end = r.loop_end > 0.0 ? r.loop_end : length;
+    if (wanted.to <= r.loop_begin || wanted.from >= end)
+        throw Error(fmt::format("{}: {} lies outside of its loop, {:.4g} to {:.4g} s", r.file.string(), wanted.text(),
+                                r.loop_begin, end));
+    r.loop_begin = std::max(r.loop_begin, wanted.from);
+    r.loop_end = std::min(end, wanted.to);
+    settle_rate(r);
+}
+
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate) {
     if (rate && !(*rate >= lowest_rate && *rate <= highest_rate))
         throw Error(fmt::format("{}: the rate of a saw must be 5 Hz to 1 kHz", path.string()));

@@ -2,6 +2,7 @@
 // Recordings of a saw, each with its conditions: state, rate and load.
 #pragma once
 
+#include "assets/sound/stretch.hpp"
 #include "dsp/vibration/saw_model.hpp"
 #include "dsp/vibration/saw_recording.hpp"
 
@@ -26,6 +27,9 @@ struct Recording {
     double loop_end = 0.0;             ///< s; 0 means to the end
     int sample_rate = 0;               ///< Hz
     std::vector<float> samples;        ///< mono
+
+    double used_from() const { return loop_begin; }  ///< s
+    double used_to() const { return loop_end > 0.0 ? loop_end : static_cast<double>(samples.size()) / sample_rate; }
 };
 
 struct RecordingSet {
@@ -60,6 +64,10 @@ struct RecordingSet {
 /// A file with a table [model] (saw_model_file.hpp) becomes a set without recordings, with that model.
 /// Throws Error with file, line and column.
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
+
+/// Limits what is used of a recording to a stretch of its file. Throws Error when that is outside of the file or of its
+/// loop, or too short.
+void cut(Recording& recording, const Stretch& stretch);
 
 /// Refers to the samples of `recording`.
 vibration::SawRecording saw_recording(const Recording& recording);

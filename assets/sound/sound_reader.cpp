@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tactus::sound {
 
@@ -46,6 +48,19 @@ std::size_t SoundReader::read(double* samples, std::size_t frames) {
     if (count == 0 && file_->done < this->frames() && this->frames() < unknown)
         fail(fmt::format("the sound is cut short: it has {} of {} samples", file_->done, this->frames()));
     return count;
+}
+
+void SoundReader::skip(std::size_t frames) {
+    if (frames == 0) return;
+    if (sf_seek(file_->handle.get(), static_cast<sf_count_t>(frames), SEEK_SET) == static_cast<sf_count_t>(frames)) {
+        file_->done = frames;
+        return;
+    }
+    file_->handle = open_sound(file_->path, file_->info);
+    constexpr std::size_t at_once = 65536;
+    std::vector<double> passed(std::min(at_once, frames) * channels());
+    while (file_->done < frames)
+        if (read(passed.data(), std::min(at_once, frames - file_->done)) == 0) return;
 }
 
 }  // namespace tactus::sound

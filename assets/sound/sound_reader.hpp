@@ -27,6 +27,10 @@ public:
     /// NaN or infinity.
     std::size_t read(double* samples, std::size_t frames);
 
+    /// Passes over frames from the start, without reading them where the format allows it. Throws Error when the file
+    /// is damaged.
+    void skip(std::size_t frames);
+
 private:
     struct File;
     std::unique_ptr<File> file_;

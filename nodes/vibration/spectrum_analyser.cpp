@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/bands.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/lines.hpp"
+#include "dsp/signal/spectrum/live_fundamental.hpp"
 #include "dsp/signal/spectrum/live_spectrum.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace tactus::nodes {
 
 struct SpectrumAnalyser {
     static constexpr auto about =
-        "Analyses a signal while a patch runs: level, strongest spectral line and fundamental frequency. Put it in a "
-        "slow group of its own.";
+        "Analyses a signal while a patch runs: level, strongest spectral line and fundamental frequency, by the "
+        "harmonic sums that 'tactus spectrum' uses for records, here of the running average: a rate that changes "
+        "within "
+        "'memory' is missed. Put it in a slow group of its own.";
 
     Batch<Signal> in{"the signal, wired 'as batch' from the audio group"};
     Out<double> level{"root mean square in the band, in the unit of the signal"};
     Out<double> strongest{"frequency of the strongest line in the band; 0: no line above the noise", "Hz"};
     Out<double> fundamental{"fundamental frequency of the harmonic lines; 0: none", "Hz"};
-    Out<double> confidence{"of the fundamental, 0 to 1"};
+    Out<double> confidence{"of the fundamental, 0 to 1; uncertain below 0.25"};
     Param lowest{structural, "20 Hz", "1 Hz", "10 kHz", "lower limit of the band and of the fundamental"};
     Param highest{structural, "1 kHz", "2 Hz", "24 kHz", "upper limit of the band"};
     Param highest_rate{structural, "500 Hz", "1 Hz", "10 kHz", "upper limit of the fundamental"};
@@ -31,7 +35,8 @@ struct SpectrumAnalyser {
         const auto samples = static_cast<std::size_t>(std::llround(rate * segment));
         if (samples < 16) setup.fail("a segment must hold at least 16 samples; make it longer");
         spectrum_ = signal::LiveSpectrum(rate, samples, memory);
-        comb_ = {};
+        summer_.emplace(spectrum_.spectrum().power.size());
+        found_ = {};
         name_ = setup.name;
         publish({});
     }
@@ -51,12 +56,12 @@ struct SpectrumAnalyser {
         report.set(name_, "third_octave_hz", hz);
         report.set(name_, "third_octave_db", db);
         std::vector<double> orders;
-        if (comb_.best.frequency > 0.0)
-            for (const signal::Harmonic& h : signal::harmonic_table(now, comb_.best.frequency, 10))
+        if (found_.frequency > 0.0)
+            for (const signal::Harmonic& h : signal::harmonic_table(now, found_.frequency, 10))
                 orders.push_back(h.present ? std::sqrt(2.0 * h.power) : 0.0);
         report.set(name_, "order_amplitudes", orders);
-        report.set(name_, "fundamental_hz", comb_.best.frequency);
-        report.set(name_, "confidence", comb_.confidence);
+        report.set(name_, "fundamental_hz", found_.frequency);
+        report.set(name_, "confidence", found_.confidence);
     }
 
 private:
@@ -68,13 +73,15 @@ private:
                 if (line.power > top.power) top = line;
             });
         strongest = top.frequency;
-        comb_ = now.segments > 0 ? signal::fit_comb(now, lowest, highest_rate) : signal::Comb{};
-        fundamental = comb_.best.frequency;
-        confidence = comb_.confidence;
+        found_ = now.segments > 0 ? signal::live_fundamental(*summer_, now, lowest, highest_rate)
+                                  : signal::LiveFundamental{};
+        fundamental = found_.frequency;
+        confidence = found_.confidence;
     }
 
     signal::LiveSpectrum spectrum_;
-    signal::Comb comb_;
+    std::optional<signal::HarmonicSummer> summer_;
+    signal::LiveFundamental found_;
     std::string name_;
 };
 

@@ -2,6 +2,7 @@
 #include "tools/session/take_file.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "dsp/signal/spectrum/level.hpp"
 
 #include <fmt/format.h>
@@ -21,8 +22,9 @@ std::size_t ChannelLevels::strongest() const {
     return static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
 }
 
-ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log) {
-    sound::RecordReader reader(file, log, std::nullopt);
+ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log,
+                             const sound::Stretch& stretch) {
+    sound::RecordReader reader(file, log, std::nullopt, stretch);
     ChannelLevels out{reader.channels(), std::vector<double>(reader.channels().size())};
     if (out.names.size() == 1) return out;
     std::vector<signal::Level> levels(out.names.size());
@@ -34,7 +36,8 @@ ChannelLevels channel_levels(const std::filesystem::path& file, const table::Log
 }
 
 TakeFile::TakeFile(const TakeChoice& choice)
-    : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt)) {
+    : choice_(choice),
+      reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt, choice.stretch)) {
     const std::string& role = choice.role;
     if (!(choice.scale > 0.0) || !std::isfinite(choice.scale))
         throw Error(fmt::format("the scale of the {} must be above 0", role));
@@ -63,11 +66,11 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (choice.channel == 0 && channels > 1)
         notes_.push_back(fmt::format("the {} is the mean of {} channels", role, channels));
     if (pieces.size() > 1)
-        notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {:.3g} s", role,
-                                     pieces.size(), static_cast<double>(frames_) / rate()));
+        notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {}", role,
+                                     pieces.size(), readable(static_cast<double>(frames_) / rate(), "s")));
     if (reader_->log())
-        notes_.push_back(fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz", role,
-                                     rate(), reader_->log()->usable));
+        notes_.push_back(fmt::format("the {} is a log with {} rows per second, reliable to about {:.0f} Hz", role,
+                                     plain(rate()), reader_->log()->usable));
     double share = static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
     if (reader_->log() && choice.channel > 0)
         share = std::max(share,

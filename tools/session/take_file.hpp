@@ -17,6 +17,7 @@ struct TakeChoice {
     table::LogSelection log;
     double scale = 1.0;    ///< units per full scale, or per unit of a log
     int channel = 0;       ///< from 1; 0: the mean of all
+    sound::Stretch stretch{};
 };
 
 struct ChannelLevels {
@@ -26,16 +27,18 @@ struct ChannelLevels {
 };
 
 /// Reads a file with several channels once. Throws Error.
-ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log);
+ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log,
+                             const sound::Stretch& stretch = {});
 
 class TakeFile {
 public:
-    /// Reads the whole file once. For a log with gaps, the longest part is the take. Throws Error.
+    /// Reads the stretch once. For a log with gaps, the longest part is the take. Throws Error.
     explicit TakeFile(const TakeChoice& choice);
 
     signal::Take take() const;
     const std::filesystem::path& file() const { return choice_.file; }
     double rate() const { return reader_->rate(); }  ///< Hz
+    const sound::ReadStretch& stretch() const { return reader_->stretch(); }
     double peak() const { return peak_; }            ///< greatest absolute value, scaled
     const std::vector<std::string>& notes() const { return notes_; }
 

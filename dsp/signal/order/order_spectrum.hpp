@@ -40,6 +40,12 @@ public:
     /// Call when all samples were pushed.
     OrderSpectrum spectrum();
 
+    /// The values at even angles that the last call made: `per_turn` of each turn, from `first_turn` on.
+    std::span<const double> turned() const { return turned_; }
+    std::size_t per_turn() const { return per_turn_; }
+    std::size_t turns() const { return turns_; }
+    double first_turn() const { return first_turn_; }
+
 private:
     void produce(bool all);
 

@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/comparison.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "dsp/signal/filter/resample.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
@@ -291,11 +292,12 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     if (!(result.highest >= narrowest_band)) {
         const bool first = reference.usable < output.usable;
         throw Error(
-            fmt::format("the {}, sampled at {:g} Hz, can be trusted to {:.3g} Hz only: vibrations are compared from "
+            fmt::format("the {}, sampled at {}, can be trusted to {:.3g} Hz only: vibrations are compared from "
                         "{:g} Hz on, at least to {:g} Hz",
-                        first ? "reference" : "output", first ? reference.rate : output.rate, result.highest,
-                        least_frequency, narrowest_band));
+                        first ? "reference" : "output", readable(first ? reference.rate : output.rate, "Hz", 6),
+                        result.highest, least_frequency, narrowest_band));
     }
+    result.end = 0.5 * std::min({rate, reference.rate, output.rate});
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
         if (static_cast<double>(take->frames) < shortest * take->rate)
             throw Error(fmt::format("the {} is shorter than {} s", name, shortest));

@@ -69,6 +69,7 @@ struct Comparison {
     // For plots: power densities of both on one axis, the output with gain and speed corrected.
     std::vector<double> reference_density, output_density, coherence;
     double step = 0.0, coherence_step = 0.0;      ///< Hz
+    double end = 0.0;  ///< Hz: half the sample rate of the slower take, at most 4 kHz; densities mean nothing above it
 };
 
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.

@@ -12,7 +12,7 @@ namespace {
 constexpr double silent_score = 0.09;  // of a section in which nothing is heard
 constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
 constexpr double most_step = 0.2;      // greatest cost
-constexpr double least_support = 0.25, heard_at_all = 0.16;
+constexpr double least_support = 0.25;
 constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
 
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
@@ -151,8 +151,7 @@ FundamentalEstimate FundamentalStream::estimate() const {
                                   section.candidates.begin() + static_cast<std::ptrdiff_t>(section.count),
                                   [&](const HarmonicSum& one) { return alike(one.frequency, sharp.frequency, 0.03); });
     const bool supported = static_cast<double>(supporting) >= least_support * static_cast<double>(sections_.size());
-    const double rival = whole.size() > 1 ? whole[1].score / std::max(sharp.score, 1e-9) : 0.0;
-    const double fixed = (supported ? 1.0 : 0.3) * sharp.score * (1.0 - 0.5 * rival);
+    const double fixed = (supported ? 1.0 : 0.3) * confidence_in(whole);
     const double weaker = std::min(fixed, varied), stronger = std::max(fixed, varied);
     // One rate of a path is no other answer than the path.
     const bool on_path = sharp.frequency >= 0.95 * low && sharp.frequency <= 1.05 * high;
@@ -170,7 +169,7 @@ FundamentalEstimate FundamentalStream::estimate() const {
     }
     out.low = out.steady ? out.frequency : low;
     out.high = out.steady ? out.frequency : high;
-    if (out.confidence < heard_at_all) out = {};
+    if (out.confidence < FundamentalEstimate::heard) out = {};
     for (const HarmonicSum& one : whole)
         if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
             out.rivals.push_back(one);

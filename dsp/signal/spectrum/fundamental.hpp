@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fundamental frequency of a vibration, the one estimator of all analyses: harmonic sums of short sections with a
-// subharmonic check (after Hermes 1988, subharmonic summation), joined to a path over time, beside the harmonic sum of
+// Fundamental frequency of a vibration, the one estimator of all analyses: harmonic sums of short sections, joined to a path over time, beside the harmonic sum of
 // the spectrum of the whole record.
 #pragma once
 
+#include "dsp/signal/spectrum/harmonic_sum.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <array>
@@ -17,26 +17,16 @@ namespace tactus::signal {
 /// Hz: the range that is searched unless a caller knows better.
 inline constexpr double lowest_fundamental = 20.0, highest_fundamental = 500.0;
 
-struct HarmonicSum {
-    double frequency = 0.0;  ///< Hz; 0: none
-    double score = 0.0;      ///< 0 … 1
-};
-
-/// The best fundamentals from `lowest` to `highest` Hz of a Hann spectrum, best first, none within 3 % of another and
-/// none below five bins. An order counts by its level above the noise around it, at most 30 dB: neither the strongest
-/// line nor a missing first order decides. Multiples of the fundamental explain fewer lines than it does, submultiples
-/// have missing orders. Allocates.
-std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, double highest, std::size_t most = 5);
-
 struct FundamentalEstimate {
-    double frequency = 0.0;   ///< Hz; 0: not periodic
+    double frequency = 0.0;  ///< Hz; 0: not periodic
     double confidence = 0.0;  ///< 0 … 1; uncertain below `certain`
-    bool steady = false;      ///< constant rate; otherwise `frequency` is the median of its path
-    double low = 0.0, high = 0.0;     ///< Hz: the middle 80 % of the path
+    bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
+    double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
     static constexpr double certain =
         0.25;  // of 200 noisy saws, 97 % of the right ones reach it and none of the wrong ones
+    static constexpr double heard = 0.16;  // below it, there is no fundamental
     bool is_certain() const { return frequency > 0.0 && confidence >= certain; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/signal/spectrum/fundamental.hpp"
+#include "dsp/signal/spectrum/harmonic_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +10,9 @@ namespace {
 
 constexpr int most_orders = 10;
 constexpr double full_db = 30.0;         // an order so far above the noise counts fully
-constexpr std::size_t around = 32;       // bins to each side for the noise
 constexpr std::size_t most_lines = 32;   // strongest lines that candidates are made of
 constexpr double neighbours = 0.03;
 constexpr double least_spacing = 5.0;  // bins between orders: a line of a Hann window is four wide
-
-struct Peak {
-    double frequency, salience;  // Hz, 0 … 1
-    double power;
-};
 
 /// Level of a bin of noise over the quantile that stands for it, exceeded by 1 % of bins (Wilson and Hilferty 1931).
 double noise_peak_db(double segments) {
@@ -28,19 +22,31 @@ double noise_peak_db(double segments) {
     return 10.0 * std::log10(tail / low);
 }
 
+double reach_of(double place, double fundamental, double df) {
+    return std::min(0.75 * df + 0.006 * place, 0.12 * fundamental);
+}
+
+}  // namespace
+
+HarmonicSummer::HarmonicSummer(std::size_t bins) {
+    peaks_.reserve(bins / 2 + 1);
+    strongest_.reserve(bins / 2 + 1);
+    combs_.reserve(most_lines * most_orders);
+    found_.reserve(most_lines * most_orders);
+}
+
 /// Local maxima above the noise, by frequency.
-std::vector<Peak> peaks_of(const Spectrum& spectrum, double lowest, double highest) {
+void HarmonicSummer::find_peaks(const Spectrum& spectrum, double lowest, double highest) noexcept {
     const std::vector<double>& p = spectrum.power;
     const double threshold = noise_peak_db(spectrum.effective_segments);
-    std::vector<Peak> peaks;
-    std::vector<double> bins;
+    peaks_.clear();
     const double last_bin = std::min(highest / spectrum.df, static_cast<double>(p.size()) - 2.0);
     for (auto k = static_cast<std::size_t>(std::max(2.0, lowest / spectrum.df)); static_cast<double>(k) <= last_bin;
          ++k) {
         if (!(p[k] > p[k - 1] && p[k] >= p[k + 1])) continue;
         const std::size_t from = k > around ? std::max<std::size_t>(2, k - around) : 2;
-        bins.assign(p.begin() + static_cast<std::ptrdiff_t>(from),
-                    p.begin() + static_cast<std::ptrdiff_t>(std::min(p.size(), k + around + 1)));
+        const std::span<double> bins(noise_.data(), std::min(p.size(), k + around + 1) - from);
+        std::copy_n(p.begin() + static_cast<std::ptrdiff_t>(from), bins.size(), bins.begin());
         // The quantile below the median: many bins around may belong to lines.
         const auto quantile = bins.begin() + static_cast<std::ptrdiff_t>(bins.size() * 3 / 10);
         std::nth_element(bins.begin(), quantile, bins.end());
@@ -51,37 +57,26 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, double lowest, double highe
         const bool above = p[k + 1] > p[k - 1];
         const double ratio = std::sqrt((above ? p[k + 1] : p[k - 1]) / p[k]);
         const double shift = std::clamp((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 0.5);
-        peaks.push_back({(static_cast<double>(k) + (above ? shift : -shift)) * spectrum.df,
-                         std::min(1.0, (level - threshold) / (full_db - threshold)), p[k]});
+        peaks_.push_back({(static_cast<double>(k) + (above ? shift : -shift)) * spectrum.df,
+                          std::min(1.0, (level - threshold) / (full_db - threshold)), p[k]});
     }
     // Lines far below the strongest are leakage or residue.
     double strongest = 0.0;
-    for (const Peak& peak : peaks) strongest = std::max(strongest, peak.power);
-    std::erase_if(peaks, [&](const Peak& peak) { return peak.power < 1e-6 * strongest; });
-    return peaks;
+    for (const Peak& peak : peaks_) strongest = std::max(strongest, peak.power);
+    std::erase_if(peaks_, [&](const Peak& peak) { return peak.power < 1e-6 * strongest; });
 }
 
 /// The most salient peak within `reach` Hz; none: nullptr.
-const Peak* peak_near(std::span<const Peak> peaks, double frequency, double reach) {
-    auto at = std::lower_bound(peaks.begin(), peaks.end(), frequency - reach,
+const HarmonicSummer::Peak* HarmonicSummer::peak_near(double frequency, double reach) const noexcept {
+    auto at = std::lower_bound(peaks_.begin(), peaks_.end(), frequency - reach,
                                [](const Peak& peak, double f) { return peak.frequency < f; });
     const Peak* best = nullptr;
-    for (; at != peaks.end() && at->frequency <= frequency + reach; ++at)
+    for (; at != peaks_.end() && at->frequency <= frequency + reach; ++at)
         if (!best || at->salience > best->salience) best = &*at;
     return best;
 }
 
-double reach_of(double place, double fundamental, double df) {
-    return std::min(0.75 * df + 0.006 * place, 0.12 * fundamental);
-}
-
-struct Comb {
-    double frequency = 0.0;
-    double filled = 0.0;  ///< mean salience of the orders up to the last one there is
-    double share = 0.0;   ///< of all lines that are orders, less what would be by chance
-};
-
-Comb comb_of(std::span<const Peak> peaks, double total, double frequency, double df, double top) {
+HarmonicSummer::Comb HarmonicSummer::comb_of(double total, double frequency, double df, double top) const noexcept {
     Comb out{frequency, 0.0, 0.0};
     for (int round = 0; round < 2; ++round) {
         const int orders = std::clamp(static_cast<int>(top / out.frequency), 1, most_orders);
@@ -89,7 +84,7 @@ Comb comb_of(std::span<const Peak> peaks, double total, double frequency, double
         for (int k = 1; k <= orders; ++k) {
             const double place = k * out.frequency, weight = 1.0 / std::sqrt(k);
             weights += weight;
-            const Peak* const peak = peak_near(peaks, place, reach_of(place, out.frequency, df));
+            const Peak* const peak = peak_near(place, reach_of(place, out.frequency, df));
             if (!peak) continue;
             sum += weight * peak->salience;
             until_last = weights;
@@ -98,7 +93,7 @@ Comb comb_of(std::span<const Peak> peaks, double total, double frequency, double
         }
         if (!(squares > 0.0)) return out;
         double explained = 0.0, chance = 0.0;
-        for (const Peak& peak : peaks) {
+        for (const Peak& peak : peaks_) {
             const double place = std::max(1.0, std::round(peak.frequency / out.frequency)) * out.frequency;
             const double reach = reach_of(place, out.frequency, df);
             if (std::abs(peak.frequency - place) <= reach) explained += peak.salience;
@@ -111,45 +106,57 @@ Comb comb_of(std::span<const Peak> peaks, double total, double frequency, double
     return out;
 }
 
-}  // namespace
-
-std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, double highest, std::size_t most) {
-    std::vector<HarmonicSum> found, best;
-    if (spectrum.power.size() < 8) return best;
+std::span<const HarmonicSum> HarmonicSummer::operator()(const Spectrum& spectrum, double lowest, double highest,
+                                                        std::size_t most) noexcept {
+    if (spectrum.power.size() < 8) return {};
     const double top = std::min(most_orders * highest, spectrum.df * static_cast<double>(spectrum.power.size() - 2));
-    const std::vector<Peak> peaks = peaks_of(spectrum, std::max(0.7 * lowest, 2.0 * spectrum.df), top);
-    std::vector<Peak> strongest = peaks;
-    std::ranges::sort(strongest, [](const Peak& a, const Peak& b) { return a.salience > b.salience; });
-    if (strongest.size() > most_lines) strongest.resize(most_lines);
+    find_peaks(spectrum, std::max(0.7 * lowest, 2.0 * spectrum.df), top);
+    strongest_.assign(peaks_.begin(), peaks_.end());
+    std::ranges::sort(strongest_, [](const Peak& a, const Peak& b) { return a.salience > b.salience; });
     double total = 0.0, greatest = 1e-9;
-    for (const Peak& peak : peaks) total += peak.salience;
-    std::vector<Comb> combs;
-    for (const Peak& line : strongest)
+    for (const Peak& peak : peaks_) total += peak.salience;
+    combs_.clear();
+    for (const Peak& line : std::span(strongest_).first(std::min(strongest_.size(), most_lines)))
         for (int order = 1; order <= most_orders; ++order) {
             const double f = line.frequency / order;
             if (f < lowest || f > highest || f < least_spacing * spectrum.df) continue;
-            const Comb one = comb_of(peaks, total, f, spectrum.df, top);
+            const Comb one = comb_of(total, f, spectrum.df, top);
             if (!(one.share > 0.0) || one.frequency < lowest || one.frequency > highest) continue;
-            combs.push_back(one);
+            combs_.push_back(one);
             greatest = std::max(greatest, one.share);
         }
     // Multiples of the fundamental explain fewer lines than it does, submultiples have missing orders. Lines of other
     // origin lower all shares alike.
-    for (const Comb& one : combs) {
+    found_.clear();
+    for (const Comb& one : combs_) {
         const double relative = one.share / greatest;
-        found.push_back({one.frequency, std::min(1.0, one.filled * relative * relative * std::sqrt(one.share))});
+        found_.push_back({one.frequency, std::min(1.0, one.filled * relative * relative * std::sqrt(one.share))});
     }
-    std::ranges::sort(found, [](const HarmonicSum& a, const HarmonicSum& b) {
+    std::ranges::sort(found_, [](const HarmonicSum& a, const HarmonicSum& b) {
         return a.score != b.score ? a.score > b.score : a.frequency > b.frequency;
     });
-    for (const HarmonicSum& one : found) {
-        if (best.size() == most) break;
-        if (std::ranges::none_of(best, [&](const HarmonicSum& other) {
+    std::size_t count = 0;
+    for (const HarmonicSum& one : found_) {
+        if (count == std::min(most, most_sums)) break;
+        const std::span<const HarmonicSum> better(best_.data(), count);
+        if (std::ranges::none_of(better, [&](const HarmonicSum& other) {
                 return std::abs(one.frequency / other.frequency - 1.0) < neighbours;
             }))
-            best.push_back(one);
+            best_[count++] = one;
     }
-    return best;
+    return {best_.data(), count};
+}
+
+std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, double highest, std::size_t most) {
+    HarmonicSummer summer(spectrum.power.size());
+    const std::span<const HarmonicSum> sums = summer(spectrum, lowest, highest, most);
+    return {sums.begin(), sums.end()};
+}
+
+double confidence_in(std::span<const HarmonicSum> sums) noexcept {
+    if (sums.empty()) return 0.0;
+    const double rival = sums.size() > 1 ? sums[1].score / std::max(sums[0].score, 1e-9) : 0.0;
+    return sums[0].score * (1.0 - 0.5 * rival);
 }
 
 }  // namespace tactus::signal

@@ -127,7 +127,7 @@ VibrationReport VibrationAnalysis::report() const {
     out.hum = find_hum(out.lines, out.fundamental.frequency);
     out.bands = third_octaves(band_spectrum());
     if (envelope_spectrum_) {
-        const Spectrum envelope = envelope_spectrum_->spectrum();
+        const Spectrum& envelope = out.envelope_spectrum.emplace(envelope_spectrum_->spectrum());
         const double highest = 0.5 * (settings_.envelope->second - settings_.envelope->first);
         out.envelope = strongest(find_lines(envelope, 2.0 * envelope.df, highest));
     }

@@ -31,6 +31,7 @@ struct VibrationReport {
     std::vector<SpectralLine> peaks;  ///< the strongest 20, by frequency
     std::vector<HumLine> hum;
     std::vector<Band> bands;  ///< of all samples alike: their sum is the mean square, but for what is outside of them
+    std::optional<Spectrum> envelope_spectrum;  ///< density, Hann, mean, of the envelope
     std::vector<SpectralLine> envelope;  ///< lines of the envelope's spectrum, the strongest 20
     std::optional<Spectrogram> spectrogram;
 };

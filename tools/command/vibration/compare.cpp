@@ -6,6 +6,7 @@
 #include "tools/command/batch.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/comparison_page.hpp"
@@ -33,7 +34,8 @@ struct CompareChoice {
     fs::path report, table;                          // .html, .csv
     std::string touch = "displacement", axes = "strongest";
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
-    std::string time_unit;
+    std::string time_unit, band;                     // band: LOW:HIGH in Hz, of figures
+    StretchChoice stretch;
     int jobs = 0;                                    // pairs at a time, 0: one per core
     bool json = false;
 };
@@ -145,6 +147,8 @@ int compare(const CompareChoice& choice) {
     settings.touch = touch_of(choice.touch);
     settings.axes = choice.axes == "vector" ? study::Axes::vector : study::Axes::strongest;
     settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
+    settings.stretches = {stretch_of(choice.stretch, 0), stretch_of(choice.stretch, 1)};
+    if (!choice.band.empty()) settings.plotted = parse_band(choice.band, "--band");
     settings.pictures = !choice.plot.empty() || !choice.report.empty();
     if (fs::is_directory(settings.reference) || fs::is_directory(settings.output))
         return compare_many(choice, settings);
@@ -162,6 +166,10 @@ Action add(VerbOptions& verb) {
     verb.add("--thresholds", choice->thresholds,
              "TOML file with the thresholds; keys and defaults: docs/reference/tables.md");
     verb.add("--plot", choice->plot, "a figure, .svg or .png; for folders: a folder of SVG files");
+    verb.add("--band", choice->band,
+             "plotted range, Hz (default: 20 Hz to half the sample rate of the slower record, at most 4 kHz); what is "
+             "judged stays the same")
+        .value_name("LOW:HIGH");
     verb.add("--report", choice->report, "HTML file with figure, tables and methods");
     verb.add("--table", choice->table, "a row per pair, CSV");
     verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
@@ -184,6 +192,7 @@ Action add(VerbOptions& verb) {
         .one_each();
     verb.add("--time-unit", choice->time_unit, "unit of time in CSV logs: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    add_stretch_options(verb, choice->stretch, StretchOf::both);
     verb.add("--actuator", settings.actuator, "report the level gap of this actuator at its limits; needs m/s^2");
     verb.add("--mass", settings.mass, "moving mass of the actuator, kg").unit("kg").shows_default();
     verb.add("--touch", choice->touch, "quantity of the threshold of touch")

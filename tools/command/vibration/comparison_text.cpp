@@ -2,6 +2,7 @@
 #include "tools/command/vibration/comparison_text.hpp"
 
 #include "assets/file/json.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -74,6 +75,7 @@ Json to_json(const ComparedPair& o) {
               {"touch",
                {{"threshold_of", touch_unit(o.touch)}, {"cosine_40_1000", c.touch_cosine}, {"gap_db", c.touch_gap_db}}},
               {"band_hz", {c.lowest, c.highest}},
+              {"stretch", {{"reference", stretch_json(o.stretches[0])}, {"output", stretch_json(o.stretches[1])}}},
               {"rms", {{"reference", c.reference_rms}, {"output", c.output_rms}}},
               {"db_re", "1 of the record's unit, rms"},
               {"above_noise",

@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -66,6 +67,7 @@ Json operation_json(const Operation& one) {
             {"a_hw_by", "transform of the record"},
             {"axes", one.axes},
             {"file", one.file},
+            {"stretch", stretch_json(one.stretch)},
             {"duration_s", one.duration},
             {"notes", one.notes}};
 }
@@ -100,10 +102,11 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
 
 void print_operation(const Operation& one) {
     fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
+    if (!one.stretch.is_whole()) fmt::print("  of the record: {}\n", one.stretch.text());
     for (std::size_t i = 0; i < one.axes.size(); ++i)
-        fmt::print("  axis {}: a_hw {:.4g} m/s^2 rms, by transform of the record (by filter {:.4g})\n", one.axes[i],
-                   one.weighted[i], one.filtered[i]);
-    if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
+        fmt::print("  axis {}: a_hw {} m/s^2 rms, by transform of the record (by filter {})\n", one.axes[i],
+                   plain(one.weighted[i]), plain(one.filtered[i]));
+    if (one.three_axes) fmt::print("  a_hv {} m/s^2\n", plain(one.total(), 3));
     fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one.total()),
                reached(signal::limit_value, one.total()));
     for (const std::string& note : one.notes) fmt::print("  {}\n", note);
@@ -117,11 +120,12 @@ void print_table(const std::vector<Operation>& operations) {
                "action value", "limit value");
     for (const Operation& one : operations)
         if (!one.file.empty())
-            fmt::print("{:<{}}  {:>9.3g}  {:>9.3g}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, one.total(),
-                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}),
-                       one.duration / 60.0, reached(signal::action_value, one.total()),
-                       reached(signal::limit_value, one.total()),
-                       one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
+            fmt::print(
+                "{:<{}}  {:>9}  {:>9}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, plain(one.total(), 3),
+                plain(signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), 3),
+                one.duration / 60.0, reached(signal::action_value, one.total()),
+                reached(signal::limit_value, one.total()),
+                one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
 }
 
 int exposure(const ExposureChoice& choice) {
@@ -132,7 +136,7 @@ int exposure(const ExposureChoice& choice) {
     std::vector<double> durations;
     for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
     if (durations.empty()) durations.push_back(signal::reference_day);
-    const study::ExposureSettings settings{choice.record, choice.uncalibrated};
+    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated};
     std::vector<Operation> operations(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
@@ -161,7 +165,7 @@ int exposure(const ExposureChoice& choice) {
         for (const Operation& one : operations)
             if (!one.file.empty()) print_operation(one);
     if (a8)
-        fmt::print("A(8) {:.3g} m/s^2: {}\n", day,
+        fmt::print("A(8) {} m/s^2: {}\n", plain(day, 3),
                    day > signal::limit_value    ? "above the limit value, 5"
                    : day > signal::action_value ? "above the action value, 2.5"
                                                 : "below the action value, 2.5");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus model: fits the model of a saw to its recordings.
 #include "assets/file/json.hpp"
-#include "tools/command/options.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/saw_modelling.hpp"
 
@@ -20,6 +20,7 @@ using study::ModelledRecording;
 struct ModelChoice {
     study::SawModelSettings settings;
     std::filesystem::path out;
+    StretchChoice stretch;
     bool json = false;
 };
 
@@ -32,6 +33,7 @@ Json rows_json(const study::SawModelling& modelling) {
     for (const ModelledRecording& row : modelling.recordings)
         rows.push_back({{"file", row.recording->file.string()},
                         {"state", row.recording->cutting ? "cutting" : "free_air"},
+                        {"used_s", Json::array({row.recording->used_from(), row.recording->used_to()})},
                         {"rate_hz", row.recording->rate},
                         {"load_N", row.recording->load},
                         {"density_kg_per_m3", row.recording->density > 0.0 ? Json(row.recording->density) : Json()},
@@ -46,6 +48,11 @@ void print(const study::SawModelling& modelling, const ModelChoice& choice) {
                modelling.model.conditions.size(), vibration::SawModelSize::lines,
                modelling.texts.calibrated ? "in m/s^2" : "normalised",
                modelling.texts.synthesised ? "; fitted to computed sounds, not to recordings" : "");
+    if (!choice.stretch.from.empty() || !choice.stretch.to.empty()) {
+        const sound::Stretch stretch = stretch_of(choice.stretch);
+        fmt::print("of each recording from {:g} s{}\n", stretch.from,
+                   choice.stretch.to.empty() ? " on" : fmt::format(" to {:g} s", stretch.to));
+    }
     fmt::print("log-spectral distance and level (rms), {:g} to {:g} Hz, dB:\n", choice.settings.lowest,
                choice.settings.highest);
     fmt::print("  {:<28} {:>8} {:>6} {:>9}   {:>15}   {}\n", "recording", "rate Hz", "load N", "kg/m^3", "fitted",
@@ -64,7 +71,9 @@ void print(const study::SawModelling& modelling, const ModelChoice& choice) {
 }
 
 int model(const ModelChoice& choice) {
-    const study::SawModelling modelling = study::model_saw(choice.settings);
+    study::SawModelSettings settings = choice.settings;
+    settings.stretch = stretch_of(choice.stretch);
+    const study::SawModelling modelling = study::model_saw(settings);
     sound::save_saw_model(modelling.model, modelling.texts, choice.out);
     if (choice.json) {
         const Json json{{"model", choice.out.string()},
@@ -86,6 +95,7 @@ Action add(VerbOptions& verb) {
         .required();
     verb.add("-o,--out", choice->out, "TOML file for the model").required();
     verb.band("--band", choice->settings.lowest, choice->settings.highest, "band of the distances, Hz");
+    add_stretch_options(verb, choice->stretch);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return model(*choice); };
 }

@@ -4,8 +4,12 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "tools/command/vibration/record_options.hpp"
+#include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/spectra/waterfall_figure.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
@@ -21,16 +25,19 @@ namespace {
 using file::Json;
 
 struct OrdersChoice : RecordChoice {
-    study::OrdersSettings settings;
+    study::OrdersSettings orders;
     std::filesystem::path csv;
     std::string band;  // LOW:HIGH in Hz; empty: found
     bool peak = false;
+    std::vector<std::filesystem::path> waterfalls;
+    std::string over, against;  // of waterfalls; empty: orders, time
 };
 
 std::string json_of(const std::string& file, const study::Orders& found) {
     Json json{{"file", file},
               {"sample_rate_hz", found.sample_rate},
               {"duration_s", found.duration},
+              {"stretch", stretch_json(found.stretch)},
               {"source", found.source},
               {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
               {"channels", Json::array()}};
@@ -57,6 +64,7 @@ std::string json_of(const std::string& file, const study::Orders& found) {
                                          {"db", 10.0 * std::log10(std::max(square, 1e-30))},
                                          {"snr_db", level.snr_db}});
         }
+        if (one.waterfall) channel["waterfall"] = waterfall_json(*one.waterfall);
         json["channels"].push_back(channel);
     }
     return json.dump(2) + "\n";
@@ -66,14 +74,15 @@ std::string text_of(const std::string& file, const study::Orders& found, bool pe
     const study::LevelReference reference = study::level_reference(found.calibration);
     std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
                                    found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
+    if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
     for (const study::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
         for (const signal::OrderLevel& level : one.spectrum.orders) {
             const double square = 0.5 * level.amplitude * level.amplitude;
             if (level.above_nyquist) text += fmt::format("    order {:3g}  above half the sample rate\n", level.order);
             else
-                text += fmt::format("    order {:3g}  {:.5g} {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
-                                    peak ? level.amplitude : std::sqrt(square), found.calibration.unit,
+                text += fmt::format("    order {:3g}  {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
+                                    readable(peak ? level.amplitude : std::sqrt(square), found.calibration.unit, 5),
                                     reference.db(square), level.snr_db);
         }
     }
@@ -106,21 +115,54 @@ void about_file(const std::filesystem::path& file, const Function& function) {
     }
 }
 
+/// By the ending: a figure or a table.
+void write_waterfall(const study::Orders& found, const std::filesystem::path& record,
+                     const std::filesystem::path& out) {
+    if (out.extension() == ".csv") {
+        file::write_whole_file(out, waterfall_csv(found));
+    } else if (out.extension() == ".json") {
+        Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", Json::array()}};
+        for (const study::OrdersOfChannel& channel : found.channels) {
+            json["channels"].push_back(Json{{"name", channel.name}});
+            json["channels"].back().update(waterfall_json(*channel.waterfall));
+        }
+        file::write_whole_file(out, json.dump() + "\n");
+    } else {
+        picture::write_figure(picture::draw_waterfall(found, record), out);
+    }
+}
+
+std::optional<study::WaterfallSettings> waterfall_of(const OrdersChoice& choice) {
+    if (choice.waterfalls.empty()) {
+        if (!choice.over.empty() || !choice.against.empty())
+            throw Error("--over and --against are of a waterfall; name its file with --waterfall");
+        return std::nullopt;
+    }
+    for (const std::filesystem::path& out : choice.waterfalls)
+        if (const auto ending = out.extension();
+            ending != ".svg" && ending != ".png" && ending != ".csv" && ending != ".json")
+            throw Error(fmt::format("{}: a waterfall is written as .svg, .png, .csv or .json", out.string()));
+    return study::WaterfallSettings{choice.over != "frequency", choice.against == "speed"};
+}
+
 int orders(const OrdersChoice& choice) {
     if (choice.files.size() != 1) throw Error("orders takes one file");
     const std::filesystem::path& file = choice.files.front();
-    study::OrdersSettings settings = choice.settings;
-    settings.record = choice.record;
+    study::OrdersSettings settings = choice.orders;
+    settings.record = choice.settings();
     if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
+    settings.waterfall = waterfall_of(choice);
     const study::Orders found = study::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
+    for (const std::filesystem::path& out : choice.waterfalls)
+        about_file(file, [&] { write_waterfall(found, file, out); });
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found, choice.peak));
     return done;
 }
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<OrdersChoice>();
-    study::OrdersSettings& settings = choice->settings;
+    study::OrdersSettings& settings = choice->orders;
     add_record_options(verb, *choice, "a sound file or CSV log");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);
@@ -131,6 +173,12 @@ Action add(VerbOptions& verb) {
     verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "CSV file for the level over order");
+    verb.add("--waterfall", choice->waterfalls,
+             "file for the levels row by row: a figure, .svg or .png, or a table, .csv or .json; repeatable")
+        .one_each();
+    verb.add("--over", choice->over, "columns of a waterfall: orders (default) or frequency")
+        .one_of({"orders", "frequency"});
+    verb.add("--against", choice->against, "rows of a waterfall: time (default) or speed").one_of({"time", "speed"});
     verb.flag("--peak", choice->peak, "peak values instead of rms, in text and CSV");
     return [choice] { return orders(*choice); };
 }

@@ -3,6 +3,12 @@
 
 namespace tactus::command {
 
+study::RecordSettings RecordChoice::settings() const {
+    study::RecordSettings all = record;
+    all.stretch = stretch_of(stretch);
+    return all;
+}
+
 void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files) {
     verb.add("files", choice.files, files).required();
     verb.add("--calibration,--full-scale", choice.record.calibration,
@@ -14,6 +20,7 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
         .one_each();
     verb.add("--time-unit", choice.record.log.time_unit, "unit of time in a CSV log: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    add_stretch_options(verb, choice.stretch);
     verb.flag("--json", choice.json, "as JSON");
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/command/options.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 #include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
@@ -13,8 +14,11 @@ namespace tactus::command {
 
 struct RecordChoice {
     std::vector<std::filesystem::path> files;
-    study::RecordSettings record;
+    study::RecordSettings record;  ///< without the stretch: see `settings`
+    StretchChoice stretch;
     bool json = false;
+
+    study::RecordSettings settings() const;
 };
 
 /// `files`: help text of the files argument.

@@ -27,6 +27,8 @@ struct SpectrumChoice : RecordChoice {
     SpectrumWords words;
     std::string envelope;              // LOW:HIGH in Hz
     std::string fundamental = "20:500";  // LOW:HIGH in Hz
+    std::string band;                  // LOW:HIGH in Hz, of plots
+    std::vector<std::string> marks;
     std::optional<std::size_t> segment;
     std::optional<double> overlap;
     int orders = 10, jobs = 0;         // files at a time, 0: one per core
@@ -36,16 +38,17 @@ struct SpectrumChoice : RecordChoice {
 struct Outcome {
     std::string text, table;  // printed text; CSV rows
     std::string section;      // section of the HTML page
+    std::optional<study::AnalysedFile> drawn;  // for a figure of several files
 };
 
-study::SpectrumSettings settings_of(const SpectrumChoice& choice) {
+study::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) {
     constexpr std::pair<const char*, signal::WindowKind> windows[] = {
         {"hann", signal::WindowKind::hann},         {"hamming", signal::WindowKind::hamming},
         {"blackman", signal::WindowKind::blackman}, {"blackmanharris", signal::WindowKind::blackman_harris},
         {"flattop", signal::WindowKind::flat_top},  {"boxcar", signal::WindowKind::rectangular}};
     const SpectrumWords& words = choice.words;
     study::SpectrumSettings settings;
-    settings.record = choice.record;
+    settings.record = choice.settings();
     for (const auto& [name, kind] : windows)
         if (words.window == name) settings.window = kind;
     settings.detrend = words.detrend == "none"     ? signal::Detrend::none
@@ -61,25 +64,39 @@ study::SpectrumSettings settings_of(const SpectrumChoice& choice) {
     settings.fundamental = parse_band(choice.fundamental, "--fundamental");
     if (!choice.envelope.empty()) settings.envelope = parse_band(choice.envelope, "--envelope");
     settings.orders = choice.orders;
-    settings.spectrogram = !choice.plot.empty() || !choice.report.empty();
+    settings.spectrogram = (!choice.plot.empty() && !overlay) || !choice.report.empty();
+    for (const std::string& mark : choice.marks) settings.marks.push_back(study::parse_mark(mark));
     return settings;
 }
 
+picture::PlottedBand plotted_band(const SpectrumChoice& choice) {
+    return choice.band.empty() ? picture::PlottedBand() : parse_band(choice.band, "--band");
+}
+
+/// Several files go into one figure, unless --plot names a folder.
+bool is_figure(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".png"; }
+
 picture::SpectrumMethod method_of(const SpectrumChoice& choice) {
-    return {choice.words.window, choice.words.detrend, choice.words.average,        choice.words.scaling,
-            choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5)};
+    return {choice.words.window, choice.words.detrend, choice.words.average,         choice.words.scaling,
+            choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5), plotted_band(choice)};
 }
 
 Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
                 const std::function<void(double)>& progress) {
-    const study::AnalysedFile file = study::analyse_file(path, settings_of(choice), progress);
+    const bool overlay = many && is_figure(choice.plot);
+    study::AnalysedFile file = study::analyse_file(path, settings_of(choice, overlay), progress);
     const auto output = [&](const fs::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
     if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
-    if (!choice.plot.empty()) picture::write_figure(picture::draw_spectrum(file), output(choice.plot, ".svg"));
-    return {choice.json ? analysis_json(file, choice.words) : analysis_text(file), analysis_rows(file),
-            choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice))};
+    if (!choice.plot.empty() && !overlay)
+        picture::write_figure(picture::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"));
+    Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file),
+                    analysis_rows(file),
+                    choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice)),
+                    {}};
+    if (overlay) outcome.drawn = std::move(file);
+    return outcome;
 }
 
 void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& outcomes,
@@ -95,15 +112,23 @@ void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& 
 int spectrum(const SpectrumChoice& choice) {
     const std::vector<fs::path> files = study::expand_folders(choice.files);
     const bool many = files.size() > 1;
+    settings_of(choice, false);  // refuses what cannot be read, before the files are
+    plotted_band(choice);
     if (many)
         for (const fs::path& folder : {choice.csv, choice.plot})
-            if (!folder.empty()) fs::create_directories(folder);
+            if (!folder.empty() && !(folder == choice.plot && is_figure(folder))) fs::create_directories(folder);
     std::vector<Outcome> outcomes(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
             outcomes[i] = analyse(files[i], choice, many, progress);
         });
     const bool bad = tell_failures(failures) > 0;
+    if (many && is_figure(choice.plot)) {
+        std::vector<study::AnalysedFile> drawn;
+        for (Outcome& outcome : outcomes)
+            if (outcome.drawn) drawn.push_back(std::move(*outcome.drawn));
+        if (!drawn.empty()) picture::write_figure(picture::draw_overlay(drawn, plotted_band(choice)), choice.plot);
+    }
     if (choice.json) print_json(files, outcomes, failures);
     else
         for (const Outcome& outcome : outcomes) fmt::print("{}", outcome.text);
@@ -148,7 +173,15 @@ Action add(VerbOptions& verb) {
     verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: search range of the fundamental").shows_default();
     verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
-    verb.add("--plot", choice->plot, "figure, .svg or .png; for several files: a folder of SVG files");
+    verb.add("--plot", choice->plot,
+             "figure, .svg or .png: several files in one plot; or a folder for a figure of each");
+    verb.add("--band", choice->band, "plotted range, Hz (default: 20 Hz to half the sample rate)")
+        .value_name("LOW:HIGH");
+    verb.add("--mark", choice->marks,
+             "a frequency to mark in figures and to state the level of, with a label, such as 118.9:BPFI or \"118.9 "
+             "Hz:BPFI:5\" with five harmonics; repeatable")
+        .value_name("FREQUENCY:LABEL[:HARMONICS]")
+        .one_each();
     verb.add("--table", choice->table, "CSV file with one row per file and channel");
     verb.add("--report", choice->report, "HTML file with figures, tables and methods");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);

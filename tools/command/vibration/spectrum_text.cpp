@@ -2,7 +2,9 @@
 #include "tools/command/vibration/spectrum_text.hpp"
 
 #include "assets/file/json.hpp"
+#include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
@@ -86,13 +88,69 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
                                  {"db", decibels(b.power)},
                                  {"deviation_db", band_deviation(b, r.lines)}});
     for (const signal::SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
+    if (!file.marks.empty()) json["marks"] = Json::array();
+    for (const study::MarkPlace& place : file.marks) {
+        Json row{{"label", place.label}, {"harmonic", place.harmonic}, {"hz", place.frequency}};
+        const auto add = [&](const char* of, const std::vector<study::MarkLevel>& levels) {
+            row[of] = nullptr;  // outside of the spectrum
+            for (const study::MarkLevel& level : levels) {
+                if (level.place.frequency != place.frequency || level.place.label != place.label) continue;
+                row[of] = line(level.line);
+                row[of]["is_line"] = level.is_line;
+                row[of]["within_hz"] = level.within;
+                row[of]["nearest_line"] = nullptr;
+                if (!level.nearest) continue;
+                row[of]["nearest_line"] = line(*level.nearest);
+                row[of]["nearest_line"]["offset_hz"] = level.nearest->frequency - place.frequency;
+            }
+        };
+        add("spectrum", channel.marks);
+        if (r.envelope_spectrum) add("envelope", channel.envelope_marks);
+        json["marks"].push_back(row);
+    }
     return json;
+}
+
+std::string nearest_text(const study::MarkLevel& level, const study::LevelReference& reference) {
+    if (!level.nearest) return "; there is no line";
+    const double offset = level.nearest->frequency - level.place.frequency;
+    if (std::abs(offset) > 0.5 * level.place.frequency) return "; no line near";
+    return fmt::format("; nearest line {:.2f} Hz, {:.2f} Hz {}, {:.1f} dB rms", level.nearest->frequency,
+                       std::abs(offset), offset < 0.0 ? "lower" : "higher", reference.db(level.nearest->power));
+}
+
+/// A line per mark and spectrum.
+std::string marks_text(const AnalysedChannel& channel, const AnalysedFile& file,
+                       const study::LevelReference& reference) {
+    std::string text;
+    const auto add = [&](const char* where, const std::vector<study::MarkLevel>& levels) {
+        for (const study::MarkPlace& place : file.marks) {
+            const auto level = std::ranges::find_if(levels, [&](const study::MarkLevel& one) {
+                return one.place.frequency == place.frequency && one.place.label == place.label;
+            });
+            text += fmt::format("    {} at {:.2f} Hz{}: ", place.name(), place.frequency, where);
+            if (level == levels.end()) {
+                text += "outside of the spectrum\n";
+                continue;
+            }
+            if (level->is_line)
+                text += fmt::format("{:.1f} dB rms at {:.2f} Hz, SNR {:.0f} dB\n", reference.db(level->line.power),
+                                    level->line.frequency, level->line.snr_db);
+            else
+                text += fmt::format("no line, {:.1f} dB rms within {:.2f} Hz{}\n", reference.db(level->line.power),
+                                    level->within, nearest_text(*level, reference));
+        }
+    };
+    add("", channel.marks);
+    if (file.envelope) add(" of the envelope", channel.envelope_marks);
+    return text;
 }
 
 }  // namespace
 
 std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) {
     Json json{{"file", file.file.string()}, {"sample_rate_hz", file.rate}, {"duration_s", file.duration}};
+    json["stretch"] = stretch_json(file.stretch);
     if (file.log)
         json["log"] = {{"rows", file.log->rows},
                        {"lost_rows", file.log->lost_rows},
@@ -121,17 +179,18 @@ std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) 
 }
 
 std::string analysis_text(const AnalysedFile& file) {
-    std::string text = fmt::format("{}: {:.3f} s at {:.6g} Hz, {}\n", file.file.string(), file.duration, file.rate,
-                                   counted(file.channels.size(), "channel"));
+    std::string text = fmt::format("{}: {:.3f} s at {}, {}\n", file.file.string(), file.duration,
+                                   readable(file.rate, "Hz", 6), counted(file.channels.size(), "channel"));
     auto out = std::back_inserter(text);
     const study::LevelReference reference = study::level_reference(file.calibration);
+    if (!file.stretch.is_whole()) fmt::format_to(out, "  of the record: {}\n", file.stretch.text());
     fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
     if (file.log)
         fmt::format_to(out,
-                       "  uneven log, {} rows, steps {:.3g} to {:.3g} ms: resampled; limited to {:.4g} Hz, reliable to "
-                       "about {:.3g} Hz; faster vibration is aliased\n",
-                       file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
-                       file.log->usable);
+                       "  uneven log, {} rows, steps {} to {}: resampled; limited to {}, reliable to "
+                       "about {}; faster vibration is aliased\n",
+                       file.log->rows, readable(file.log->shortest_step, "s"), readable(file.log->longest_step, "s"),
+                       readable(0.5 * file.rate, "Hz", 4), readable(file.log->usable, "Hz"));
     for (const AnalysedChannel& channel : file.channels) {
         const signal::VibrationReport& r = channel.report;
         const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {
@@ -141,9 +200,10 @@ std::string analysis_text(const AnalysedFile& file) {
                 fmt::format_to(out, " {:.2f} ({:.1f})", l.frequency, reference.db(l.power));
             text += '\n';
         };
-        fmt::format_to(out, "  channel {}: rms {:.4g} {}{}, {:.2f} dB; crest {:.2f}\n", channel.name, r.level.rms(),
-                       file.calibration.unit, file.calibration.known ? "" : " (uncalibrated)",
-                       reference.db(r.level.rms() * r.level.rms()), r.level.crest());
+        fmt::format_to(out, "  channel {}: rms {}{}, {:.2f} dB; crest {:.2f}\n", channel.name,
+                       readable(r.level.rms(), file.calibration.unit, 4),
+                       file.calibration.known ? "" : " (uncalibrated)", reference.db(r.level.rms() * r.level.rms()),
+                       r.level.crest());
         if (r.fundamental.frequency > 0.0) {
             fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
                            r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");
@@ -164,6 +224,7 @@ std::string analysis_text(const AnalysedFile& file) {
             fmt::format_to(out, "    hum of {} Hz mains at {:.2f} Hz, {:.1f} dB rms, SNR {:.0f} dB\n", h.mains,
                            h.frequency, reference.db(h.power), h.snr_db);
         list("envelope", r.envelope);
+        text += marks_text(channel, file, reference);
         for (const std::string& warning : channel.warnings) fmt::format_to(out, "    {}\n", warning);
     }
     return text;

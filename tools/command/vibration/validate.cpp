@@ -2,9 +2,12 @@
 // tactus validate: compares the handle's vibration in a patch with each recording that its saw plays.
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/vibration/stretch_options.hpp"
 #include "tools/command/vibration/validation_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
@@ -27,6 +30,7 @@ struct ValidateChoice {
     study::ValidateSettings settings;
     std::filesystem::path thresholds, report, plot, table;
     std::string touch = "displacement";
+    StretchChoice stretch;
     int jobs = 0;  // runs at a time, 0: one per core
     bool json = false;
 };
@@ -48,12 +52,13 @@ Json run_json(const ValidationRun& run) {
     return json;
 }
 
-std::string json_text(const Validation& validation, const Count& count) {
+std::string json_text(const Validation& validation, const study::ValidateSettings& settings, const Count& count) {
     Json json{{"patch", validation.patch},
               {"set", validation.set->path.string()},
               {"synthesised", validation.set->synthesised},
               {"calibrated", validation.set->calibrated()},
               {"out", validation.path.out},
+              {"stretch_of_run", {{"from_s", settings.from}, {"to_s", settings.from + settings.seconds}}},
               {"verdict", count.failed + count.bad == 0 ? "pass" : "fail"},
               {"passed", count.passed},
               {"failed", count.failed},
@@ -63,18 +68,32 @@ std::string json_text(const Validation& validation, const Count& count) {
     return json.dump(2) + "\n";
 }
 
-void print(const Validation& validation, const Count& count) {
+void print(const Validation& validation, const study::ValidateSettings& settings, const Count& count) {
     fmt::print("{} at {}, beside {}{}\n", validation.patch, validation.path.out, validation.set->path.string(),
                validation.set->synthesised ? " (synthesised, no recordings)" : "");
+    fmt::print("compared: {} to {} s of each run, with the stretch of the recording that was played then\n",
+               plain(settings.from, 6), plain(settings.from + settings.seconds, 6));
     fmt::print("{}", validation_rows(validation));
     fmt::print("{}: {} of {} have the vibration of their recording\n", count.failed + count.bad == 0 ? "PASS" : "FAIL",
                count.passed, validation.runs.size());
+}
+
+/// --from and --to are of each run; the recording is compared in the stretch that was played then.
+void choose_stretch(const StretchChoice& choice, study::ValidateSettings& settings) {
+    if (!choice.from.empty()) settings.from = choice.from.front();
+    if (!choice.to.empty()) settings.seconds = choice.to.front() - settings.from;
+    if (!(settings.seconds >= 0.5 && settings.seconds <= 600.0 && settings.from <= 3600.0))
+        throw Error(
+            fmt::format("the compared stretch of a run must take 0.5 s to 600 s, within the first hour; {} s to "
+                        "{} s does not",
+                        plain(settings.from, 6), plain(settings.from + settings.seconds, 6)));
 }
 
 int validate(const ValidateChoice& choice) {
     study::ValidateSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
+    choose_stretch(choice.stretch, settings);
     Validation validation = study::plan_validation(settings);
     const bool pictures = !choice.report.empty() || !choice.plot.empty();
     if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
@@ -98,8 +117,8 @@ int validate(const ValidateChoice& choice) {
     }
     if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
     if (!choice.report.empty()) file::write_whole_file(choice.report, picture::validation_page(validation));
-    if (choice.json) fmt::print("{}", json_text(validation, count));
-    else print(validation, count);
+    if (choice.json) fmt::print("{}", json_text(validation, settings, count));
+    else print(validation, settings, count);
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
 }
 
@@ -116,7 +135,16 @@ Action add(VerbOptions& verb) {
     verb.add("--saw", settings.saw, "the saw node (default: the only node of type saw)");
     verb.add("--probe", settings.out_port,
              "NODE.PORT, the handle's vibration (default: the port recorded as handle.wav, or the actuator's)");
-    verb.add("--seconds", settings.seconds, "compared time of each run, s").unit("s").shows_default().range(0.5, 600.0);
+    const Option seconds = verb.add("--seconds", settings.seconds, "compared time of each run, s")
+                               .unit("s")
+                               .shows_default()
+                               .range(0.5, 600.0);
+    add_stretch_options(verb, choice->stretch);
+    verb.find("--from").about(
+        "where the compared stretch of each run begins (default 1 s: after the run-up); the recording is compared in "
+        "the "
+        "stretch that is played then");
+    verb.find("--to").about("where it ends, instead of --seconds").excludes(seconds);
     verb.add("--thresholds", choice->thresholds, "TOML file with the thresholds, as for compare");
     verb.add("--touch", choice->touch, "quantity of the threshold of touch")
         .shows_default()

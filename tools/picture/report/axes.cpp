@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/axes.hpp"
 
-#include <fmt/format.h>
+#include "dsp/core/readable.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +28,13 @@ std::vector<double> Scale::ticks() const {
         return all;
     }
     const double raw = (high - low) / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
-    const double step = raw / power > 5.0   ? 10.0 * power
-                        : raw / power > 2.0 ? 5.0 * power
-                        : raw / power > 1.0 ? 2.0 * power
-                                            : power;
-    for (double v = std::ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step)
-        all.push_back(std::abs(v) < 1e-9 * step ? 0.0 : v);
+    const double round = raw / power > 5.0   ? 10.0 * power
+                         : raw / power > 2.0 ? 5.0 * power
+                         : raw / power > 1.0 ? 2.0 * power
+                                             : power;
+    const double apart = step > 0.0 ? step : round;
+    for (double v = std::ceil(low / apart - 1e-9) * apart; v <= high + 1e-9 * apart; v += apart)
+        all.push_back(std::abs(v) < 1e-9 * apart ? 0.0 : v);
     return all;
 }
 
@@ -44,12 +45,11 @@ display::FigurePoint Axes::at(double a, double b) const {
 void Axes::draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const {
     for (const double v : across.ticks()) {
         figure.line({{at(v, up.low).x, y}, {at(v, up.low).x, y + height}}, grid, 0.8);
-        figure.text({at(v, up.low).x, y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink,
-                    display::TextAnchor::middle);
+        figure.text({at(v, up.low).x, y + height + 13.0}, axis_number(v), 10.0, ink, display::TextAnchor::middle);
     }
     for (const double v : up.ticks()) {
         figure.line({{x, at(across.low, v).y}, {x + width, at(across.low, v).y}}, grid, 0.8);
-        figure.text({x - 5.0, at(across.low, v).y + 3.5}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::end);
+        figure.text({x - 5.0, at(across.low, v).y + 3.5}, axis_number(v), 10.0, ink, display::TextAnchor::end);
     }
     figure.line({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}, {x, y}}, frame, 1.0);
     figure.text({x, y - 6.0}, title, 11.0, ink, display::TextAnchor::start, true);

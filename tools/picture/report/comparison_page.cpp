@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/comparison_page.hpp"
 
+#include "dsp/core/readable.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/html_report.hpp"
 
@@ -24,14 +25,14 @@ std::string scores_table(const study::ComparedPair& pair) {
         "<table><tr><th>score</th><th class=\"n\">value</th><th class=\"n\">threshold</th><th>verdict</th><th>what it "
         "says</th></tr>\n";
     for (const study::Judged& s : pair.verdict.scores)
-        out += score_row(
-            s.name, fmt::format("{:.4g}", s.value), fmt::format("{} {:g}", s.at_least ? "≥" : "≤", s.limit),
-            s.passed ? "<td class=\"pass\">pass</td>" : "<td class=\"fail\">fail</td>", html::escaped(s.about));
+        out += score_row(s.name, plain(s.value), fmt::format("{} {:g}", s.at_least ? "≥" : "≤", s.limit),
+                         s.passed ? "<td class=\"pass\">pass</td>" : "<td class=\"fail\">fail</td>",
+                         html::escaped(s.about));
     const auto unjudged = [&](const char* name, const std::optional<double>& value, const char* unit,
                               const char* about) {
         for (const study::Judged& s : pair.verdict.scores)
             if (s.name == name) return;
-        out += score_row(name, value ? fmt::format("{:.4g}{}", *value, unit) : "–", "", "<td>not judged</td>", about);
+        out += score_row(name, value ? plain(*value) + unit : "–", "", "<td>not judged</td>", about);
     };
     unjudged("gain_db", c.gain_db, " dB", "gain that equalises the power in the band");
     unjudged(

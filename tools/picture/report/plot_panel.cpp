@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/plot_panel.hpp"
 
-#include <fmt/format.h>
+#include "dsp/core/readable.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,28 +32,46 @@ void PlotPanel::axes(double value_step, const std::string& unit, bool name_frequ
             figure_.line({{x_of(hz), y_}, {x_of(hz), bottom}}, grid, 0.8);
             const bool named = i == 1 || i == 2 || i == 3 || i == 5 || (i == 4 && decade < 50.0);
             if (name_frequencies && named)
-                figure_.text({x_of(hz), bottom + 14.0}, fmt::format("{:g}", hz), 11.0, ink,
-                             display::TextAnchor::middle);
+                figure_.text({x_of(hz), bottom + 14.0}, axis_number(hz), 11.0, ink, display::TextAnchor::middle);
         }
     const double first = std::ceil(value_.lowest / value_step - 1e-9) * value_step;
     for (double value = first; value <= value_.highest + 1e-9; value += value_step) {
         figure_.line({{x_, y_of(value)}, {right, y_of(value)}}, grid, 0.8);
-        figure_.text({x_ - 6.0, y_of(value) + 4.0}, fmt::format("{:g}", std::abs(value) < 1e-9 ? 0.0 : value), 11.0,
-                     ink, display::TextAnchor::end);
+        figure_.text({x_ - 6.0, y_of(value) + 4.0}, axis_number(std::abs(value) < 1e-9 ? 0.0 : value), 11.0, ink,
+                     display::TextAnchor::end);
     }
     figure_.line({{x_, y_}, {right, y_}, {right, bottom}, {x_, bottom}, {x_, y_}}, frame, 1.0);
     figure_.text({x_ - 38.0, y_ + 0.5 * height_}, unit, 11.0, ink, display::TextAnchor::middle, false, true);
 }
 
-void PlotPanel::curve(const std::vector<double>& values, double step, display::Colour colour, double width) const {
+void PlotPanel::curve(const std::vector<double>& values, double step, display::Colour colour, double width,
+                      double dash) const {
+    constexpr double column = 0.5;
     std::vector<display::FigurePoint> points;
+    double begin = -1e9, low = 0.0, high = 0.0;  // of the column that is being filled
+    const auto end_column = [&] {
+        if (points.empty() || high == low) return;
+        points.back().y = high;
+        points.push_back({points.back().x, low});
+    };
     for (std::size_t k = 1; k < values.size(); ++k) {
         const double hz = static_cast<double>(k) * step;
-        if (hz < hz_.lowest * 0.98 || hz > hz_.highest * 1.02) continue;
-        points.push_back({x_of(hz), y_of(values[k])});
+        // The bins beside the range draw the curve to its edges.
+        if (hz < hz_.lowest - step || hz > hz_.highest + step) continue;
+        const display::FigurePoint point{x_of(hz), y_of(values[k])};
+        if (point.x < begin + column) {
+            low = std::min(low, point.y);
+            high = std::max(high, point.y);
+            continue;
+        }
+        end_column();
+        points.push_back(point);
+        begin = point.x;
+        low = high = point.y;
     }
+    end_column();
     figure_.clip(x_, y_, width_, height_);
-    figure_.line(std::move(points), colour, width);
+    figure_.line(std::move(points), colour, width, dash);
     figure_.unclip();
 }
 

@@ -25,7 +25,9 @@ public:
 
     /// Draws grid, ticks and numbers; `unit` labels the axis.
     void axes(double value_step, const std::string& unit, bool name_frequencies) const;
-    void curve(const std::vector<double>& values, double step, display::Colour colour, double width) const;
+    /// Bins that fall on one half unit across are drawn as their greatest and least value.
+    void curve(const std::vector<double>& values, double step, display::Colour colour, double width,
+               double dash = 0.0) const;
     void upright(double hz, display::Colour colour, double dash) const;
     void level(double value, display::Colour colour, double dash) const;
 

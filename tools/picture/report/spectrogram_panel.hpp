@@ -16,7 +16,9 @@ struct SpectrogramStyle {
     double lowest, highest;        ///< Hz, logarithmic upwards
     int rows = 110, columns = 320; ///< cells at most
     bool legend = true;
-    bool relative = false;         ///< the legend is in dB re the maximum, not re 1 of the record's unit
+    bool relative = false;         ///< the legend is in dB re the maximum
+    double begin = 0.0;            ///< s: time of the left end
+    double reference = 1.0;        ///< rms in the record's unit that has 0 dB
 };
 
 /// Draws levels from the maximum to 60 dB below it; time from left to right.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/spectrum_page.hpp"
 
+#include "dsp/core/readable.hpp"
 #include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/spectrum_figure.hpp"
@@ -49,18 +50,37 @@ std::string bands_table(const signal::VibrationReport& r, const study::LevelRefe
         "dB</th></tr>\n",
         reference.text);
     for (const signal::Band& band : r.bands)
-        out +=
-            fmt::format("<tr><td class=\"n\">{:.4g}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
-                        band.centre, reference.db(band.power), study::band_deviation(band, r.lines));
+        out += fmt::format("<tr><td class=\"n\">{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
+                           plain(band.centre, 4), reference.db(band.power), study::band_deviation(band, r.lines));
+    return out + "</table>\n";
+}
+
+std::string marks_table(const study::AnalysedChannel& channel, const study::LevelReference& reference) {
+    if (channel.marks.empty() && channel.envelope_marks.empty()) return {};
+    std::string out = fmt::format(
+        "<table><tr><th>mark</th><th class=\"n\">Hz</th><th>in</th><th>found</th><th class=\"n\">rms, dB re {}</th>"
+        "<th class=\"n\">SNR, dB</th><th class=\"n\">nearest line, Hz</th></tr>\n",
+        reference.text);
+    const auto add = [&](const char* where, const std::vector<study::MarkLevel>& levels) {
+        for (const study::MarkLevel& level : levels)
+            out += fmt::format(
+                "<tr><td>{}</td><td class=\"n\">{:.2f}</td><td>{}</td><td>{}</td><td class=\"n\">{:.1f}</td>"
+                "<td class=\"n\">{:.1f}</td><td class=\"n\">{}</td></tr>\n",
+                html::escaped(level.place.name()), level.place.frequency, where, level.is_line ? "line" : "no line",
+                reference.db(level.line.power), level.line.snr_db,
+                level.nearest ? fmt::format("{:.2f}", level.nearest->frequency) : "–");
+    };
+    add("spectrum", channel.marks);
+    add("envelope", channel.envelope_marks);
     return out + "</table>\n";
 }
 
 std::string channel_section(const study::AnalysedChannel& channel, const study::AnalysedFile& file) {
     const signal::VibrationReport& r = channel.report;
-    const std::string unit = html::escaped(file.calibration.unit);
-    std::string out = fmt::format("<h3>Channel {}</h3>\n<p>Root mean square {:.4g} {}{}, crest factor {:.3g}. ",
-                                  html::escaped(channel.name), r.level.rms(), unit,
-                                  file.calibration.known ? "" : " (uncalibrated)", r.level.crest());
+    std::string out =
+        fmt::format("<h3>Channel {}</h3>\n<p>Root mean square {}{}, crest factor {:.3g}. ", html::escaped(channel.name),
+                    html::escaped(readable(r.level.rms(), file.calibration.unit, 4)),
+                    file.calibration.known ? "" : " (uncalibrated)", r.level.crest());
     if (r.fundamental.frequency > 0.0) {
         out += fmt::format("Fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
                            r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");
@@ -76,7 +96,7 @@ std::string channel_section(const study::AnalysedChannel& channel, const study::
         out += "</ul>\n";
     }
     const study::LevelReference reference = study::level_reference(file.calibration);
-    return out + lines_table(r, reference) + bands_table(r, reference);
+    return out + marks_table(channel, reference) + lines_table(r, reference) + bands_table(r, reference);
 }
 
 }  // namespace
@@ -89,17 +109,18 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
         mark += static_cast<char>('a' + static_cast<unsigned char>(c) / 16);
         mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 16);
     }
-    out += html::drawing(draw_spectrum(file), mark);
-    out += fmt::format("<p>{:.4g} s at {:.6g} Hz, {}; {} of {} samples.</p>\n", file.duration, file.rate,
-                       counted(file.channels.size(), "channel"),
+    out += html::drawing(draw_spectrum(file, method.band), mark);
+    out += fmt::format("<p>{} at {}, {}; {} of {} samples.</p>\n", readable(file.duration, "s", 4),
+                       readable(file.rate, "Hz", 6), counted(file.channels.size(), "channel"),
                        counted(file.channels.empty() ? 0 : file.channels.front().report.psd.segments, "segment"),
                        file.psd.segment);
+    if (!file.stretch.is_whole()) out += fmt::format("<p>Of the record: {}.</p>\n", file.stretch.text());
     if (file.log)
         out += fmt::format(
-            "<p>An uneven log of {} rows, steps {:.3g} to {:.3g} ms, resampled: limited to {:.4g} Hz, reliable to "
-            "about {:.3g} Hz.</p>\n",
-            file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
-            file.log->usable);
+            "<p>An uneven log of {} rows, steps {} to {}, resampled: limited to {}, reliable to "
+            "about {}.</p>\n",
+            file.log->rows, readable(file.log->shortest_step, "s"), readable(file.log->longest_step, "s"),
+            readable(0.5 * file.rate, "Hz", 4), readable(file.log->usable, "Hz"));
     if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
     for (const study::AnalysedChannel& channel : file.channels) out += channel_section(channel, file);
     return out;

@@ -2,7 +2,7 @@
 // Results of spectral analysis as HTML.
 #pragma once
 
-#include "tools/study/vibration/spectrum_analysis.hpp"
+#include "tools/picture/report/spectrum_figure.hpp"
 
 #include <string>
 
@@ -13,6 +13,7 @@ struct SpectrumMethod {
     std::string window, detrend, average, scaling;
     std::string envelope, fundamental;  ///< LOW:HIGH in Hz; empty: no envelope
     double overlap = 0.5;               ///< fraction of a segment
+    PlottedBand band;
 };
 
 /// Figure and tables of one file, HTML.

@@ -2,6 +2,7 @@
 #include "tools/study/vibration/comparison.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/headroom.hpp"
 #include "tools/session/take_file.hpp"
@@ -47,8 +48,9 @@ signal::Spectrogram spectrogram_of(const signal::Take& take) {
 /// Pairs of channels (from 1; 0: the mean of all) of the reference and the output; the first pair is the strongest.
 std::vector<std::pair<int, int>> compared_channels(const CompareSettings& settings, std::vector<std::string>& notes) {
     if (settings.channel) return {{*settings.channel, *settings.channel}};
-    const session::ChannelLevels r = session::channel_levels(settings.reference, settings.logs[0]),
-                                 d = session::channel_levels(settings.output, settings.logs[1]);
+    const session::ChannelLevels r = session::channel_levels(settings.reference, settings.logs[0],
+                                                             settings.stretches[0]),
+                                 d = session::channel_levels(settings.output, settings.logs[1], settings.stretches[1]);
     const std::size_t first = r.strongest();
     const auto pair_of = [](std::size_t a, std::size_t b) {
         return std::pair(static_cast<int>(a) + 1, static_cast<int>(b) + 1);
@@ -106,12 +108,14 @@ ComparedPair compare_files(const CompareSettings& settings) {
     o.output = settings.output;
     o.thresholds = settings.thresholds;
     o.touch = settings.touch;
+    o.plotted = settings.plotted;
     o.actuator_known = !settings.actuator.empty();
     const std::vector<std::pair<int, int>> channels = compared_channels(settings, o.notes);
     const auto open = [&](bool is_output, int channel) {
         return session::TakeFile({is_output ? settings.output : settings.reference, is_output ? "output" : "reference",
                                   settings.logs[is_output ? 1 : 0],
-                                  is_output ? settings.output_scale : settings.reference_scale, channel});
+                                  is_output ? settings.output_scale : settings.reference_scale, channel,
+                                  settings.stretches[is_output ? 1 : 0]});
     };
     const session::TakeFile reference = open(false, channels.front().first);
     const session::TakeFile output = open(true, channels.front().second);
@@ -129,10 +133,18 @@ ComparedPair compare_files(const CompareSettings& settings) {
         throw Error(
             fmt::format("{} and {}: {}", settings.reference.string(), settings.output.string(), error.message()));
     }
+    o.stretches = {reference.stretch(), output.stretch()};
+    if (!settings.stretches[0].is_whole() || !settings.stretches[1].is_whole())
+        o.notes.push_back(fmt::format("compared: {} of the reference, {} of the output", o.stretches[0].text(),
+                                      o.stretches[1].text()));
     for (const session::TakeFile* take : {&reference, &output})
         o.notes.insert(o.notes.end(), take->notes().begin(), take->notes().end());
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
-        o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
+        o.notes.push_back(
+            fmt::format("sampled at {} and {}", readable(reference.rate(), "Hz", 6), readable(output.rate(), "Hz", 6)));
+    if (o.plotted && o.plotted->first >= o.comparison.end)
+        throw Error(fmt::format("--band {}:{} Hz: the spectra that are compared end at {}", plain(o.plotted->first, 6),
+                                plain(o.plotted->second, 6), readable(o.comparison.end, "Hz", 6)));
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("judged from {:.0f} to {:.0f} Hz: what both can be trusted in",
                                       o.comparison.lowest, o.comparison.highest));

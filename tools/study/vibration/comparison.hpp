@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::study {
@@ -32,6 +33,8 @@ struct CompareSettings {
     std::optional<int> channel;                        ///< of both, from 1; 0: the mean of all; none: by `axes`
     Axes axes = Axes::strongest;
     std::array<table::LogSelection, 2> logs;  ///< columns of the reference and the output if they are CSV
+    std::array<sound::Stretch, 2> stretches{};  ///< of the reference and the output, each from its own start
+    std::optional<std::pair<double, double>> plotted;  ///< Hz: the range of figures; none: as far as the spectra go
     bool pictures = false;  ///< also compute spectrograms
 };
 
@@ -43,6 +46,8 @@ struct ComparedPair {
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
     double level_gap_db = 0.0;
     bool actuator_known = false;  ///< the level gap refers to an actuator at its limits
+    std::array<sound::ReadStretch, 2> stretches{};  ///< what was read of the reference and the output
+    std::optional<std::pair<double, double>> plotted;  ///< as in the settings
     std::vector<std::string> notes;
     std::vector<signal::Spectrogram> spectrograms;  ///< of reference and output, if requested
 };

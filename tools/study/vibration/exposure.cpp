@@ -27,6 +27,7 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
         throw Error(fmt::format("{}: {} channels; choose the axes with --channel", file.string(), chosen.size()));
     ExposureOperation out;
     out.file = file.string();
+    out.stretch = reader.stretch();
     out.rate = reader.rate();
     out.duration = duration;
     out.calibrated = calibration.known;

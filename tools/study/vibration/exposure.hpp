@@ -22,6 +22,7 @@ struct ExposureSettings {
 /// Work with one tool during a day.
 struct ExposureOperation {
     std::string file;
+    sound::ReadStretch stretch;
     std::vector<std::string> axes;
     std::vector<double> weighted, filtered;  ///< m/s² rms per axis: by transform, which counts; by filter
     double rate = 0.0, duration = 0.0;       ///< Hz; s per day

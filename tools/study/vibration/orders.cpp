@@ -127,18 +127,34 @@ Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& s
     out.sample_rate = reader.rate();
     out.duration = static_cast<double>(reader.frames()) / reader.rate();
     out.calibration = reader.calibration();
+    out.stretch = reader.stretch();
     try {
         const std::vector<std::size_t> wanted = wanted_channels(reader, settings);
         if (wanted.empty()) throw Error("there is no channel beside the tachometer");
         const signal::Rotation rotation = rotation_of(reader, wanted.front(), settings, out);
         out.rate = rates_of(rotation);
+        out.highest = settings.highest;
         std::vector<signal::OrderStream> streams(
             wanted.size(), signal::OrderStream(reader.rate(), reader.frames(), rotation, settings.highest));
+        std::vector<WaterfallStream> waterfalls;
+        if (settings.waterfall)
+            for (const signal::OrderStream& stream : streams)
+                waterfalls.emplace_back(*settings.waterfall, stream, rotation, reader.rate(), reader.frames(),
+                                        settings.highest, out.stretch.from);
         read_all(reader, [&](const sound::RecordBlock& block) {
-            for (std::size_t i = 0; i < wanted.size(); ++i) streams[i].push(block.channels[wanted[i]]);
+            for (std::size_t i = 0; i < wanted.size(); ++i) {
+                streams[i].push(block.channels[wanted[i]]);
+                if (settings.waterfall) waterfalls[i].push(block.channels[wanted[i]], streams[i].turned());
+            }
         });
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            out.channels.push_back({reader.channels()[wanted[i]], streams[i].spectrum()});
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            OrdersOfChannel& channel = out.channels.emplace_back();
+            channel.name = reader.channels()[wanted[i]];
+            channel.spectrum = streams[i].spectrum();
+            if (!settings.waterfall) continue;
+            waterfalls[i].push({}, streams[i].turned());
+            channel.waterfall = waterfalls[i].finish();
+        }
     } catch (const Error& error) {
         if (error.message().starts_with(file.string())) throw;
         throw Error(fmt::format("{}: {}", file.string(), error.message()));

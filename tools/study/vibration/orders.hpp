@@ -4,6 +4,7 @@
 
 #include "dsp/signal/order/order_spectrum.hpp"
 #include "tools/study/vibration/record.hpp"
+#include "tools/study/vibration/waterfall.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -23,6 +24,7 @@ struct OrdersSettings {
     std::optional<std::pair<double, double>> range;
     static constexpr std::pair<double, double> usual_range{20.0, 400.0};
     int highest = 10;                             ///< order
+    std::optional<WaterfallSettings> waterfall;
 };
 
 struct RateRange {
@@ -32,14 +34,17 @@ struct RateRange {
 struct OrdersOfChannel {
     std::string name;
     signal::OrderSpectrum spectrum;
+    std::optional<Waterfall> waterfall;
 };
 
 struct Orders {
     double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
     sound::Calibration calibration;
+    sound::ReadStretch stretch;
     std::string source;                        ///< "tachometer", "fixed" or "ridge"
     double prominence_db = 0.0;                ///< prominence of the ridge
     RateRange rate;
+    int highest = 10;  ///< order
     std::vector<OrdersOfChannel> channels;
 };
 

@@ -14,7 +14,7 @@ namespace tactus::study {
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
     std::optional<sound::Calibration> calibration;
     if (!settings.calibration.empty()) calibration = sound::parse_calibration(settings.calibration);
-    return {file, settings.log, calibration};
+    return {file, settings.log, calibration, settings.stretch};
 }
 
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,

@@ -16,6 +16,7 @@ struct RecordSettings {
     table::LogSelection log;
     std::string calibration;  ///< "9.81 m/s^2": quantity of a value of 1 (sound: full scale); empty: from the file
     std::vector<int> channels;  ///< from 1; empty: all
+    sound::Stretch stretch;     ///< the part to analyse
 };
 
 /// Opens a record. Throws Error.

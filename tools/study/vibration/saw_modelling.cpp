@@ -75,6 +75,7 @@ SawModelling model_saw(const SawModelSettings& settings) {
                 fmt::format("{}: '{}' does not state its rate of reciprocation; a model is only as good as its "
                             "conditions, so measure it and state it, as in rate = \"233 Hz\"",
                             name, recording.file.filename().string()));
+    for (sound::Recording& recording : out.set.recordings) cut(recording, settings.stretch);
     out.texts = {out.set.title, out.set.note, out.set.licence, out.set.synthesised, out.set.calibrated()};
     std::vector<vibration::SawRecording> recordings = sound::saw_recordings(out.set);
     out.model = vibration::fit_saw_model(recordings);

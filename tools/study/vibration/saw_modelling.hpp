@@ -14,6 +14,7 @@ namespace tactus::study {
 struct SawModelSettings {
     std::filesystem::path recordings;  ///< a recording set
     double lowest = 40.0, highest = 1000.0;  ///< Hz: band of the distances
+    sound::Stretch stretch;  ///< of each recording, from the start of its file
 };
 
 /// One recording beside the sound of a model.

@@ -2,6 +2,7 @@
 #include "tools/study/vibration/spectrum_analysis.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +50,7 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
             fmt::format("the rate varies from {:.1f} to {:.1f} Hz: lines are smeared; use 'tactus orders'",
                         report.fundamental.low, report.fundamental.high));
     if (file.log && file.log->lost_seconds > 0.0)
-        warnings.push_back(fmt::format("{} gaps, {:.3g} s lost", file.log->gaps, file.log->lost_seconds));
+        warnings.push_back(fmt::format("{} gaps, {} lost", file.log->gaps, readable(file.log->lost_seconds, "s")));
     return warnings;
 }
 
@@ -66,7 +67,15 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
                           const std::function<void(double)>& progress) {
     sound::RecordReader reader = open_record(file, wanted.record);
     const std::vector<std::size_t> chosen = chosen_channels(reader, file, wanted.record);
-    AnalysedFile out{file, reader.rate(), 0.0, reader.calibration(), reader.log(), {}, {}};
+    AnalysedFile out;
+    out.file = file;
+    out.rate = reader.rate();
+    out.calibration = reader.calibration();
+    out.log = reader.log();
+    out.stretch = reader.stretch();
+    out.is_density = wanted.is_density;
+    out.envelope = wanted.envelope;
+    out.marks = places_of(wanted.marks);
     signal::AnalysisSettings settings;
     settings.psd = out.psd = psd_settings(wanted, reader.rate(), reader.frames());
     std::tie(settings.lowest, settings.highest) = wanted.fundamental;
@@ -98,13 +107,18 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     }
     out.duration = static_cast<double>(done) / out.rate;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        out.channels.push_back({reader.channels()[chosen[i]], analyses[i].report(), {}});
-        signal::Spectrum& psd = out.channels.back().report.psd;
+        AnalysedChannel& channel = out.channels.emplace_back();
+        channel.name = reader.channels()[chosen[i]];
+        channel.report = analyses[i].report();
+        channel.marks = levels_at(channel.report.lines, out.marks);
+        if (channel.report.envelope_spectrum)
+            channel.envelope_marks = levels_at(*channel.report.envelope_spectrum, out.marks);
+        signal::Spectrum& psd = channel.report.psd;
         if (!wanted.is_density)
             for (double& power : psd.power) power *= psd.noise_bandwidth;
         // The rows themselves have the level, whatever resampling does near half the rate.
-        if (out.log) out.channels.back().report.level = out.log->levels[chosen[i]];
-        out.channels.back().warnings = warnings_of(out.channels.back().report, out, chosen[i]);
+        if (out.log) channel.report.level = out.log->levels[chosen[i]];
+        channel.warnings = warnings_of(channel.report, out, chosen[i]);
     }
     return out;
 }

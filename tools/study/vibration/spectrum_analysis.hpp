@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/signal/spectrum/vibration_analysis.hpp"
+#include "tools/study/vibration/marks.hpp"
 #include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
@@ -24,6 +25,7 @@ struct SpectrumSettings {
     double overlap = 0.5;                              ///< fraction of a segment
     std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, search range
     std::optional<std::pair<double, double>> envelope;   ///< Hz, band for envelope analysis
+    std::vector<Mark> marks;
     int orders = 10;
     bool spectrogram = false;
 };
@@ -31,6 +33,7 @@ struct SpectrumSettings {
 struct AnalysedChannel {
     std::string name;
     signal::VibrationReport report;
+    std::vector<MarkLevel> marks, envelope_marks;  ///< levels at the marks, in the spectrum and in that of the envelope
     std::vector<std::string> warnings;
 };
 
@@ -39,6 +42,10 @@ struct AnalysedFile {
     double rate = 0.0, duration = 0.0;  ///< Hz, s
     sound::Calibration calibration;
     std::optional<sound::LogFacts> log;
+    sound::ReadStretch stretch;
+    bool is_density = true;  ///< the spectra are unit²/Hz, otherwise unit²
+    std::optional<std::pair<double, double>> envelope;  ///< Hz
+    std::vector<MarkPlace> marks;
     signal::WelchSettings psd;
     std::vector<AnalysedChannel> channels;
 };

@@ -21,8 +21,6 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double settling = 1.0;  // s: for the saw's run-up and the delay of an equaliser
-
 /// Samples of a sound from `from` seconds on.
 std::vector<float> after(const std::filesystem::path& file, double from, double& rate) {
     const sound::Sound sound = sound::load_sound(file);
@@ -122,7 +120,7 @@ void validate(Validation& validation, std::size_t index, const ValidateSettings&
     if (!problems.empty()) throw problems.list.front();
     const session::ScratchFolder folder;
     run::EngineOptions options;
-    options.seconds = settling + settings.seconds;
+    options.seconds = settings.from + settings.seconds;
     options.folder = folder.path();
     options.hash = false;
     options.time_nodes = false;
@@ -131,10 +129,10 @@ void validate(Validation& validation, std::size_t index, const ValidateSettings&
     engine.finish();
 
     double rate = 0.0;
-    const std::vector<float> output = after(folder.path() / steady.out_file, settling, rate);
+    const std::vector<float> output = after(folder.path() / steady.out_file, settings.from, rate);
     if (!steady.drive_file.empty()) {
         double drive_rate = 0.0, square = 0.0, peak = 0.0;
-        const std::vector<float> drive = after(folder.path() / steady.drive_file, settling, drive_rate);
+        const std::vector<float> drive = after(folder.path() / steady.drive_file, settings.from, drive_rate);
         for (const float v : drive) {
             square += static_cast<double>(v) * static_cast<double>(v);
             peak = std::max(peak, std::abs(static_cast<double>(v)));

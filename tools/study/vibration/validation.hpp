@@ -31,7 +31,8 @@ struct ValidateSettings {
     std::filesystem::path set;             ///< the recording set
     std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
     std::vector<double> levels{0.0, -6.0}; ///< dB relative to the patch
-    double seconds = 4.0;                  ///< compared time of each run
+    double from = 1.0;  ///< s: where the compared stretch of each run begins, after the saw's run-up
+    double seconds = 4.0;  ///< compared time of each run
     table::Thresholds thresholds;
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
 };

@@ -141,7 +141,7 @@ TEST_CASE("only the band that both takes can be trusted in is compared") {
     CHECK_FALSE(found.st_sim.has_value());
     for (const signal::SpectralLine& line : found.lines.in_both) CHECK(line.frequency < 300.0);
     trusted.usable = 42.0;
-    CHECK_THROWS_WITH(signal::compare({take, rate}, trusted), ContainsSubstring("output, sampled at 48000 Hz"));
+    CHECK_THROWS_WITH(signal::compare({take, rate}, trusted), ContainsSubstring("output, sampled at 48 kHz"));
 }
 
 TEST_CASE("noise has nothing above itself, and what a saw has above its noise is named") {

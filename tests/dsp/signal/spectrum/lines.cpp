@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/lines.hpp"
-
 #include "dsp/core/random.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/live_fundamental.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
@@ -42,6 +41,11 @@ struct Record {
     }
 };
 
+signal::LiveFundamental fundamental_of(const signal::Spectrum& spectrum) {
+    signal::HarmonicSummer summer(spectrum.power.size());
+    return signal::live_fundamental(summer, spectrum, 20.0, 500.0);
+}
+
 }  // namespace
 
 TEST_CASE("a steady tone between the bins is found to 1e-5 Hz and 1e-5 of its amplitude") {
@@ -63,10 +67,10 @@ TEST_CASE("the fundamental of a saw in noise is right within 0.05 Hz and each or
         CAPTURE(hz);
         const Record record = Record(48000.0, 10.0).saw(hz, 1.0).noise(0.1, 5);
         const signal::Spectrum spectrum = record.spectrum(32768);
-        const signal::Comb comb = signal::fit_comb(spectrum, 20.0, 500.0);
-        CHECK(std::abs(comb.best.frequency - hz) < 0.05);
-        CHECK(comb.confidence > 0.6);
-        for (const signal::Harmonic& h : signal::harmonic_table(spectrum, comb.best.frequency, 10)) {
+        const signal::LiveFundamental found = fundamental_of(spectrum);
+        CHECK(std::abs(found.frequency - hz) < 0.05);
+        CHECK(found.confidence > 0.6);
+        for (const signal::Harmonic& h : signal::harmonic_table(spectrum, found.frequency, 10)) {
             CAPTURE(h.order);
             CHECK(h.present);
             CHECK(std::abs(h.frequency - h.order * hz) < 0.05);
@@ -85,16 +89,15 @@ TEST_CASE("orders that are missing say so, and a weak or missing first order doe
 
     const signal::Spectrum without_first =
         Record(8000.0, 8.0).tone(200, 1.0).tone(300, 0.8).tone(400, 0.5).tone(500, 0.5).noise(0.01, 3).spectrum(8192);
-    CHECK(signal::fit_comb(without_first, 20.0, 500.0).best.frequency == Approx(100.0).epsilon(1e-3));
+    CHECK(fundamental_of(without_first).frequency == Approx(100.0).epsilon(1e-3));
 }
 
 TEST_CASE("a lone tone is its own fundamental and noise has none") {
-    const signal::Comb tone =
-        signal::fit_comb(Record(8000.0, 8.0).tone(233.0, 1.0).noise(0.01, 4).spectrum(8192), 20.0, 500.0);
-    CHECK(tone.best.frequency == Approx(233.0).epsilon(1e-4));
+    const signal::LiveFundamental tone =
+        fundamental_of(Record(8000.0, 8.0).tone(233.0, 1.0).noise(0.01, 4).spectrum(8192));
+    CHECK(tone.frequency == Approx(233.0).epsilon(1e-4));
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        const signal::Comb noise = signal::fit_comb(Record(8000.0, 8.0).noise(1.0, seed).spectrum(4096), 20.0, 500.0);
-        CHECK(noise.best.frequency == 0.0);
+        CHECK(fundamental_of(Record(8000.0, 8.0).noise(1.0, seed).spectrum(4096)).frequency == 0.0);
     }
 }
 
@@ -136,7 +139,7 @@ TEST_CASE("no hum is found in 200 records without hum, saws at any rate", "[slow
         if (seed % 5 != 0) record.saw(hz, 0.3);
         record.noise(seed % 3 == 0 ? 0.001 : 0.1, 1000 + seed);
         const signal::Spectrum spectrum = record.spectrum(4096);
-        const double fundamental = signal::fit_comb(spectrum, 20.0, 500.0).best.frequency;
+        const double fundamental = fundamental_of(spectrum).frequency;
         false_alarms += static_cast<int>(signal::find_hum(spectrum, fundamental).size());
     }
     CHECK(false_alarms == 0);

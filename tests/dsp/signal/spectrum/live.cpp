@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is told while a patch runs, beside what the analysis of the whole record says.
 #include "dsp/core/random.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/comparison.hpp"
 #include "dsp/signal/spectrum/live_comparison.hpp"
+#include "dsp/signal/spectrum/live_fundamental.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/realtime_check.hpp"
 
 #include <cmath>
 #include <limits>
@@ -84,12 +85,36 @@ TEST_CASE("a sample that is not finite leaves the live spectrum finite") {
     }
 }
 
-TEST_CASE("the rate of a saw heard live is that of the record") {
-    signal::LiveSpectrum live(48000.0, 24576, 2.0);
-    live.push(saw(48000.0, 4.0, 231.7));
-    const signal::Comb comb = signal::fit_comb(live.spectrum(), 20.0, 500.0);
-    CHECK(comb.best.frequency == Approx(231.7).margin(0.05));
-    CHECK(comb.confidence > 0.7);
+TEST_CASE("the rate of a saw heard live is that of the record, without memory") {
+    struct Saw {
+        double hz;
+        std::initializer_list<std::pair<int, double>> orders;  // number, amplitude
+    };
+    for (const Saw& one :
+         {Saw{231.7, {{1, 1.0}, {2, 0.7}, {3, 0.5}, {4, 0.35}}}, Saw{166.0, {{2, 0.3}, {3, 0.02}, {4, 0.2}, {5, 0.1}}},
+          Saw{60.0, {{3, 1.0}, {4, 0.3}, {5, 0.8}, {7, 0.4}}}}) {
+        CAPTURE(one.hz);
+        const Random random{2};
+        std::vector<float> samples(48000 * 4);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            double y = 0.02 * random.normal(i);
+            for (const auto& [order, level] : one.orders)
+                y += level *
+                     std::sin(2.0 * std::numbers::pi * order * one.hz * static_cast<double>(i) / 48000.0 + order);
+            samples[i] = static_cast<float>(y);
+        }
+        signal::LiveSpectrum live(48000.0, 24576, 2.0);
+        live.push(samples);
+        signal::HarmonicSummer summer(live.spectrum().power.size());
+        signal::LiveFundamental found;
+        const RealtimeViolations seen =
+            watch([&] { found = signal::live_fundamental(summer, live.spectrum(), 20.0, 500.0); });
+        CHECK(seen.describe() == "none");
+        CHECK(found.frequency == Approx(one.hz).margin(0.05));
+        CHECK(found.frequency ==
+              Approx(signal::find_fundamental(std::span<const float>(samples), 48000.0).frequency).margin(0.05));
+        CHECK(found.confidence >= signal::FundamentalEstimate::certain);
+    }
 }
 
 TEST_CASE("live scores are those of a comparison of the whole takes", "[slow]") {

@@ -53,6 +53,21 @@ TEST_CASE("the model of the bundled saw, made without one of its recordings, is 
     CHECK_THAT(again.err, ContainsSubstring("holds a model already"));
 }
 
+TEST_CASE("a model of a stretch of each recording says which") {
+    const Folder folder;
+    const std::string library = (tactus::test::library_folder() / "saw").string();
+    folder.write("set.toml", "full_scale = \"100 m/s^2\"\n[[recording]]\nfile = \"" + library +
+                                 "/cutting_150_12N.flac\"\nstate = \"cutting\"\nrate = \"150 Hz\"\nload = \"12 N\"\n");
+    const std::string out = " -o " + (folder.path / "saw.toml").string(), set = (folder.path / "set.toml").string();
+    const Outcome made = folder.tactus("model " + set + out + " --json --from '200 ms' --to 1.2");
+    INFO(made.err);
+    REQUIRE(made.code == 0);
+    CHECK(json::parse(made.out)["rows"][0]["used_s"] == json({0.2, 1.2}));
+    const Outcome beyond = folder.tactus("model " + set + out + " --to 1000");
+    CHECK(beyond.code == 2);
+    CHECK_THAT(beyond.err, ContainsSubstring("s long"));
+}
+
 TEST_CASE("recordings without rate or thrust are refused with a reason") {
     const Folder folder;
     const auto library = tactus::test::library_folder() / "saw";

@@ -78,13 +78,15 @@ TEST_CASE("validate: with its equaliser the bundled handle has the vibration of 
           "[slow]") {
     const Folder folder;
     const std::string page = (folder.path / "page.html").string(), table = (folder.path / "t.csv").string();
-    const Outcome outcome = folder.tactus("validate saw-vibration --reference " + few(folder) +
-                                          " --json --seconds 2 --report " + page + " --table " + table);
+    const Outcome outcome =
+        folder.tactus("validate saw-vibration --reference " + few(folder) +
+                      " --json --from '1500 ms' --to '3.5 s' --report " + page + " --table " + table);
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     const json answer = json::parse(outcome.out);
     CHECK(answer["verdict"] == "pass");
     CHECK(answer["out"] == "handle:sum.out");
+    CHECK(answer["stretch_of_run"] == json{{"from_s", 1.5}, {"to_s", 3.5}});
     CHECK(answer["synthesised"] == true);
     REQUIRE(answer["runs"].size() == 4);
     int free_air = 0;

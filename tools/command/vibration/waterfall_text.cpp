@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/vibration/waterfall_text.hpp"
+
+#include "tools/command/batch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace tactus::command {
+
+namespace {
+
+double position(const study::Waterfall& waterfall, std::size_t column) {
+    return static_cast<double>(column) * waterfall.step;
+}
+
+}  // namespace
+
+std::string waterfall_csv(const study::Orders& orders) {
+    const study::Waterfall& first = *orders.channels.front().waterfall;
+    std::string csv = "channel,time_s,rate_hz";
+    for (std::size_t k = 0; k < first.rows.front().rms.size(); ++k)
+        fmt::format_to(std::back_inserter(csv), ",rms_{}{}", position(first, k), first.settings.of_orders ? "" : "_hz");
+    csv += '\n';
+    for (const study::OrdersOfChannel& channel : orders.channels)
+        for (const study::WaterfallRow& row : channel.waterfall->rows) {
+            csv += csv_field(channel.name) + ",";
+            if (!std::isnan(row.time)) csv += fmt::format("{}", row.time);
+            csv += fmt::format(",{}", row.rate);
+            for (const float rms : row.rms) csv += std::isnan(rms) ? std::string(",") : fmt::format(",{}", rms);
+            csv += '\n';
+        }
+    return csv;
+}
+
+file::Json waterfall_json(const study::Waterfall& waterfall) {
+    using file::Json;
+    Json json{{"over", waterfall.settings.of_orders ? "orders" : "frequency"},
+              {"against", waterfall.settings.against_speed ? "speed" : "time"},
+              {"columns", Json::array()},
+              {"rows", Json::array()}};
+    for (std::size_t k = 0; k < waterfall.rows.front().rms.size(); ++k)
+        json["columns"].push_back(position(waterfall, k));
+    for (const study::WaterfallRow& row : waterfall.rows) {
+        Json values = Json::array();
+        for (const float rms : row.rms) values.push_back(std::isnan(rms) ? Json() : Json(rms));
+        json["rows"].push_back(
+            {{"time_s", std::isnan(row.time) ? Json() : Json(row.time)}, {"rate_hz", row.rate}, {"rms", values}});
+    }
+    return json;
+}
+
+}  // namespace tactus::command

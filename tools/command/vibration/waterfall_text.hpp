@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Waterfalls as CSV and JSON.
+#pragma once
+
+#include "assets/file/json.hpp"
+#include "tools/study/vibration/orders.hpp"
+
+#include <string>
+
+namespace tactus::command {
+
+/// A row per row and channel: channel, time_s (empty against speed), rate_hz, then the rms at each order or frequency,
+/// which the heading names; empty above half the sample rate.
+std::string waterfall_csv(const study::Orders& orders);
+
+/// The same of one channel: {"over", "against", "columns", "rows": [{"time_s", "rate_hz", "rms"}]}.
+file::Json waterfall_json(const study::Waterfall& waterfall);
+
+}  // namespace tactus::command
