@@ -33,9 +33,29 @@ ChannelLevels channel_levels(const std::filesystem::path& file, const table::Log
     return out;
 }
 
+namespace {
+
+/// A stated scale counts more than what the file states.
+std::optional<sound::Calibration> stated_scale(const TakeChoice& choice) {
+    if (choice.scale == 1.0) return std::nullopt;
+    sound::Calibration scale;
+    scale.factor = choice.scale;
+    scale.unit = "unit of the scale";
+    return scale;
+}
+
+}  // namespace
+
 TakeFile::TakeFile(const TakeChoice& choice)
-    : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt)) {
+    : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, stated_scale(choice))) {
     const std::string& role = choice.role;
+    const sound::Calibration& calibration = reader_->calibration();
+    is_calibrated_ = calibration.known;
+    if (calibration.known) {
+        factor_ = calibration.si;
+        notes_.push_back(fmt::format("the {} is in {}, from {}", role, calibration.unit, calibration.source));
+    }
+    if (!calibration.remark.empty()) notes_.push_back(fmt::format("the {}: {}", role, calibration.remark));
     if (!(choice.scale > 0.0) || !std::isfinite(choice.scale))
         throw Error(fmt::format("the scale of the {} must be above 0", role));
     const std::size_t channels = reader_->channels().size();
@@ -66,8 +86,9 @@ TakeFile::TakeFile(const TakeChoice& choice)
         notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {:.3g} s", role,
                                      pieces.size(), static_cast<double>(frames_) / rate()));
     if (reader_->log())
-        notes_.push_back(fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz", role,
-                                     rate(), reader_->log()->usable));
+        notes_.push_back(
+            fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz; read as {}", role,
+                        rate(), reader_->log()->usable, table::describe(reader_->log()->form)));
     double share = static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
     if (reader_->log() && choice.channel > 0)
         share = std::max(share,
@@ -85,7 +106,7 @@ void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) co
     if (choice_.channel == 0)
         for (std::size_t c = 1; c < channels; ++c)
             for (std::size_t i = 0; i < out.size(); ++i) out[i] += block.channels[c][i];
-    const double factor = choice_.scale / (choice_.channel == 0 ? static_cast<double>(channels) : 1.0);
+    const double factor = factor_ / (choice_.channel == 0 ? static_cast<double>(channels) : 1.0);
     for (double& x : out) x *= factor;
 }
 

@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
 
@@ -67,6 +68,9 @@ Json operation_json(const Operation& one) {
             {"axes", one.axes},
             {"file", one.file},
             {"duration_s", one.duration},
+            {"sample_rate_hz", one.rate},
+            {"calibration", calibration_json(one.calibration)},
+            {"log", one.log ? log_json(*one.log, one.rate) : Json()},
             {"notes", one.notes}};
 }
 
@@ -100,6 +104,7 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
 
 void print_operation(const Operation& one) {
     fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
+    for (const std::string& line : study::understood(one.calibration, one.log, one.rate)) fmt::print("  {}\n", line);
     for (std::size_t i = 0; i < one.axes.size(); ++i)
         fmt::print("  axis {}: a_hw {:.4g} m/s^2 rms, by transform of the record (by filter {:.4g})\n", one.axes[i],
                    one.weighted[i], one.filtered[i]);

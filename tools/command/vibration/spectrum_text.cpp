@@ -2,6 +2,7 @@
 #include "tools/command/vibration/spectrum_text.hpp"
 
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_json.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
@@ -93,14 +94,8 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
 
 std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) {
     Json json{{"file", file.file.string()}, {"sample_rate_hz", file.rate}, {"duration_s", file.duration}};
-    if (file.log)
-        json["log"] = {{"rows", file.log->rows},
-                       {"lost_rows", file.log->lost_rows},
-                       {"gaps", file.log->gaps},
-                       {"lost_s", file.log->lost_seconds},
-                       {"step_s", {file.log->shortest_step, file.log->longest_step}},
-                       {"nyquist_hz", 0.5 * file.rate},
-                       {"usable_hz", file.log->usable}};
+    if (file.log) json["log"] = log_json(*file.log, file.rate);
+    json["calibration"] = calibration_json(file.calibration);
     json["channels"] = Json::array();
     for (const AnalysedChannel& channel : file.channels) json["channels"].push_back(channel_json(channel, file));
     if (!file.channels.empty()) {
@@ -126,12 +121,8 @@ std::string analysis_text(const AnalysedFile& file) {
     auto out = std::back_inserter(text);
     const study::LevelReference reference = study::level_reference(file.calibration);
     fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
-    if (file.log)
-        fmt::format_to(out,
-                       "  uneven log, {} rows, steps {:.3g} to {:.3g} ms: resampled; limited to {:.4g} Hz, reliable to "
-                       "about {:.3g} Hz; faster vibration is aliased\n",
-                       file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
-                       file.log->usable);
+    for (const std::string& line : study::understood(file.calibration, file.log, file.rate))
+        fmt::format_to(out, "  {}\n", line);
     for (const AnalysedChannel& channel : file.channels) {
         const signal::VibrationReport& r = channel.report;
         const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {

@@ -131,6 +131,9 @@ ComparedPair compare_files(const CompareSettings& settings) {
     }
     for (const session::TakeFile* take : {&reference, &output})
         o.notes.insert(o.notes.end(), take->notes().begin(), take->notes().end());
+    if (reference.is_calibrated() != output.is_calibrated())
+        o.notes.push_back(fmt::format("only the {} states its unit: the level gap compares different quantities",
+                                      reference.is_calibrated() ? "reference" : "output"));
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
     if (o.comparison.highest < 1000.0)

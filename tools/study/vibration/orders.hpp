@@ -37,6 +37,7 @@ struct OrdersOfChannel {
 struct Orders {
     double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
     sound::Calibration calibration;
+    std::optional<sound::LogFacts> log;
     std::string source;                        ///< "tachometer", "fixed" or "ridge"
     double prominence_db = 0.0;                ///< prominence of the ridge
     RateRange rate;

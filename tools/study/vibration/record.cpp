@@ -14,7 +14,32 @@ namespace tactus::study {
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
     std::optional<sound::Calibration> calibration;
     if (!settings.calibration.empty()) calibration = sound::parse_calibration(settings.calibration);
-    return {file, settings.log, calibration};
+    std::optional<sound::Sensitivity> sensitivity;
+    if (!settings.sensitivity.empty()) sensitivity = sound::parse_sensitivity(settings.sensitivity);
+    return {file, settings.log, calibration, sensitivity};
+}
+
+std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
+                                    double rate) {
+    std::vector<std::string> lines;
+    if (log) {
+        lines.push_back("read as: " + table::describe(log->form));
+        const std::string steps =
+            log->is_even()
+                ? fmt::format("log, {} rows, even steps of {:.4g} ms", log->rows, 1e3 / rate)
+                : fmt::format(
+                      "uneven log, {} rows, steps {:.3g} to {:.3g} ms, standard deviation {:.2g} ms: "
+                      "resampled",
+                      log->rows, 1e3 * log->shortest_step, 1e3 * log->longest_step, 1e3 * log->step_deviation);
+        lines.push_back(
+            fmt::format("{}; limited to {:.4g} Hz, reliable to about {:.3g} Hz; faster vibration is aliased", steps,
+                        0.5 * rate, log->usable));
+    }
+    if (calibration.known)
+        lines.push_back(fmt::format("calibration: {} is {:.6g} {}, from {}", log ? "a value of 1" : "full scale",
+                                    calibration.factor, calibration.unit, calibration.source));
+    if (!calibration.remark.empty()) lines.push_back("calibration: " + calibration.remark);
+    return lines;
 }
 
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,
