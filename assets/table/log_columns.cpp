@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -77,7 +78,7 @@ private:
     std::optional<std::size_t> found_time() const {
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) &&
-                (shape_.header_line > 0 ? speaks_of_time(out_.named[i].name) : i == 0 && shape_.names.size() > 1))
+                (shape_.header_line > 0 ? speaks_of_time(out_.named[i].name) : shape_.names.size() > 1))
                 return i;
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) && shape_.kinds[i] == CellKind::time) return i;
@@ -124,6 +125,8 @@ private:
         if (!out_.is_unit_stated) return;
         out_.unit = unit->text;
         out_.seconds = unit->si;
+        for (const auto& [symbol, seconds] : units)
+            if (std::abs(out_.seconds / seconds - 1.0) < 1e-9) out_.unit = symbol;
     }
 
     /// The axes of the sensor that most probably measured the vibration.
@@ -159,7 +162,9 @@ private:
             if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && speaks_of_time(out_.named[i].name))
                 continue;
             numbers.push_back(i);
-            if (out_.named[i].unit && out_.named[i].unit->is_acceleration()) accelerations.push_back(i);
+            const auto& unit = out_.named[i].unit;
+            if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
+                accelerations.push_back(i);
         }
         out_.values = numbers.size() == 1 ? numbers : axes();
         if (out_.values.empty()) out_.values = accelerations;

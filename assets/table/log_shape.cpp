@@ -96,7 +96,8 @@ private:
         for (const Line& line : lines_)
             if (!is_comment(line.text, separator))
                 if (const Fields fields = fields_of(line.text, separator);
-                    (fields.size() > 1) == (separator != no_separator) && holds_numbers(fields))
+                    (fields.size() > fields_of(line.text, no_separator).size()) == (separator != no_separator) &&
+                    holds_numbers(fields))
                     ++counts[fields.size()];
         Table table{separator, 0, 0, {}};
         for (const auto& [width, rows] : counts)
@@ -157,10 +158,12 @@ private:
         while (table_.width > 1 && !used[table_.width - 1]) --table_.width;
         for (std::size_t i = 0; i < table_.width; ++i) {
             const auto [number, time, lost, word] = counts[i];
-            table_.kinds.push_back(number > 0 && number >= word && number >= time ? CellKind::number
-                                   : time > 0 && time >= word                     ? CellKind::time
-                                   : word > 0                                     ? CellKind::word
-                                                                                  : CellKind::lost);
+            const bool is_rare = 10 * (number + time + word) < number + time + lost + word;
+            table_.kinds.push_back(is_rare                                          ? CellKind::lost
+                                   : number > 0 && number >= word && number >= time ? CellKind::number
+                                   : time > 0 && time >= word                       ? CellKind::time
+                                   : word > 0                                       ? CellKind::word
+                                                                                    : CellKind::lost);
         }
     }
 
@@ -214,16 +217,23 @@ private:
         if (is_single) table_ = {no_separator, 1, table_.rows, {CellKind::number}};
     }
 
+    /// Without empty fields at the end.
+    static Fields without_end(Fields fields) {
+        while (!fields.empty() && fields.back().empty()) fields.pop_back();
+        return fields;
+    }
+
     bool is_units_row(const Fields& fields) const {
         std::size_t units = 0;
         for (const std::string_view field : fields) {
-            if (field.empty() || field == "-") continue;
+            // An oscilloscope's row of units also holds the start and the step of its times.
+            if (field.empty() || field == "-" || kind_of(field) == CellKind::number) continue;
             const bool bracket =
                 (field.front() == '[' && field.back() == ']') || (field.front() == '(' && field.back() == ')');
             const bool unit = parse_column_unit(as_utf8(field)).has_value();
             const std::string word = lower(field);
             if (!bracket && !unit && word != "counts" && word != "count" && word != "raw" && word != "lsb" &&
-                word != "%" && word != "1" && word != "degc" && word != "°c" && word != "c")
+                word != "%" && word != "1" && word != "degc" && word != "°c" && word != "c" && word != "sequence")
                 return false;
             units += unit || bracket;
         }
@@ -266,7 +276,7 @@ private:
             names = names_in(lines_[above[at]].text);
             if (at > 0 && is_units_row(names))
                 if (Fields higher = names_in(lines_[above[at - 1]].text);
-                    higher.size() == names.size() || higher.size() == table_.width) {
+                    without_end(higher).size() == without_end(names).size() || higher.size() == table_.width) {
                     shape.units_line = lines_[above[at]].number;
                     units = std::exchange(names, std::move(higher));
                     --at;

@@ -179,3 +179,42 @@ TEST_CASE("a bad cell in the middle is an error, not the end of a header") {
     for (int i = 0; i < 50; ++i) text += std::to_string(i) + (i == 20 ? ",sensor error\n" : ",5\n");
     CHECK_THROWS_WITH(read(text), ContainsSubstring("l.csv:22:2") && ContainsSubstring("'sensor error'"));
 }
+
+TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors are read") {
+    table::SampleLog log = read(
+        "LabVIEW Measurement\t\nDate\t2024/05/17\nTime\t10:15:57.12\n***End_of_Header***\t\n\t\nChannels\t2\t\t\n"
+        "Samples\t3\t3\t\nX0\t0.0E+0\t0.0E+0\t\nDelta_X\t0.0005\t0.0005\t\n***End_of_Header***\t\t\t\n"
+        "X_Value\tAcceleration_0\tAcceleration_1\tComment\n0.0000\t1.5\t2\n0.0005\t2.5\t3\n0.0010\t3.5\t4\n"
+        "0.0015\t4.5\t5\n0.0020\t5.5\t6\n");
+    CHECK(log.names == std::vector<std::string>{"Acceleration_0", "Acceleration_1"});
+    CHECK(log.times[1] == Approx(0.0005));
+    CHECK(log.times.size() == 5);
+
+    log = read("Record Length,2.5e+03,,-0.0010,0.5,\nSample Interval,1e-05,,-0.0009,0.25,\n" + [] {
+        std::string rows;
+        for (int i = 0; i < 40; ++i) rows += ",,," + std::to_string(0.0001 * i) + ",0.125,\n";
+        return rows;
+    }());
+    CHECK(log.times.size() == 42);
+    CHECK(log.columns[0][1] == 0.25);
+
+    table::LogSelection scope;
+    scope.columns.emplace_back("CH1");
+    scope.rate = 1e5;
+    log = read("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n", scope);
+    CHECK(log.columns[0] == std::vector{1.5, 2.5, 3.5});
+    CHECK(log.units[0]->is_voltage());
+
+    scope.columns = {"2"};
+    scope.rate.reset();
+    log = read("MPU6050 ready\n12:34:00.000 -> 306,-2,16384\n12:34:00.010 -> 307,-3,16384\n12:34:00.020 -> 308,-4,1\n",
+               scope);
+    CHECK(log.columns[0] == std::vector{306.0, 307.0, 308.0});
+    CHECK(log.times[1] - log.times[0] == Approx(0.01));
+
+    log = read(";SampleRate, 200,Hz\n;Headers, time,Ax,Ay,Az\n0.000,1,2,3\n0.005,4,5,6\n");
+    CHECK(log.names == std::vector<std::string>{"Ax", "Ay", "Az"});
+    log = read("x-axis,1\nsecond,Volt\n0,0.5\n1e-5,0.25\n");
+    CHECK(log.units[0]->is_voltage());
+    CHECK(log.times[1] == 1e-5);
+}

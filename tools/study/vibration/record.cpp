@@ -19,6 +19,15 @@ sound::RecordReader open_record(const std::filesystem::path& file, const RecordS
     return {file, settings.log, calibration, sensitivity};
 }
 
+namespace {
+
+/// Without an exponent: "166.5", "50000".
+std::string plain(double value, int digits) {
+    return value < 1000.0 ? fmt::format("{:.{}g}", value, digits) : fmt::format("{:.0f}", value);
+}
+
+}  // namespace
+
 std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
                                     double rate) {
     std::vector<std::string> lines;
@@ -31,9 +40,8 @@ std::vector<std::string> understood(const sound::Calibration& calibration, const
                       "uneven log, {} rows, steps {:.3g} to {:.3g} ms, standard deviation {:.2g} ms: "
                       "resampled",
                       log->rows, 1e3 * log->shortest_step, 1e3 * log->longest_step, 1e3 * log->step_deviation);
-        lines.push_back(
-            fmt::format("{}; limited to {:.4g} Hz, reliable to about {:.3g} Hz; faster vibration is aliased", steps,
-                        0.5 * rate, log->usable));
+        lines.push_back(fmt::format("{}; limited to {} Hz, reliable to about {} Hz; faster vibration is aliased", steps,
+                                    plain(0.5 * rate, 4), plain(log->usable, 3)));
     }
     if (calibration.known)
         lines.push_back(fmt::format("calibration: {} is {:.6g} {}, from {}", log ? "a value of 1" : "full scale",
