@@ -3,7 +3,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using Json = file::Json;
 
 Json calibration_json(const sound::Calibration& calibration) {
     Json json{{"known", calibration.known}, {"factor", calibration.factor}, {"unit", calibration.unit}};

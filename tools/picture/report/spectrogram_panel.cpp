@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tactus::picture {
@@ -60,21 +62,16 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
     }
     constexpr int shades = 24;
     constexpr double span = 60.0;
-    const double w = width / columns, h = picture_height / rows;
     const auto shade = [&](int c, int row) {
         const double share = (level[static_cast<std::size_t>(c * rows + row)] - top + span) / span;
         return static_cast<int>(std::clamp(share, 0.0, 1.0) * (shades - 1) + 0.5);
     };
-    // Neighbours in time with the same shade become one rectangle; a small overlap hides seams.
-    for (int row = 0; row < rows; ++row)
-        for (int c = 0; c < columns;) {
-            int end = c + 1;
-            while (end < columns && shade(end, row) == shade(c, row)) ++end;
-            figure.rectangle(left + c * w, y + picture_height - (row + 1) * h,
-                             (end - c) * w + (end < columns ? 0.4 : 0.0), h + (row > 0 ? 0.4 : 0.0),
-                             heat(static_cast<double>(shade(c, row)) / (shades - 1)));
-            c = end;
-        }
+    std::vector<std::uint8_t> cells;
+    for (int row = rows - 1; row >= 0; --row)
+        for (int c = 0; c < columns; ++c) cells.push_back(static_cast<std::uint8_t>(shade(c, row)));
+    std::vector<display::Colour> palette;
+    for (int i = 0; i < shades; ++i) palette.push_back(heat(static_cast<double>(i) / (shades - 1)));
+    figure.cells(left, y, width, picture_height, columns, rows, std::move(cells), std::move(palette));
     const double bottom = y + picture_height, duration = s.column_seconds() * static_cast<double>(s.columns());
     for (const double hz : {10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0}) {
         if (hz < lowest || hz > highest) continue;
