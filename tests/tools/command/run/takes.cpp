@@ -198,9 +198,11 @@ TEST_CASE("the results of a killed run are written by replay, as far as the take
                 patch + " --seconds 3000 --out " + (folder.path / "out").string() + " --record " + take.string(),
                 "render");
         REQUIRE(wait_for([&] {
+            // Both are written in large pieces.
             std::error_code ignored;
-            const auto size = fs::file_size(take / "timing.log", ignored);
-            return !ignored && size > 300'000;
+            const auto log = fs::file_size(take / "timing.log", ignored);
+            const auto values = ignored ? 0 : fs::file_size(take / "streams" / "1-kHz.wav", ignored);
+            return !ignored && log > 1'000'000 && values > 1'000'000;
         }));
         run.stop(SIGKILL);
     }
