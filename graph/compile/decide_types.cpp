@@ -21,12 +21,32 @@ struct Feed {
     const Input* input = nullptr;
 };
 
-/// The type comes in by `feed`: the node's outputs have it from now on, and its inputs, those without a wire too.
-void decide(const Feed& feed) {
-    for (const PlanOutput& output : feed.to->outputs)
-        if (output.port->type == &value::undecided) output.port->type = feed.from->type;
-    for (const PlanInput& input : feed.to->inputs)
-        if (input.port->kind == InputKind::any) input.port->type = feed.from->type;
+/// The node's outputs have the type from now on, and its inputs, those without a wire too.
+void decide(PlanNode& node, const ValueType& type) {
+    for (const PlanOutput& output : node.outputs)
+        if (output.port->type == &value::undecided) output.port->type = &type;
+    for (const PlanInput& input : node.inputs)
+        if (input.port->kind == InputKind::any) input.port->type = &type;
+}
+
+/// Carries types along the feeds as far as they reach. False: no node with a feed is open any more.
+bool carry_types(const std::vector<Feed>& feeds) {
+    bool some_are_open = true;
+    // Each round decides at least one node, or is the last.
+    for (bool has_decided = true; has_decided;) {
+        has_decided = some_are_open = false;
+        for (const Feed& feed : feeds) {
+            if (!is_open(*feed.to)) continue;
+            const ValueType& type = *feed.from->type;
+            if (&type == &value::undecided || !(feed.input->takes & kind_of(type))) {
+                some_are_open = true;
+                continue;
+            }
+            decide(*feed.to, type);
+            has_decided = true;
+        }
+    }
+    return some_are_open;
 }
 
 }  // namespace
@@ -48,15 +68,12 @@ void decide_types(Plan& plan) {
         if (output == from->second->outputs.end() || input == to->second->inputs.end()) continue;
         if (input->port->kind == InputKind::any) feeds.push_back({output->port, to->second, input->port});
     }
-    // Each round decides at least one node, or is the last.
-    for (bool has_decided = true; has_decided;) {
-        has_decided = false;
-        for (const Feed& feed : feeds) {
-            if (feed.from->type == &value::undecided || !is_open(*feed.to)) continue;
-            if (!(feed.input->takes & kind_of(*feed.from->type))) continue;
-            decide(feed);
-            has_decided = true;
-        }
+    while (carry_types(feeds)) {
+        // What is left is cycles that no type comes into. They carry numbers, so that they are refused as cycles.
+        const auto left = std::ranges::find_if(
+            feeds, [](const Feed& feed) { return is_open(*feed.to) && (feed.input->takes & kinds::number); });
+        if (left == feeds.end()) return;
+        decide(*left->to, value::number);
     }
 }
 

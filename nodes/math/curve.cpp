@@ -13,6 +13,7 @@ struct Curve {
         "Maps a number, or each sample of a signal, by a curve of straight lines through given points. Before the "
         "first "
         "and after the last point the curve is level. SI units.";
+    static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::number | kinds::signal};
     AnyOut out{"the value of the curve"};

@@ -28,6 +28,7 @@ struct Expression {
         "if(condition, then, else); pi. A number may carry a unit: \"k * max(0 m, depth)^1.5\". A result that is not "
         "finite "
         "gives 0.";
+    static constexpr bool shapes_values = true;
 
     AnyIn in1{"the first name of 'inputs'", types};
     AnyIn in2{optional, "the second name", types}, in3{optional, "the third name", types};

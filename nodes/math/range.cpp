@@ -10,6 +10,7 @@ namespace tactus::nodes {
 struct Range {
     static constexpr auto about =
         "Maps a number, or each sample of a signal, from one range to another and clamps it to the range. SI units.";
+    static constexpr bool shapes_values = true;
 
     AnyIn in{"the value to map", kinds::number | kinds::signal};
     AnyOut out{"the mapped value: in_low gives out_low, in_high gives out_high"};

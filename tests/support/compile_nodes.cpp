@@ -76,6 +76,7 @@ TACTUS_NODE(Truth, out, in)
 
 struct Pair {
     static constexpr auto about = "Two values of one type.";
+    static constexpr bool shapes_values = true;
     AnyIn a{"first", kinds::number | kinds::signal};
     AnyIn b{optional, "second", kinds::number | kinds::signal};
     AnyOut out{"both"};
