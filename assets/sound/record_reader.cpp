@@ -3,7 +3,6 @@
 
 #include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/core/units.hpp"
 #include "dsp/signal/filter/regularise.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +21,8 @@ constexpr std::size_t block_frames = 65536;
 bool is_log(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return extension == ".csv" || extension == ".tsv" || extension == ".txt" || extension == ".log";
+    return extension == ".csv" || extension == ".tsv" || extension == ".txt" || extension == ".log" ||
+           extension == ".lvm" || extension == ".asc" || extension == ".dat";
 }
 
 /// Values at the ends of a converter of 16 bits, when all are whole numbers of it.
@@ -57,26 +57,53 @@ ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesy
     return read;
 }
 
-}  // namespace
-
-Calibration parse_calibration(const std::string& text) {
-    const std::size_t unit = text.find_first_not_of("+-0123456789.eE \t");
+/// What the header of a log states for its columns: one calibration, and the factor of each column to its unit.
+Calibration calibration_of_columns(const table::SampleLog& log, std::vector<double>& factors) {
+    factors.assign(log.names.size(), 1.0);
     Calibration out;
-    try {
-        const Quantity quantity = parse_quantity(text);
-        out.unit = unit == std::string::npos ? "" : text.substr(unit);
-        out.si = out.unit.empty() ? 1.0 : parse_unit(out.unit).factor;
-        out.factor = quantity.value / out.si;
-        out.is_acceleration = quantity.dimension == parse_unit("m/s^2").dimension;
-    } catch (const Error& error) {
-        throw Error(fmt::format("a calibration must be a quantity such as \"9.81 m/s^2\": {}", error.message()));
+    out.unit = "count";
+    const auto& first = log.units.front();
+    for (std::size_t i = 0; i < log.units.size(); ++i) {
+        const auto& unit = log.units[i];
+        if (unit.has_value() == first.has_value() && (!unit || unit->dimension == first->dimension)) continue;
+        const auto text = [](const auto& u) { return u ? u->text : std::string("no unit"); };
+        out.remark = fmt::format(
+            "the columns have different units ('{}': {}, '{}': {}), which are not used; choose "
+            "columns of one quantity with --column",
+            log.names.front(), text(first), log.names[i], text(unit));
+        return out;
     }
-    if (out.unit.empty() || !(std::abs(out.factor) > 0.0) || !std::isfinite(out.factor))
-        throw Error(fmt::format(
-            "a calibration must be a quantity other than 0 with its unit, such as \"9.81 m/s^2\", not '{}'", text));
-    out.known = true;
+    if (!first) return out;
+    out = calibration_of(*first);
+    out.source = "the header";
+    for (std::size_t i = 0; i < log.units.size(); ++i) factors[i] = log.units[i]->si / first->si;
     return out;
 }
+
+/// What counts: the option, or what the file states.
+Calibration counting(const std::optional<Calibration>& option, const Calibration& stated) {
+    if (!option) return stated;
+    Calibration out = *option;
+    out.source = "the option";
+    if (stated.known)
+        out.remark = fmt::format("{} states {:.6g} {}; the option counts", stated.source, stated.factor, stated.unit);
+    return out;
+}
+
+double deviation_of_steps(std::span<const double> times, double longest) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double step = times[i] - times[i - 1];
+        if (step > longest) continue;
+        sum += step, squares += step * step, ++count;
+    }
+    const double mean = count > 0.0 ? sum / count : 0.0;
+    return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0.0;
+}
+
+}  // namespace
+
+bool LogFacts::is_even() const { return longest_step - shortest_step < 1e-3 * longest_step; }
 
 struct RecordReader::Source {
     std::filesystem::path path;
@@ -88,16 +115,21 @@ struct RecordReader::Source {
     double rate = 0.0;
     std::vector<std::string> names;
     Calibration calibration;
+    std::vector<double> factors;  // per channel
     std::optional<LogFacts> log;
     std::size_t block = 0;  // frames per read of a sound
     std::vector<double> interleaved;
 };
 
 RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSelection& selection,
-                           const std::optional<Calibration>& calibration, const Stretch& stretch)
+                           const std::optional<Calibration>& calibration, const std::optional<Sensitivity>& sensitivity,
+                           const Stretch& stretch)
     : source_(std::make_unique<Source>()) {
     source_->path = path;
     if (!is_log(path)) {
+        if (selection.rate)
+            throw Error(
+                fmt::format("{}: the rate of a sound is in the file; --sample-rate is for logs", path.string()));
         source_->sound.emplace(path);
         source_->rate = source_->sound->rate();
         source_->frames = source_->sound->frames();
@@ -117,6 +149,9 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         for (std::size_t i = 1; i <= source_->sound->channels(); ++i) source_->names.push_back(std::to_string(i));
         source_->block = std::min(block_frames, source_->frames);
         source_->interleaved.resize(source_->block * source_->names.size());
+        source_->calibration = stated_calibration(source_->sound->comment()).value_or(Calibration());
+        source_->factors.assign(source_->names.size(), 1.0);
+        calibrate(calibration, sensitivity);
     } else {
         table::SampleLog log = table::load_sample_log(path, selection);
         source_->stretch = cut(log, stretch, path);
@@ -125,28 +160,47 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         } catch (const Error& error) {
             throw Error(fmt::format("{}: {}", path.string(), error.message()));
         }
-        const signal::EvenRecord& even = source_->even;
+        signal::EvenRecord& even = source_->even;
+        // Times that are computed from a rate give it back but for the last digits.
+        if (selection.rate && even.gaps == 0 && log.lost_rows == 0) even.rate = *selection.rate;
         source_->rate = even.rate;
         for (const auto& piece : even.pieces) source_->frames += piece.front().size();
         source_->names = log.names;
-        source_->calibration.unit = "count";
+        source_->calibration = calibration_of_columns(log, source_->factors);
+        calibrate(calibration, sensitivity);
         source_->log = LogFacts{.rows = log.times.size(),
                                 .lost_rows = log.lost_rows,
                                 .gaps = even.gaps,
                                 .lost_seconds = even.lost,
                                 .shortest_step = even.shortest_step,
                                 .longest_step = even.longest_step,
+                                .step_deviation = deviation_of_steps(log.times, even.longest_step),
                                 .levels = {},
                                 .at_limit = {},
+                                .form = log.form,
                                 .usable = even.usable};
-        for (const std::vector<double>& column : log.columns) {
-            std::vector<double> scaled = column;
-            for (double& x : scaled) x *= calibration ? calibration->factor : 1.0;
+        for (std::size_t c = 0; c < log.columns.size(); ++c) {
+            std::vector<double> scaled = log.columns[c];
+            for (double& x : scaled) x *= source_->factors[c];
             source_->log->levels.emplace_back().push(scaled);
-            source_->log->at_limit.push_back(rows_at_limit(column));
+            source_->log->at_limit.push_back(rows_at_limit(log.columns[c]));
         }
     }
-    if (calibration) source_->calibration = *calibration;
+}
+
+void RecordReader::calibrate(const std::optional<Calibration>& option, const std::optional<Sensitivity>& sensitivity) {
+    Calibration& used = source_->calibration;
+    // An option is for all columns alike.
+    if (option) source_->factors.assign(source_->factors.size(), 1.0);
+    used = counting(option, used);
+    if (sensitivity) {
+        try {
+            used = through_sensor(used, *sensitivity);
+        } catch (const Error& error) {
+            throw Error(fmt::format("{}: {}", source_->path.string(), error.message()));
+        }
+    }
+    for (double& factor : source_->factors) factor *= used.factor;
 }
 
 RecordReader::~RecordReader() = default;
@@ -170,7 +224,6 @@ void RecordReader::rewind() {
 bool RecordReader::next(RecordBlock& block) {
     Source& source = *source_;
     const std::size_t channels = source.names.size();
-    const double factor = source.calibration.factor;
     block.channels.resize(channels);
     block.after_gap = false;
     if (source.sound) {
@@ -182,7 +235,7 @@ bool RecordReader::next(RecordBlock& block) {
         for (std::size_t c = 0; c < channels; ++c) {
             block.channels[c].resize(count);
             for (std::size_t i = 0; i < count; ++i)
-                block.channels[c][i] = factor * source.interleaved[i * channels + c];
+                block.channels[c][i] = source.factors[c] * source.interleaved[i * channels + c];
         }
         return count > 0;
     }
@@ -193,7 +246,7 @@ bool RecordReader::next(RecordBlock& block) {
     for (std::size_t c = 0; c < channels; ++c) {
         const auto begin = piece[c].begin() + static_cast<std::ptrdiff_t>(source.at);
         block.channels[c].assign(begin, begin + static_cast<std::ptrdiff_t>(count));
-        for (double& x : block.channels[c]) x *= factor;
+        for (double& x : block.channels[c]) x *= source.factors[c];
     }
     source.at += count;
     if (source.at == piece.front().size()) ++source.piece, source.at = 0;

@@ -2,6 +2,7 @@
 // Reads a vibration record in calibrated blocks: from a sound file, or from a CSV log resampled to a constant rate.
 #pragma once
 
+#include "assets/sound/calibration.hpp"
 #include "assets/sound/stretch.hpp"
 #include "assets/table/sample_log.hpp"
 #include "dsp/signal/spectrum/level.hpp"
@@ -15,27 +16,18 @@
 
 namespace tactus::sound {
 
-/// Calibration: the quantity of a value of 1 in the file (for sound: full scale).
-struct Calibration {
-    double factor = 1.0;
-    std::string unit = "full scale";
-    bool known = false;
-    /// scale to SI; true when the unit is an acceleration
-    double si = 1.0;
-    bool is_acceleration = false;
-};
-
-/// "9.81 m/s²", "0.02 mm/s". Throws Error naming what is expected.
-Calibration parse_calibration(const std::string& text);
-
 /// Statistics of resampling an uneven log.
 struct LogFacts {
     std::size_t rows = 0, lost_rows = 0, gaps = 0;
     double lost_seconds = 0.0;
     double shortest_step = 0.0, longest_step = 0.0;  ///< s
+    double step_deviation = 0.0;         ///< s, standard deviation of the steps without gaps
     std::vector<signal::Level> levels;   ///< per channel, of the rows themselves, calibrated
     std::vector<std::size_t> at_limit;  ///< rows at the ends of 16 bits in a channel of whole numbers
+    table::LogForm form;
     double usable = 0.0;  ///< Hz, usable bandwidth given the uneven steps; at most half the mean rate
+
+    bool is_even() const;  ///< the steps differ by less than a thousandth
 };
 
 /// A block with equal length in each channel.
@@ -48,11 +40,13 @@ struct RecordBlock {
 
 class RecordReader {
 public:
-    /// Opens .csv, .tsv, .txt and .log as logs, others as sound. Without a calibration the values are not scaled.
-    /// Reads only `stretch`; all that is said of the record is then said of that. Throws Error when the file cannot be
-    /// used, or is shorter.
+    /// Opens .csv, .tsv, .txt, .log, .lvm, .asc and .dat as logs, others as sound. Without a calibration the one that the
+    /// file states is used, and without that the values are not scaled. A sensitivity makes volts the quantity that the
+    /// sensor measured. Reads only `stretch`; all that is said of the record is then said of that. Throws Error when the
+    /// file cannot be used, or is shorter.
     RecordReader(const std::filesystem::path& path, const table::LogSelection& selection,
-                 const std::optional<Calibration>& calibration, const Stretch& stretch = {});
+                 const std::optional<Calibration>& calibration,
+                 const std::optional<Sensitivity>& sensitivity = std::nullopt, const Stretch& stretch = {});
     ~RecordReader();
     RecordReader(RecordReader&&) noexcept;
 
@@ -69,6 +63,7 @@ public:
     void rewind();
 
 private:
+    void calibrate(const std::optional<Calibration>& option, const std::optional<Sensitivity>& sensitivity);
     struct Source;
     std::unique_ptr<Source> source_;
 };

@@ -74,7 +74,8 @@ struct SoundWriter::File {
     }
 };
 
-SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format)
+SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format,
+                         const std::string& comment)
     : file_(std::make_unique<File>()) {
     file_->part = path.string() + ".part";
     file_->path = std::move(path);
@@ -86,6 +87,7 @@ SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, Sou
     if (!file_->handle) throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(nullptr)));
     // The PEAK chunk stores the time of writing. Without it the same samples give the same bytes.
     sf_command(file_->handle.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
+    if (!comment.empty()) sf_set_string(file_->handle.get(), SF_STR_COMMENT, comment.c_str());
     if (format == SoundFormat::flac) sf_command(file_->handle.get(), SFC_SET_CLIPPING, nullptr, SF_TRUE);
 }
 

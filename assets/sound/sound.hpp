@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace tactus::sound {
@@ -34,8 +35,9 @@ enum class SoundFormat {
 /// the sound ends with the last complete frame. For offline work and threads without a deadline.
 class SoundWriter {
 public:
-    /// `rate` in Hz. Throws Error when the file cannot be made.
-    SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format = SoundFormat::float_wav);
+    /// `rate` in Hz; `comment` is kept in the file's metadata. Throws Error when the file cannot be made.
+    SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format = SoundFormat::float_wav,
+                const std::string& comment = {});
     ~SoundWriter();
     SoundWriter(SoundWriter&&) noexcept;
     SoundWriter& operator=(SoundWriter&&) noexcept;

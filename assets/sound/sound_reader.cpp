@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 namespace tactus::sound {
@@ -31,6 +32,21 @@ SoundReader& SoundReader::operator=(SoundReader&&) noexcept = default;
 double SoundReader::rate() const noexcept { return file_->info.samplerate; }
 std::size_t SoundReader::channels() const noexcept { return static_cast<std::size_t>(file_->info.channels); }
 std::size_t SoundReader::frames() const noexcept { return static_cast<std::size_t>(file_->info.frames); }
+
+std::string SoundReader::comment() const {
+    SNDFILE* handle = file_->handle.get();
+    std::string out;
+    const auto add = [&out](std::string_view text) {
+        text = text.substr(0, std::min(text.find('\0'), text.size()));
+        if (!text.empty()) out += (out.empty() ? "" : "\n") + std::string(text);
+    };
+    for (const int place : {SF_STR_COMMENT, SF_STR_TITLE})
+        if (const char* text = sf_get_string(handle, place)) add(text);
+    SF_BROADCAST_INFO broadcast{};
+    if (sf_command(handle, SFC_GET_BROADCAST_INFO, &broadcast, sizeof broadcast) == SF_TRUE)
+        add({broadcast.description, sizeof broadcast.description});
+    return out;
+}
 
 std::size_t SoundReader::read(double* samples, std::size_t frames) {
     const sf_count_t got = sf_readf_double(file_->handle.get(), samples, static_cast<sf_count_t>(frames));

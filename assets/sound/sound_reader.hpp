@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 
 namespace tactus::sound {
 
@@ -21,6 +22,8 @@ public:
     double rate() const noexcept;  ///< Hz
     std::size_t channels() const noexcept;
     std::size_t frames() const noexcept;  ///< as stated in the header
+    /// The comment of the file and the description of a broadcast wave; empty: none.
+    std::string comment() const;
 
     /// Reads up to `frames` interleaved frames into `samples` (frames × channels); full scale is ±1, floats may exceed
     /// it. Returns the number of frames, 0 at the end. Throws Error when the file is damaged, ends early, or contains

@@ -3,14 +3,16 @@
 
 #include "assets/file/room.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/clock_time.hpp"
+#include "assets/table/decimal_sign.hpp"
+#include "assets/table/log_columns.hpp"
+#include "assets/table/log_lines.hpp"
+#include "assets/table/log_shape.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -19,274 +21,221 @@ namespace tactus::table {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
-}
-
-enum class Cell { number, lost, garbage };
+constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
 
 class Reader {
 public:
     Reader(std::string_view text, const std::string& file, const LogSelection& selection)
-        : rest_(text), file_(file), selection_(selection) {}
+        : text_(without_mark(text, converted_)),
+          file_(file),
+          selection_(selection),
+          shape_(find_log_shape(text_, file, selection.skip_rows)),
+          sign_(shape_.separator) {}
 
     SampleLog read() {
-        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+        LogLines lines(text_);
         std::string_view line;
-        if (!next(line)) fail(0, "the file is empty; a CSV log with a time column is needed");
-        if (rest_.data() != nullptr && line.find('\0') != std::string_view::npos) fail(1, "this is not a text file");
-        choose_separator(line);
-        split(line);
-        std::vector<std::string> names;
-        double number = 0.0;
-        const bool has_header = std::any_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
-            return parse(field, number) == Cell::garbage;
-        });
-        for (std::size_t i = 0; i < fields_.size(); ++i)
-            names.push_back(has_header ? std::string(fields_[i]) : std::to_string(i + 1));
-        if (names.size() < 2)
-            fail(1, "there is only one column; a time column and a value column are needed, separated by , ; or tab");
-        choose_columns(names);
-        if (!has_header) row(line, rest_.empty());
-        while (next(line)) row(line, rest_.empty());
-        refuse_ambiguous();
-        if (log_.times.empty()) fail(0, "there is no row with a number in every chosen column");
+        while (lines.number() + 1 < shape_.first_row) lines.next(line);
+        bool is_first = true;
+        while (lines.next(line)) {
+            if (line.size() > 65536)
+                fail_at(lines.number(), 1, "the line is longer than 64 KiB; this is not a CSV log");
+            if (trimmed(line).empty() || is_comment(line, shape_.separator)) continue;
+            line_ = lines.number();
+            split_fields(line, shape_.separator, fields_);
+            if (is_first) choose();
+            is_first = false;
+            row(line, lines.at_end());
+        }
+        if (const auto doubt = sign_.doubt()) fail_at(doubt->line, 1, doubt->why);
+        if (log_.times.empty()) fail_at(0, 0, "there is no row with a number in every chosen column");
+        note_form();
         return std::move(log_);
     }
 
 private:
-    [[noreturn]] void fail(int column, const std::string& message) const {
-        throw Error(SourceLocation{file_, column == 0 ? 0 : line_, column}, message);
+    [[noreturn]] void fail_at(int line, int column, const std::string& message) const {
+        throw Error(SourceLocation{file_, line, line == 0 ? 0 : column}, message);
+    }
+    [[noreturn]] void fail(std::size_t field, const std::string& message) const {
+        fail_at(line_, static_cast<int>(field) + 1, message);
     }
 
-    bool next(std::string_view& line) {
-        while (!rest_.empty()) {
-            const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-            line = trimmed_end(rest_.substr(0, end));
-            rest_.remove_prefix(std::min(end + 1, rest_.size()));
-            ++line_;
-            if (line.size() > 65536) fail(1, "the line is longer than 64 KiB; this is not a CSV log");
-            if (!line.empty() && line.front() != '#') return true;
+    void choose() {
+        columns_ = choose_log_columns(shape_, fields_, file_, selection_);
+        for (const std::size_t column : columns_.values) {
+            log_.names.push_back(columns_.named[column].name);
+            log_.units.push_back(columns_.named[column].unit);
+            needed_ = std::max(needed_, column);
         }
-        return false;
-    }
-
-    static std::string_view trimmed_end(std::string_view line) {
-        while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
-        return line;
-    }
-
-    void choose_separator(std::string_view line) {
-        std::ptrdiff_t most = 0;
-        // With decimal commas a line may have more commas than semicolons, so semicolons take precedence.
-        for (const char candidate : {';', '\t', ','}) {
-            const std::ptrdiff_t count = std::count(line.begin(), line.end(), candidate);
-            if (count > 0 && most == 0) separator_ = candidate, most = count;
+        if (columns_.time) {
+            log_.time_name = shape_.names[*columns_.time];
+            needed_ = std::max(needed_, *columns_.time);
         }
-    }
-
-    void split(std::string_view line) {
-        fields_.clear();
-        for (;;) {
-            std::size_t end = std::min(line.find(separator_), line.size());
-            // A quoted field may hold the separator, as "1,234".
-            if (!line.empty() && line.front() == '"')
-                if (const std::size_t quote = line.find('"', 1); quote != std::string_view::npos && quote > end)
-                    end = std::min(line.find(separator_, quote), line.size());
-            fields_.push_back(trimmed(line.substr(0, end)));
-            if (end == line.size()) return;
-            line.remove_prefix(end + 1);
-        }
-    }
-
-    /// Whether a number like 1,234 is 1234 or 1.234 is known only from the others.
-    void note_style(std::string_view field) {
-        if (field.find_first_not_of("+-0123456789.,eE") != std::string_view::npos) return;
-        const std::size_t comma = field.find(','), point = field.find('.');
-        if (comma == std::string_view::npos && point == std::string_view::npos) return;
-        const std::size_t first = std::min(comma, point), sign = field.front() == '+' || field.front() == '-' ? 1 : 0;
-        bool grouped = first > sign && first <= sign + 3 && field[sign] != '0';
-        for (std::size_t at = first; grouped && at < field.size(); at += 4)
-            grouped = (field[at] == ',' || field[at] == '.') && field.size() >= at + 4 &&
-                      field.substr(at + 1, 3).find_first_not_of("0123456789") == std::string_view::npos &&
-                      (field.size() == at + 4 || field[at + 4] == ',' || field[at + 4] == '.');
-        const bool twice = field.find_first_of(",.", first + 1) != std::string_view::npos;
-        if (twice) throw_ambiguous(field, "has thousands separators");
-        if (comma != std::string_view::npos && separator_ == ',')
-            throw_ambiguous(field, "has a comma, which also separates the fields");
-        if (grouped && comma != std::string_view::npos && grouped_.empty()) grouped_ = field, grouped_line_ = line_;
-        else if (comma != std::string_view::npos && !grouped) commas_ = true;
-        else if (point != std::string_view::npos && separator_ != ',') (grouped ? maybe_points_ : points_) = true;
-    }
-
-    [[noreturn]] void throw_ambiguous(std::string_view field, const char* why) const {
-        fail(1, fmt::format("'{}' {}; write numbers without them", field.substr(0, 40), why));
-    }
-
-    /// At the end of the file. 1.234 alone is a decimal point, 1,234 alone could be either.
-    void refuse_ambiguous() {
-        if (commas_ && (points_ || maybe_points_))
-            fail(0, "some numbers have a decimal comma and some a point; write all alike");
-        if (!grouped_.empty() && !commas_) {
-            line_ = grouped_line_;
-            fail(1, fmt::format("'{}' may be {} or {}: no other number of the file shows whether the comma is decimal; "
-                                "write numbers with a point",
-                                grouped_, without_commas(grouped_), with_point(grouped_)));
-        }
-    }
-
-    static std::string without_commas(std::string text) {
-        std::erase(text, ',');
-        return text;
-    }
-    static std::string with_point(std::string text) {
-        std::replace(text.begin(), text.end(), ',', '.');
-        return text;
-    }
-
-    Cell parse(std::string_view field, double& number) {
-        if (field.empty()) return Cell::lost;
-        note_style(field);
-        std::array<char, 64> buffer;
-        if (separator_ != ',' && field.size() < buffer.size() && field.find(',') != std::string_view::npos) {
-            std::replace_copy(field.begin(), field.end(), buffer.begin(), ',', '.');
-            field = {buffer.data(), field.size()};
-        }
-        if (field.front() == '+') field.remove_prefix(1);
-        const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), number);
-        if (failure != std::errc{} || end != field.data() + field.size()) {
-            const std::string word = lower(field);
-            return word == "na" || word == "null" || word == "none" ? Cell::lost : Cell::garbage;
-        }
-        return std::isfinite(number) ? Cell::number : Cell::lost;
-    }
-
-    std::size_t find(const std::vector<std::string>& names, const std::string& wanted, const char* what) const {
-        const auto found = std::find(names.begin(), names.end(), wanted);
-        if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-        std::size_t number = 0;
-        const auto [end, failure] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-        if (failure == std::errc{} && end == wanted.data() + wanted.size() && number >= 1 && number <= names.size())
-            return number - 1;
-        fail(1, fmt::format("there is no {} '{}'{}; there are {}", what, wanted, did_you_mean(wanted, names),
-                            fmt::join(names, ", ")));
-    }
-
-    void choose_columns(const std::vector<std::string>& names) {
-        if (!selection_.time_column.empty()) {
-            time_ = find(names, selection_.time_column, "time column");
-        } else {
-            const auto speaks_of_time = [](const std::string& name) {
-                const std::string word = lower(name);
-                return word == "t" || word.starts_with("t_") || word.starts_with("time") || word == "seconds" ||
-                       word == "1";
-            };
-            const auto found = std::find_if(names.begin(), names.end(), speaks_of_time);
-            if (found == names.end())
-                fail(1, fmt::format("no column name contains a time; name the column with --time-column; there are {}",
-                                    fmt::join(names, ", ")));
-            time_ = static_cast<std::size_t>(found - names.begin());
-        }
-        log_.time_name = names[time_];
-        choose_time_unit(lower(names[time_]));
-        for (const std::string& wanted : selection_.columns) columns_.push_back(find(names, wanted, "column"));
-        if (columns_.empty() && names.size() == 2) columns_.push_back(1 - time_);
-        if (columns_.empty())
-            for (std::size_t i = 0; i < names.size(); ++i) {
-                const std::string word = lower(names[i]);
-                const bool axis = word.ends_with("_x") || word.ends_with("_y") || word.ends_with("_z") || word == "x" ||
-                                  word == "y" || word == "z";
-                if (i != time_ && axis) columns_.push_back(i);
-            }
-        if (columns_.empty())
-            fail(1, fmt::format("choose columns with --column; there are {}", fmt::join(names, ", ")));
-        for (const std::size_t column : columns_) log_.names.push_back(names[column]);
-        log_.columns.resize(columns_.size());
-    }
-
-    void choose_time_unit(const std::string& name) {
-        constexpr std::array<std::pair<std::string_view, double>, 4> units{
-            {{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"s", 1.0}}};
-        for (const auto& [unit, seconds] : units) {
-            if (selection_.time_unit.empty() ? name.ends_with(fmt::format("_{}", unit)) ||
-                                                   name.find(fmt::format("({})", unit)) != std::string::npos ||
-                                                   name.find(fmt::format("[{}]", unit)) != std::string::npos
-                                             : selection_.time_unit == unit) {
-                seconds_ = seconds;
-                return;
-            }
-        }
-        if (!selection_.time_unit.empty())
-            fail(0, fmt::format("the unit of time must be s, ms, us or ns, not '{}'", selection_.time_unit));
+        log_.columns.resize(columns_.values.size());
     }
 
     void row(std::string_view line, bool is_last) {
-        split(line);
-        const std::size_t most = std::max(time_, *std::max_element(columns_.begin(), columns_.end()));
-        if (fields_.size() <= most) {
+        const auto index = static_cast<double>(rows_++);
+        if (fields_.size() <= needed_) {
             // A logger that lost power may leave an incomplete last line.
-            if (is_last) {
-                ++log_.lost_rows;
-                return;
-            }
-            fail(1, fmt::format("the row has {} fields; column {} is needed", fields_.size(), most + 1));
-        }
-        double time = 0.0;
-        values_.assign(columns_.size(), 0.0);
-        bool lost = take(time_, time);
-        for (std::size_t i = 0; i < columns_.size(); ++i) lost = take(columns_[i], values_[i]) || lost;
-        if (lost) {
+            if (!is_last)
+                fail_at(line_, 1,
+                        fmt::format("the row has {} fields; column {} is needed", fields_.size(), needed_ + 1));
             ++log_.lost_rows;
             return;
         }
-        time *= seconds_;
-        if (!log_.times.empty() && time < log_.times.back())
-            fail(static_cast<int>(fields_[time_].data() - line.data()) + 1,
-                 fmt::format("time runs backwards, from {:.9g} s to {:.9g} s; cut the file there", log_.times.back(),
-                             time));
-        log_.times.push_back(time);
+        std::optional<double> time;
+        if (columns_.time) time = time_in(*columns_.time);
+        else time = index / *selection_.rate;
+        bool is_lost = !time;
+        values_.assign(columns_.values.size(), 0.0);
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const std::optional<double> value = number_in(columns_.values[i]);
+            is_lost = is_lost || !value;
+            values_[i] = value.value_or(0.0);
+        }
+        if (is_lost) {
+            ++log_.lost_rows;
+            return;
+        }
+        if (!log_.times.empty()) check_advance(*time, line);
+        log_.times.push_back(*time);
         for (std::size_t i = 0; i < values_.size(); ++i) log_.columns[i].push_back(values_[i]);
     }
 
-    /// True when the field has no value.
-    bool take(std::size_t column, double& number) {
-        const Cell cell = parse(fields_[column], number);
-        if (cell == Cell::garbage)
-            fail(static_cast<int>(column) + 1,
-                 fmt::format("'{}' in field {} is not a number", fields_[column].substr(0, 40), column + 1));
-        return cell == Cell::lost;
+    void check_advance(double time, std::string_view line) const {
+        const double last = log_.times.back();
+        const int column = columns_.time ? static_cast<int>(fields_[*columns_.time].data() - line.data()) + 1 : 1;
+        if (time < last)
+            fail_at(line_, column,
+                    fmt::format("time runs backwards, from {:.9g} s to {:.9g} s; cut the file there{}", last, time,
+                                shape_.header_line == 0
+                                    ? ", or state what the times are with --time-column or --sample-rate, for the "
+                                      "columns have no names"
+                                    : ""));
+        if (time - last > longest_pause)
+            fail_at(line_, column,
+                    fmt::format("time jumps by more than a day, from {:.9g} s to {:.9g} s; cut the file there", last,
+                                time));
     }
 
-    std::string_view rest_;
+    /// None: the field has no value.
+    std::optional<double> number_in(std::size_t column) {
+        const std::string_view field = fields_[column];
+        if (field.empty()) return std::nullopt;
+        if (const auto refused = sign_.note(field, line_)) fail_at(line_, 1, *refused);
+        const std::optional<double> number = sign_.parse(field);
+        if (number) return std::isfinite(*number) ? number : std::nullopt;
+        if (kind_of(field) == CellKind::lost) return std::nullopt;
+        const bool is_header = column < shape_.names.size() && as_utf8(field) == shape_.names[column];
+        fail(column, is_header
+                         ? fmt::format("the names of the columns come again, as if the logger was started anew; "
+                                       "cut the file there")
+                         : fmt::format("'{}' in field {} is not a number", as_utf8(field.substr(0, 40)), column + 1));
+    }
+
+    std::optional<double> time_in(std::size_t column) {
+        const std::string_view field = fields_[column];
+        const std::optional<ClockTime> clock = parse_clock_time(field);
+        if (!clock) {
+            if (has_clock_)
+                fail(column, fmt::format("'{}' in field {} is not a time", as_utf8(field.substr(0, 40)), column + 1));
+            const std::optional<double> number = number_in(column);
+            if (!number) return std::nullopt;
+            has_numbers_ = true;
+            return *number * columns_.seconds;
+        }
+        if (has_numbers_)
+            fail(column, fmt::format("'{}' in field {} is not a number", as_utf8(field.substr(0, 40)), column + 1));
+        const bool has_day = clock->day.has_value();
+        if (!has_clock_) {
+            first_day_ = clock->day.value_or(0);
+            has_day_ = has_day, has_zone_ = clock->has_zone;
+            date_ = clock->date;
+        }
+        has_clock_ = true;
+        if (has_day != has_day_ || clock->has_zone != has_zone_)
+            fail(column,
+                 fmt::format("the time '{}' is written otherwise than the first", as_utf8(field.substr(0, 40))));
+        if (has_day) return 86400.0 * static_cast<double>(*clock->day - first_day_) + clock->seconds;
+        // A time of day starts again at midnight.
+        const bool wrapped = clock->seconds + wraps_ < last_clock_ - 0.5 * clock->period;
+        if (wrapped) wraps_ += clock->period;
+        else if (clock->date != date_)
+            fail(column,
+                 "the date changes and the time of day goes on; whether days or months come first is not known: "
+                 "write dates as 2024-05-17");
+        date_ = clock->date;
+        last_clock_ = clock->seconds + wraps_;
+        return last_clock_;
+    }
+
+    void note_form() {
+        LogForm& form = log_.form;
+        form.separator = shape_.separator;
+        form.decimal = sign_.sign();
+        form.header_line = shape_.header_line;
+        form.units_line = shape_.units_line;
+        form.first_row = shape_.first_row;
+        form.skipped = shape_.skipped + std::max(0, selection_.skip_rows.value_or(0));
+        if (!columns_.time) form.time = fmt::format("{:.6g} Hz, as stated", *selection_.rate);
+        else if (has_clock_)
+            form.time = fmt::format("{} in column '{}'", has_day_ ? "dates and times" : "times of day", log_.time_name);
+        else {
+            form.is_time_unit_stated = columns_.is_unit_stated;
+            form.time = fmt::format("column '{}' in {}{}", log_.time_name, columns_.unit,
+                                    columns_.is_unit_stated ? "" : " (assumed: no unit is stated)");
+        }
+    }
+
+    std::string converted_;
+    std::string_view text_;
     std::string file_;
     const LogSelection& selection_;
+    LogShape shape_;
+    DecimalSign sign_;
     SampleLog log_;
+    LogColumns columns_;
+    std::size_t needed_ = 0, rows_ = 0;
     int line_ = 0;
-    char separator_ = ',';
-    double seconds_ = 1.0;
-    std::size_t time_ = 0;
-    std::vector<std::size_t> columns_;
     std::vector<std::string_view> fields_;
     std::vector<double> values_;
-    // How decimals are written, as far as numbers show it.
-    bool commas_ = false, points_ = false, maybe_points_ = false;
-    std::string grouped_;
-    int grouped_line_ = 0;
+    // Times of the clock.
+    bool has_clock_ = false, has_numbers_ = false, has_day_ = false, has_zone_ = false;
+    std::int64_t first_day_ = 0;
+    std::string_view date_;
+    double wraps_ = 0.0, last_clock_ = -1e300;
 };
 
 }  // namespace
 
+std::string LogForm::separator_name() const {
+    return separator == ','    ? "comma"
+           : separator == ';'  ? "semicolon"
+           : separator == '\t' ? "tab"
+           : separator == ' '  ? "blanks"
+           : separator == '\0' ? "none"
+                               : std::string(1, separator);
+}
+
+std::string LogForm::decimal_name() const { return decimal == '.' ? "point" : decimal == ',' ? "comma" : "none seen"; }
+
+std::string describe(const LogForm& form) {
+    std::string text = form.separator == '\0'  ? "one column"
+                       : form.separator == ' ' ? "separated by blanks"
+                                               : form.separator_name() + "-separated";
+    text += form.decimal == '\0' ? ", whole numbers" : ", decimal " + form.decimal_name();
+    text += form.header_line > 0 ? fmt::format(", names in line {}", form.header_line) : std::string(", no names");
+    if (form.units_line > 0) text += fmt::format(", units in line {}", form.units_line);
+    text += fmt::format(", first row in line {}", form.first_row);
+    if (form.skipped > 0) text += fmt::format(" ({} lines not used)", form.skipped);
+    return text + "; time: " + form.time;
+}
+
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection) {
+    if (selection.rate && (!(*selection.rate > 0.0) || !std::isfinite(*selection.rate)))
+        throw Error(fmt::format("{}: the rate of the rows must be above 0", file));
     return Reader(text, file, selection).read();
 }
 

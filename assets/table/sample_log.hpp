@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample logs: CSV with a time column, as microcontrollers and data loggers write them.
+// Sample logs: text tables of samples, as microcontrollers, data loggers, oscilloscopes and telephones write them.
 #pragma once
+
+#include "assets/table/column_unit.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,21 +17,42 @@ struct LogSelection {
     std::string time_column;           ///< name or number from 1; empty: the first whose name indicates time
     std::vector<std::string>
         columns;  ///< names or numbers from 1; empty: the only other column, or those named like axes
-    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the end of the column name, else s
+    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else s
+    std::optional<int> skip_rows = std::nullopt;  ///< lines before the names; none: found
+    std::optional<double> rate = std::nullopt;    ///< Hz: rows follow at this rate, no time column is read
 };
+
+/// What was understood of the form of a log, so that a wrong guess is seen.
+struct LogForm {
+    char separator = ',';    ///< '\0': one column
+    char decimal = '\0';     ///< '.' or ','; '\0': no number shows it
+    int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
+    int skipped = 0;         ///< lines above the rows that were not used, without comments
+    std::string time;        ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
+    bool is_time_unit_stated = true;
+
+    std::string separator_name() const;  ///< "comma", "semicolon", "tab", "blanks", "none"
+    std::string decimal_name() const;    ///< "point", "comma", "none seen"
+};
+
+/// One line: "comma-separated, decimal point, names in line 3, units in line 4, first row 5; time: column 't' in ms".
+std::string describe(const LogForm& form);
 
 struct SampleLog {
     std::vector<double> times;  ///< s, never decreasing
-    std::vector<std::string> names;  ///< names of the chosen columns
+    std::vector<std::string> names;  ///< names of the chosen columns, without units in brackets
+    std::vector<std::optional<ColumnUnit>> units;  ///< of the chosen columns, as stated in the file
     std::vector<std::vector<double>> columns;  ///< values per chosen column, as many as times
-    std::string time_name;
+    std::string time_name;           ///< empty: no time column
     std::size_t lost_rows = 0;  ///< rows without a number in a chosen column, or an incomplete last row
+    LogForm form;
 };
 
-/// Parses a log. Fields are separated by commas, semicolons or tabs (the most frequent in the header); lines that start
-/// with '#' are comments; the first other line names the columns, otherwise they are called 1, 2, …. With semicolons or
-/// tabs a number may have a decimal comma; thousands separators, and numbers that could have one, are refused. A row with an empty field or "nan" counts as lost. Throws Error with
-/// file:line:column.
+/// Parses a log. The table begins at the first rows that look like most of them; the line above names the columns, or the
+/// two lines above, names and units. Fields are separated by semicolons, tabs, commas or blanks. Comments begin with '#',
+/// '%' or "//". With semicolons, tabs or one column a number may have a decimal comma; thousands separators, and numbers
+/// that could have one, are refused. Times are numbers, ISO 8601 or times of day; at midnight a time of day goes on. A
+/// row with an empty field or "nan" counts as lost. Throws Error with file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
 /// The same for a file of at most 4 GiB.

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/display/figure.hpp"
 
+#include "devices/display/png.hpp"
+
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace tactus::display {
 
@@ -26,6 +32,41 @@ std::string path_of(const std::vector<FigurePoint>& points) {
     return out;
 }
 
+/// A curve with far more points than pixels looks the same with those at the edges of its band.
+std::vector<FigurePoint> thinned(const std::vector<FigurePoint>& points) {
+    constexpr double step = 0.5;
+    if (points.size() < 500) return points;
+    std::vector<FigurePoint> out;
+    for (std::size_t i = 0; i < points.size();) {
+        std::size_t end = i + 1, low = i, high = i;
+        while (end < points.size() && points[end].x >= points[end - 1].x && points[end].x < points[i].x + step) {
+            if (points[end].y < points[low].y) low = end;
+            if (points[end].y > points[high].y) high = end;
+            ++end;
+        }
+        std::size_t kept = points.size();
+        for (const std::size_t k : {i, std::min(low, high), std::max(low, high), end - 1})
+            if (k != kept) out.push_back(points[kept = k]);
+        i = end;
+    }
+    return out;
+}
+
+/// Points apart from each other, in tenths of a pixel.
+std::string curve_of(const std::vector<FigurePoint>& points) {
+    std::string out;
+    long x = 0, y = 0;
+    for (const FigurePoint& p : thinned(points)) {
+        const long next_x = std::lround(10.0 * p.x), next_y = std::lround(10.0 * p.y);
+        const auto tenths = [](long n) { return fmt::format("{:g}", 0.1 * static_cast<double>(n)); };
+        if (out.empty()) out = fmt::format("M{} {}l", tenths(next_x), tenths(next_y));
+        else out += fmt::format("{} {} ", tenths(next_x - x), tenths(next_y - y));
+        x = next_x, y = next_y;
+    }
+    if (!out.empty() && (out.back() == ' ' || out.back() == 'l')) out.pop_back();
+    return out;
+}
+
 std::string opacity(const char* name, const Colour& c) {
     return c.opacity < 1.0 ? fmt::format(" {}=\"{:.3g}\"", name, c.opacity) : "";
 }
@@ -42,6 +83,11 @@ void Figure::fill(std::vector<FigurePoint> outline, Colour colour) {
 
 void Figure::rectangle(double x, double y, double width, double height, Colour colour) {
     fill({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}, colour);
+}
+
+void Figure::cells(double x, double y, double width, double height, int columns, int rows,
+                   std::vector<std::uint8_t> cells, std::vector<Colour> palette) {
+    items_.emplace_back(Cells{x, y, width, height, columns, rows, std::move(cells), std::move(palette)});
 }
 
 void Figure::text(FigurePoint at, std::string text, double size, Colour colour, TextAnchor anchor, bool bold,
@@ -67,7 +113,8 @@ std::string Figure::svg() const {
             out += fmt::format(
                 "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"{}{} "
                 "stroke-linejoin=\"round\"/>\n",
-                path_of(line->points), hex(line->colour), line->width, opacity("stroke-opacity", line->colour),
+                line->points.size() < 500 ? path_of(line->points) : curve_of(line->points), hex(line->colour),
+                line->width, opacity("stroke-opacity", line->colour),
                 line->dash > 0.0 ? fmt::format(" stroke-dasharray=\"{:g}\"", line->dash) : "");
         } else if (const auto* fill = std::get_if<Fill>(&item)) {
             out += fmt::format("<path d=\"{}Z\" fill=\"{}\"{}/>\n", path_of(fill->outline), hex(fill->colour),
@@ -83,6 +130,12 @@ std::string Figure::svg() const {
                 text->bold ? " font-weight=\"bold\"" : "",
                 text->turned ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text->at.x, text->at.y) : "",
                 escaped(text->text));
+        } else if (const auto* cells = std::get_if<Cells>(&item)) {
+            out += fmt::format(
+                "<image x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" preserveAspectRatio=\"none\" "
+                "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
+                cells->x, cells->y, cells->width, cells->height,
+                base64(palette_png_bytes(cells->columns, cells->rows, cells->cells, cells->palette)));
         } else if (const auto* clip = std::get_if<Clip>(&item)) {
             if (!clip->on) out += "</g>\n";
             else {

@@ -31,6 +31,10 @@ public:
     void line(std::vector<FigurePoint> points, Colour colour, double width, double dash = 0.0);
     void fill(std::vector<FigurePoint> outline, Colour colour);
     void rectangle(double x, double y, double width, double height, Colour colour);
+    /// A raster of coloured cells, as of a spectrogram: `cells` has columns × rows indices of `palette` (at most 256
+    /// colours), row by row from the top. An SVG file holds it as a PNG picture.
+    void cells(double x, double y, double width, double height, int columns, int rows, std::vector<std::uint8_t> cells,
+               std::vector<Colour> palette);
     /// `at` is on the base line. `turned`: rotated, reads upwards.
     void text(FigurePoint at, std::string text, double size, Colour colour = {}, TextAnchor anchor = TextAnchor::start,
               bool bold = false, bool turned = false);
@@ -38,7 +42,8 @@ public:
     void clip(double x, double y, double width, double height);
     void unclip();
 
-    /// A complete SVG file with a white background.
+    /// A complete SVG file with a white background. Of many points of a line within half a pixel, the first, the lowest, the
+    /// highest and the last are kept.
     std::string svg() const;
     /// The same as pixels, `scale` per unit. Text uses a scalable system font, or a built-in bitmap font. Throws Error
     /// for more than 16384 pixels per side.
@@ -69,7 +74,13 @@ private:
         double x, y, width, height;
         bool on;
     };
-    using Item = std::variant<Line, Fill, Text, Clip>;
+    struct Cells {
+        double x, y, width, height;
+        int columns, rows;
+        std::vector<std::uint8_t> cells;
+        std::vector<Colour> palette;
+    };
+    using Item = std::variant<Line, Fill, Text, Clip, Cells>;
     friend class FigureRaster;
 
     double width_, height_;

@@ -137,6 +137,7 @@ public:
             if (const auto* line = std::get_if<Figure::Line>(&item)) stroke(*line);
             else if (const auto* shape = std::get_if<Figure::Fill>(&item)) fill({shape->outline}, shape->colour);
             else if (const auto* text = std::get_if<Figure::Text>(&item)) write(*text);
+            else if (const auto* cells = std::get_if<Figure::Cells>(&item)) paint(*cells);
             else if (const auto* clip = std::get_if<Figure::Clip>(&item)) {
                 unclip();
                 if (!clip->on) continue;
@@ -198,6 +199,18 @@ private:
             const std::uint8_t ink[] = {colour.red, colour.green, colour.blue};
             for (int c = 0; c < 3; ++c)
                 pixel[c] = static_cast<std::uint8_t>(std::lround(pixel[c] + colour.opacity * (ink[c] - pixel[c])));
+        }
+    }
+
+    void paint(const Figure::Cells& c) {
+        const double left = c.x * scale_, top = c.y * scale_, wide = c.width * scale_, high = c.height * scale_;
+        const int last = std::min(bottom_ - 1, static_cast<int>(top + high));
+        for (int y = std::max(top_, static_cast<int>(top)); y <= last; ++y) {
+            const int row = static_cast<int>(std::floor((y + 0.5 - top) / high * c.rows));
+            if (row < 0 || row >= c.rows) continue;
+            for (int column = 0; column < c.columns; ++column)
+                span(y, left + wide * column / c.columns, left + wide * (column + 1) / c.columns,
+                     c.palette[c.cells[static_cast<std::size_t>(row * c.columns + column)]]);
         }
     }
 

@@ -2,6 +2,7 @@
 #include "engine/io/streams.hpp"
 
 #include "assets/file/growing_file.hpp"
+#include "assets/sound/calibration.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 
@@ -23,7 +24,8 @@ constexpr std::size_t longest_piece = 4096;  // values of one write
 class SoundFileSink : public Sink {
 public:
     SoundFileSink(const std::filesystem::path& path, const StreamFormat& format)
-        : writer_(path, 1, static_cast<int>(std::lround(rate_of(format.period)))) {}
+        : writer_(path, 1, static_cast<int>(std::lround(rate_of(format.period))), sound::SoundFormat::float_wav,
+                  format.unit.empty() ? std::string() : sound::calibration_comment(format.unit)) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
         static constexpr float silence[1024] = {};

@@ -32,7 +32,7 @@ public:
     virtual std::string take_message() { return {}; }
 };
 
-/// A sound file: one float channel, silence where activations are missing.
+/// A sound file: one float channel, silence where activations are missing. Its comment states the unit of the values.
 std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format);
 /// A CSV file: a line of column names with units, then time in s and the values.
 std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format);

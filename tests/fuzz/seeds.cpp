@@ -8,6 +8,7 @@
 #include "assets/volume/write_volume.hpp"
 #include "tests/assets/volume/written_volume.hpp"
 #include "tests/support/bone_files.hpp"
+#include "tests/support/written_zip.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -77,6 +78,14 @@ void write_dicom(const Path& folder) {
     put(std::string("\x28\0\2\0\2\0\0\0\1\0\x28\0\x10\0\2\0\0\0\2\0\x28\0\x11\0\2\0\0\0\2\0", 30));
     put(std::string("\x28\0\0\1\2\0\0\0\x10\0\xe0\x7f\x10\0\x8\0\0\0\0\0\1\0\2\0\3\0", 26));
     file::write_whole_file(folder / "implicit.dcm", implicit);
+}
+
+void write_dicom_zip(const Path& folder) {
+    const WrittenVolume v = ball();
+    std::vector<std::pair<std::string, std::string>> files{{"notes.txt", "not DICOM"}};
+    for (int z = 0; z < v.size[2]; ++z) files.emplace_back(fmt::format("study/{}.dcm", z), dicom_bytes(v, z));
+    test::write_zip(folder / "slices.zip", files);
+    test::write_zip(folder / "frames.zip", {{"f.dcm", enhanced_dicom_bytes(v)}});
 }
 
 geometry::TriangleSurface tetrahedron() {
@@ -149,6 +158,7 @@ void write_seeds(const std::filesystem::path& root) {
     write_nrrd(folder("assets_nrrd"));
     write_nifti(folder("assets_nifti"));
     write_dicom(folder("assets_dicom"));
+    write_dicom_zip(folder("assets_dicom_zip"));
     file::write_whole_file(folder("assets_inv3") / "project.tar", inv3_tar(ball()));
     for (const std::string kind : {"stl", "ply", "obj"}) write_texts(folder("assets_" + kind), kind);
     for (const std::string kind : {"stl", "ply"})

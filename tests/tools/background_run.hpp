@@ -12,13 +12,13 @@
 
 namespace tactus::test {
 
-/// A run in the background.
+/// A run in the background, live or offline.
 class Run {
 public:
-    Run(const Folder& folder, const std::string& arguments) {
+    Run(const Folder& folder, const std::string& arguments, const std::string& verb = "run") {
         process_ = ::fork();
         if (process_ != 0) return;
-        const std::string command = "exec " + tactus::test::command() + " run " + arguments + " >" +
+        const std::string command = "exec " + tactus::test::command() + " " + verb + " " + arguments + " >" +
                                     (folder.path / "run.out").string() + " 2>" + (folder.path / "run.err").string();
         ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
         ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

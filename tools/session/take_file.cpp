@@ -24,7 +24,7 @@ std::size_t ChannelLevels::strongest() const {
 
 ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log,
                              const sound::Stretch& stretch) {
-    sound::RecordReader reader(file, log, std::nullopt, stretch);
+    sound::RecordReader reader(file, log, std::nullopt, std::nullopt, stretch);
     ChannelLevels out{reader.channels(), std::vector<double>(reader.channels().size())};
     if (out.names.size() == 1) return out;
     std::vector<signal::Level> levels(out.names.size());
@@ -35,10 +35,31 @@ ChannelLevels channel_levels(const std::filesystem::path& file, const table::Log
     return out;
 }
 
+namespace {
+
+/// A stated scale counts more than what the file states.
+std::optional<sound::Calibration> stated_scale(const TakeChoice& choice) {
+    if (choice.scale == 1.0) return std::nullopt;
+    sound::Calibration scale;
+    scale.factor = choice.scale;
+    scale.unit = "unit of the scale";
+    return scale;
+}
+
+}  // namespace
+
 TakeFile::TakeFile(const TakeChoice& choice)
     : choice_(choice),
-      reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt, choice.stretch)) {
+      reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, stated_scale(choice), std::nullopt,
+                                                    choice.stretch)) {
     const std::string& role = choice.role;
+    const sound::Calibration& calibration = reader_->calibration();
+    is_calibrated_ = calibration.known;
+    if (calibration.known) {
+        factor_ = calibration.si;
+        notes_.push_back(fmt::format("the {} is in {}, from {}", role, calibration.unit, calibration.source));
+    }
+    if (!calibration.remark.empty()) notes_.push_back(fmt::format("the {}: {}", role, calibration.remark));
     if (!(choice.scale > 0.0) || !std::isfinite(choice.scale))
         throw Error(fmt::format("the scale of the {} must be above 0", role));
     const std::size_t channels = reader_->channels().size();
@@ -69,8 +90,9 @@ TakeFile::TakeFile(const TakeChoice& choice)
         notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {}", role,
                                      pieces.size(), readable(static_cast<double>(frames_) / rate(), "s")));
     if (reader_->log())
-        notes_.push_back(fmt::format("the {} is a log with {} rows per second, reliable to about {:.0f} Hz", role,
-                                     plain(rate()), reader_->log()->usable));
+        notes_.push_back(fmt::format("the {} is a log with {} rows per second, reliable to about {:.0f} Hz; read as {}",
+                                     role, plain(rate()), reader_->log()->usable,
+                                     table::describe(reader_->log()->form)));
     double share = static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
     if (reader_->log() && choice.channel > 0)
         share = std::max(share,
@@ -88,7 +110,7 @@ void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) co
     if (choice_.channel == 0)
         for (std::size_t c = 1; c < channels; ++c)
             for (std::size_t i = 0; i < out.size(); ++i) out[i] += block.channels[c][i];
-    const double factor = choice_.scale / (choice_.channel == 0 ? static_cast<double>(channels) : 1.0);
+    const double factor = factor_ / (choice_.channel == 0 ? static_cast<double>(channels) : 1.0);
     for (double& x : out) x *= factor;
 }
 

@@ -15,7 +15,8 @@ struct TakeChoice {
     std::filesystem::path file;
     std::string role;      ///< "reference" or "output", for messages
     table::LogSelection log;
-    double scale = 1.0;    ///< units per full scale, or per unit of a log
+    /// units per full scale, or per unit of a log; 1: as the file states, accelerations in m/s²
+    double scale = 1.0;
     int channel = 0;       ///< from 1; 0: the mean of all
     sound::Stretch stretch{};
 };
@@ -40,6 +41,8 @@ public:
     double rate() const { return reader_->rate(); }  ///< Hz
     const sound::ReadStretch& stretch() const { return reader_->stretch(); }
     double peak() const { return peak_; }            ///< greatest absolute value, scaled
+    /// True when the values are in SI units, by what the file states.
+    bool is_calibrated() const { return is_calibrated_; }
     const std::vector<std::string>& notes() const { return notes_; }
 
 private:
@@ -49,7 +52,8 @@ private:
     TakeChoice choice_;
     std::shared_ptr<sound::RecordReader> reader_;
     std::size_t piece_ = 0, frames_ = 0;  // index and length of the part
-    double peak_ = 0.0;
+    double peak_ = 0.0, factor_ = 1.0;
+    bool is_calibrated_ = false;
     std::vector<std::string> notes_;
 };
 

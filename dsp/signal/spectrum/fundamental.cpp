@@ -9,10 +9,14 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double silent_score = 0.09;  // of a section in which nothing is heard
+constexpr double silent_score = 0.07;  // of a section in which nothing is heard
 constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
 constexpr double most_step = 0.2;      // greatest cost
 constexpr double least_support = 0.25;
+// A rate that moves within a section smears its lines and lowers their scores; that sections in half of the record agree
+// on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
+constexpr double heard_as_path = 0.13;
+constexpr std::size_t least_path = 4;  // sections
 constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
 
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
@@ -169,7 +173,8 @@ FundamentalEstimate FundamentalStream::estimate() const {
     }
     out.low = out.steady ? out.frequency : low;
     out.high = out.steady ? out.frequency : high;
-    if (out.confidence < FundamentalEstimate::heard) out = {};
+    const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5;
+    if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
     for (const HarmonicSum& one : whole)
         if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
             out.rivals.push_back(one);

@@ -70,7 +70,9 @@ TEST_CASE("what is no log is refused with its place") {
     CHECK_THROWS_WITH(read("t,a\n5,1\n4,2\n"), Catch::Matchers::ContainsSubstring("backwards"));
     CHECK_THROWS_WITH(read("t,a,b\n0,1,2\n"), Catch::Matchers::ContainsSubstring("--column"));
     CHECK_THROWS_WITH(read("t,a\n0,1\n1\n2,3\n"), Catch::Matchers::ContainsSubstring("l.csv:3"));
-    CHECK_THROWS_WITH(read("just words\nno numbers\n"), Catch::Matchers::ContainsSubstring("one column"));
+    CHECK_THROWS_WITH(read("just words\nno numbers\n"), Catch::Matchers::ContainsSubstring("no line holds numbers"));
+    CHECK_THROWS_WITH(read("a\n1\n2\n"), Catch::Matchers::ContainsSubstring("only one column") &&
+                                             Catch::Matchers::ContainsSubstring("--sample-rate"));
     table::LogSelection selection;
     selection.columns = {"accel_q"};
     CHECK_THROWS_WITH(read("t,accel_x,b\n0,1,2\n", selection),

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/display/figure.hpp"
+#include "devices/display/png.hpp"
 
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
+#include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
 using namespace tactus;
 
@@ -91,4 +96,43 @@ TEST_CASE("an SVG file holds what was drawn, its text safe for XML") {
 TEST_CASE("a picture of no pixels or too many is refused") {
     CHECK_THROWS_AS(display::Figure(0.0, 10.0).image(), Error);
     CHECK_THROWS_AS(display::Figure(20000.0, 10.0).image(), Error);
+}
+
+TEST_CASE("cells of a raster are where they belong, in pixels and as a PNG picture with a palette") {
+    display::Figure figure(40.0, 20.0);
+    // Red, blue / blue, red, over 20 × 10 units.
+    figure.cells(10.0, 5.0, 20.0, 10.0, 2, 2, {0, 1, 1, 0}, {red, blue});
+    const display::Image image = figure.image(1.0);
+    CHECK(is(image, 10, 5, 255, 0, 0));
+    CHECK(is(image, 29, 5, 0, 0, 255));
+    CHECK(is(image, 10, 14, 0, 0, 255));
+    CHECK(is(image, 29, 14, 255, 0, 0));
+    CHECK(inked(image) == 200);
+    const std::string png =
+        display::palette_png_bytes(2, 2, std::array<std::uint8_t, 4>{0, 1, 1, 0}, std::array{red, blue});
+    CHECK(png.starts_with("\x89PNG\r\n\x1a\n"));
+    CHECK(png.find("PLTE\xff") != std::string::npos);
+    CHECK(figure.svg().find("href=\"data:image/png;base64," + display::base64(png) + "\"") != std::string::npos);
+    CHECK(display::base64("Man") == "TWFu");
+    CHECK(display::base64("Ma") == "TWE=");
+}
+
+TEST_CASE("a curve with many more points than pixels keeps its highest and lowest in a small file") {
+    const auto drawn = [](std::size_t points) {
+        std::vector<display::FigurePoint> curve;
+        for (std::size_t i = 0; i < points; ++i)
+            curve.push_back({200.0 * static_cast<double>(i) / static_cast<double>(points),
+                             i == points / 2 ? 3.0 : 50.0 + static_cast<double>(i % 7)});
+        display::Figure figure(200.0, 100.0);
+        figure.line(std::move(curve), blue, 1.0);
+        return figure.svg();
+    };
+    const std::string many = drawn(100'000);
+    CHECK(many.size() < 20'000);
+    CHECK(drawn(200).size() < 6'000);
+    // Down to the peak and up again, of which the points between 50 and 56 leave at least 44.
+    long steps = 0;
+    for (std::size_t at = many.find('l'); (at = many.find(" -", at + 1)) != std::string::npos;)
+        steps += std::strtod(many.c_str() + at + 1, nullptr) < -44.0;
+    CHECK(steps == 1);
 }

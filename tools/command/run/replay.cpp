@@ -84,6 +84,25 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
                    seconds);
 }
 
+/// The summary of a run that was cut off says so, and how far the results reach.
+std::string with_end(const std::string& summary, const take::Take& take, double covered) {
+    if (take.is_complete) return summary;
+    Json json = Json::parse(summary);
+    json["cut_off"] = {{"reaches_s", covered},
+                       {"asked_s", take.about.seconds > 0.0 ? Json(take.about.seconds) : Json()}};
+    return json.dump(2) + "\n";
+}
+
+void print_end(const ReplayChoice& choice, const take::Take& take, double covered) {
+    if (take.is_complete) return;
+    if (choice.out.empty()) {
+        fmt::print("to have the run's results as far as that: tactus replay {} --out FOLDER\n", choice.take.string());
+        return;
+    }
+    fmt::print("the results in {} reach {:.3f} s{}, where the take ends\n", choice.out.string(), covered,
+               take.about.seconds > covered ? fmt::format(" of {:.6g} s", take.about.seconds) : std::string());
+}
+
 int replay(const ReplayChoice& choice) {
     take::Take take = take::Take::load(choice.take);
     const std::vector<std::string> differences = take.differences(), changed = take.changed_assets();
@@ -121,8 +140,9 @@ int replay(const ReplayChoice& choice) {
         losses.insert(losses.end(), written.losses.begin(), written.losses.end());
         written.names.emplace_back("summary.json");
         try {
+            const double covered = engine.progress_seconds();
             folder->write_summary(
-                summary_json(engine, report, engine.progress_seconds(), false, written.names, losses));
+                with_end(summary_json(engine, report, covered, false, written.names, losses), take, covered));
         } catch (const Error& error) {
             losses.emplace_back(error.what());
         }
@@ -147,7 +167,10 @@ int replay(const ReplayChoice& choice) {
             json["damaged_files"].push_back(
                 {{"file", d.file}, {"holds", d.holds}, {"written", d.written}, {"unit", d.unit}});
         fmt::print("{}\n", json.dump(2));
-    } else print(verdict, take.streams.size(), covered);
+    } else {
+        print(verdict, take.streams.size(), covered);
+        print_end(choice, take, covered);
+    }
     if (!losses.empty()) return output_lost;
     return verdict.is_equal_so_far() ? done : answer_is_no;
 }
@@ -159,7 +182,9 @@ namespace {
 Action add_replay(VerbOptions& verb) {
     const auto choice = std::make_shared<ReplayChoice>();
     verb.add("take", choice->take, "folder of a take, made with --record").required();
-    verb.add("-o,--out", choice->out, "folder for the results: sounds, traces, bones, summary.json");
+    verb.add("-o,--out", choice->out,
+             "folder for the results: sounds, traces, bones, summary.json; of a run that was cut off as far as the "
+             "take reaches");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.flag("--anyway", choice->anyway, "replay even if assets have changed");
     verb.flag("--json", choice->json, "as JSON");

@@ -36,6 +36,8 @@ struct CompareChoice {
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
     std::string time_unit, band;                     // band: LOW:HIGH in Hz, of figures
     StretchChoice stretch;
+    std::optional<int> skip_rows;
+    std::optional<double> rate;                      // Hz, of logs without times
     int jobs = 0;                                    // pairs at a time, 0: one per core
     bool json = false;
 };
@@ -49,6 +51,8 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
     selection.time_column = pick(choice.time_columns);
     if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
     selection.time_unit = choice.time_unit;
+    selection.skip_rows = choice.skip_rows;
+    selection.rate = choice.rate;
     return selection;
 }
 
@@ -192,6 +196,11 @@ Action add(VerbOptions& verb) {
         .one_each();
     verb.add("--time-unit", choice->time_unit, "unit of time in CSV logs: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    verb.add("--skip-rows", choice->skip_rows, "lines before the header of CSV logs (default: found)")
+        .range(0, 1 << 30);
+    verb.add("--sample-rate,--rate", choice->rate, "rate of CSV logs without times, such as \"3.2 kHz\"")
+        .unit("Hz")
+        .range(1e-6, 1e9);
     add_stretch_options(verb, choice->stretch, StretchOf::both);
     verb.add("--actuator", settings.actuator, "report the level gap of this actuator at its limits; needs m/s^2");
     verb.add("--mass", settings.mass, "moving mass of the actuator, kg").unit("kg").shows_default();

@@ -7,6 +7,7 @@
 #include "dsp/core/readable.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
 
@@ -69,6 +70,9 @@ Json operation_json(const Operation& one) {
             {"file", one.file},
             {"stretch", stretch_json(one.stretch)},
             {"duration_s", one.duration},
+            {"sample_rate_hz", one.rate},
+            {"calibration", calibration_json(one.calibration)},
+            {"log", one.log ? log_json(*one.log, one.rate) : Json()},
             {"notes", one.notes}};
 }
 
@@ -103,6 +107,7 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
 void print_operation(const Operation& one) {
     fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
     if (!one.stretch.is_whole()) fmt::print("  of the record: {}\n", one.stretch.text());
+    for (const std::string& line : study::understood(one.calibration, one.log, one.rate)) fmt::print("  {}\n", line);
     for (std::size_t i = 0; i < one.axes.size(); ++i)
         fmt::print("  axis {}: a_hw {} m/s^2 rms, by transform of the record (by filter {})\n", one.axes[i],
                    plain(one.weighted[i]), plain(one.filtered[i]));

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
+#include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
@@ -41,6 +42,8 @@ std::string json_of(const std::string& file, const study::Orders& found) {
               {"source", found.source},
               {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
               {"channels", Json::array()}};
+    json["calibration"] = calibration_json(found.calibration);
+    if (found.log) json["log"] = log_json(*found.log, found.sample_rate);
     if (found.source == "ridge") json["ridge_prominence_db"] = found.prominence_db;
     const study::LevelReference reference = study::level_reference(found.calibration);
     for (const study::OrdersOfChannel& one : found.channels) {
@@ -75,6 +78,8 @@ std::string text_of(const std::string& file, const study::Orders& found, bool pe
     std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
                                    found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
     if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
+    for (const std::string& line : study::understood(found.calibration, found.log, found.sample_rate))
+        text += "  " + line + "\n";
     for (const study::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
         for (const signal::OrderLevel& level : one.spectrum.orders) {
@@ -163,7 +168,7 @@ int orders(const OrdersChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<OrdersChoice>();
     study::OrdersSettings& settings = choice->orders;
-    add_record_options(verb, *choice, "a sound file or CSV log");
+    add_record_options(verb, *choice, "a sound file or CSV log", "--sample-rate");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);
     verb.add("--rate", settings.fixed, "known constant rate, Hz").unit("Hz").range(0.01, 1e6).excludes(tacho);

@@ -9,10 +9,13 @@ study::RecordSettings RecordChoice::settings() const {
     return all;
 }
 
-void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files) {
+void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files, const char* rate) {
     verb.add("files", choice.files, files).required();
     verb.add("--calibration,--full-scale", choice.record.calibration,
              "quantity of a value of 1 (sound: full scale), such as \"49 m/s^2\"");
+    verb.add(
+        "--sensitivity", choice.record.sensitivity,
+        "of the sensor whose volts were recorded, such as \"100 mV/g\"; the volts are in the header or --calibration");
     verb.add("--channel", choice.record.channels, "channels to analyse, from 1").separated_by(',').one_each();
     verb.add("--time-column", choice.record.log.time_column, "time column of a CSV log: name or number");
     verb.add("--column", choice.record.log.columns, "columns of a CSV log to analyse: names or numbers")
@@ -20,6 +23,11 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
         .one_each();
     verb.add("--time-unit", choice.record.log.time_unit, "unit of time in a CSV log: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    verb.add("--skip-rows", choice.record.log.skip_rows, "lines before the header of a CSV log (default: found)")
+        .range(0, 1 << 30);
+    verb.add(rate, choice.record.log.rate, "rate of a CSV log without times, such as \"3.2 kHz\"")
+        .unit("Hz")
+        .range(1e-6, 1e9);
     add_stretch_options(verb, choice.stretch);
     verb.flag("--json", choice.json, "as JSON");
 }

@@ -21,7 +21,8 @@ struct RecordChoice {
     study::RecordSettings settings() const;
 };
 
-/// `files`: help text of the files argument.
-void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files);
+/// `files`: help text of the files argument. `rate`: names of the option for the rate of a log without times.
+void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files,
+                        const char* rate = "--sample-rate,--rate");
 
 }  // namespace tactus::command

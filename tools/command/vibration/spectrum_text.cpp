@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "dsp/core/readable.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/vibration/level_reference.hpp"
@@ -151,14 +152,8 @@ std::string marks_text(const AnalysedChannel& channel, const AnalysedFile& file,
 std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) {
     Json json{{"file", file.file.string()}, {"sample_rate_hz", file.rate}, {"duration_s", file.duration}};
     json["stretch"] = stretch_json(file.stretch);
-    if (file.log)
-        json["log"] = {{"rows", file.log->rows},
-                       {"lost_rows", file.log->lost_rows},
-                       {"gaps", file.log->gaps},
-                       {"lost_s", file.log->lost_seconds},
-                       {"step_s", {file.log->shortest_step, file.log->longest_step}},
-                       {"nyquist_hz", 0.5 * file.rate},
-                       {"usable_hz", file.log->usable}};
+    if (file.log) json["log"] = log_json(*file.log, file.rate);
+    json["calibration"] = calibration_json(file.calibration);
     json["channels"] = Json::array();
     for (const AnalysedChannel& channel : file.channels) json["channels"].push_back(channel_json(channel, file));
     if (!file.channels.empty()) {
@@ -185,12 +180,8 @@ std::string analysis_text(const AnalysedFile& file) {
     const study::LevelReference reference = study::level_reference(file.calibration);
     if (!file.stretch.is_whole()) fmt::format_to(out, "  of the record: {}\n", file.stretch.text());
     fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
-    if (file.log)
-        fmt::format_to(out,
-                       "  uneven log, {} rows, steps {} to {}: resampled; limited to {}, reliable to "
-                       "about {}; faster vibration is aliased\n",
-                       file.log->rows, readable(file.log->shortest_step, "s"), readable(file.log->longest_step, "s"),
-                       readable(0.5 * file.rate, "Hz", 4), readable(file.log->usable, "Hz"));
+    for (const std::string& line : study::understood(file.calibration, file.log, file.rate))
+        fmt::format_to(out, "  {}\n", line);
     for (const AnalysedChannel& channel : file.channels) {
         const signal::VibrationReport& r = channel.report;
         const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {

@@ -22,18 +22,6 @@ void replace_all(std::string& text, std::string_view what, const std::string& by
         text.replace(at, what.size(), by);
 }
 
-std::string base64(const std::string& bytes) {
-    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t n = 0; n < bytes.size(); n += 3) {
-        std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            three = three << 8 | (n + k < bytes.size() ? static_cast<unsigned char>(bytes[n + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += n + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
-    }
-    return text;
-}
-
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -61,7 +49,7 @@ std::string picture(const display::Image& image, std::string_view caption) {
     return fmt::format(
         "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
         "class=\"small\">{0}</figcaption></figure>\n",
-        escaped(caption), image.width, base64(display::png_bytes(image)));
+        escaped(caption), image.width, display::base64(display::png_bytes(image)));
 }
 
 std::string page(std::string_view title, const std::string& body) {

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tactus::picture {
@@ -47,21 +49,16 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
         }
     }
     constexpr double span = 60.0;
-    const double w = width / columns, h = picture_height / rows;
     const auto shade = [&](int c, int row) {
         const double share = (level[static_cast<std::size_t>(c * rows + row)] - top + span) / span;
         return heat_shade(share);
     };
-    // Neighbours in time with the same shade become one rectangle; a small overlap hides seams.
-    for (int row = 0; row < rows; ++row)
-        for (int c = 0; c < columns;) {
-            int end = c + 1;
-            while (end < columns && shade(end, row) == shade(c, row)) ++end;
-            figure.rectangle(left + c * w, y + picture_height - (row + 1) * h,
-                             (end - c) * w + (end < columns ? 0.4 : 0.0), h + (row > 0 ? 0.4 : 0.0),
-                             heat_of_shade(shade(c, row)));
-            c = end;
-        }
+    std::vector<std::uint8_t> cells;
+    for (int row = rows - 1; row >= 0; --row)
+        for (int c = 0; c < columns; ++c) cells.push_back(static_cast<std::uint8_t>(shade(c, row)));
+    std::vector<display::Colour> palette;
+    for (int i = 0; i < heat_shades; ++i) palette.push_back(heat_of_shade(i));
+    figure.cells(left, y, width, picture_height, columns, rows, std::move(cells), std::move(palette));
     const double bottom = y + picture_height, duration = s.column_seconds() * static_cast<double>(s.columns());
     for (const double hz : Scale{lowest, highest, true}.ticks()) {
         const double at = bottom - picture_height * std::log(hz / lowest) / std::log(highest / lowest);

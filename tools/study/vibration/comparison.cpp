@@ -139,6 +139,9 @@ ComparedPair compare_files(const CompareSettings& settings) {
                                       o.stretches[1].text()));
     for (const session::TakeFile* take : {&reference, &output})
         o.notes.insert(o.notes.end(), take->notes().begin(), take->notes().end());
+    if (reference.is_calibrated() != output.is_calibrated())
+        o.notes.push_back(fmt::format("only the {} states its unit: the level gap compares different quantities",
+                                      reference.is_calibrated() ? "reference" : "output"));
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(
             fmt::format("sampled at {} and {}", readable(reference.rate(), "Hz", 6), readable(output.rate(), "Hz", 6)));

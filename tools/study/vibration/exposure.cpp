@@ -18,8 +18,8 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     if (!calibration.known && !settings.uncalibrated)
         throw Error(
             fmt::format("{}: the record is not calibrated; give the value of full scale with --full-scale \"49 "
-                        "m/s^2\", or interpret its values as m/s^2 with --uncalibrated",
-                        file.string()));
+                        "m/s^2\", or interpret its values as m/s^2 with --uncalibrated{}{}",
+                        file.string(), calibration.remark.empty() ? "" : "; ", calibration.remark));
     if (calibration.known && !calibration.is_acceleration)
         throw Error(fmt::format("{}: exposure needs an acceleration, not {}", file.string(), calibration.unit));
     const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings.record);
@@ -31,6 +31,8 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     out.rate = reader.rate();
     out.duration = duration;
     out.calibrated = calibration.known;
+    out.calibration = calibration;
+    out.log = reader.log();
     out.three_axes = chosen.size() == 3;
     const double nyquist = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
     out.band_high = std::min(signal::hand_arm_highest, nyquist);

@@ -27,6 +27,8 @@ struct ExposureOperation {
     std::vector<double> weighted, filtered;  ///< m/s² rms per axis: by transform, which counts; by filter
     double rate = 0.0, duration = 0.0;       ///< Hz; s per day
     bool calibrated = false, three_axes = false;
+    sound::Calibration calibration;
+    std::optional<sound::LogFacts> log;
     double band_high = signal::hand_arm_highest;     ///< Hz
     std::vector<std::string> notes;
 

@@ -128,6 +128,7 @@ Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& s
     out.duration = static_cast<double>(reader.frames()) / reader.rate();
     out.calibration = reader.calibration();
     out.stretch = reader.stretch();
+    out.log = reader.log();
     try {
         const std::vector<std::size_t> wanted = wanted_channels(reader, settings);
         if (wanted.empty()) throw Error("there is no channel beside the tachometer");

@@ -41,6 +41,7 @@ struct Orders {
     double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
     sound::Calibration calibration;
     sound::ReadStretch stretch;
+    std::optional<sound::LogFacts> log;
     std::string source;                        ///< "tachometer", "fixed" or "ridge"
     double prominence_db = 0.0;                ///< prominence of the ridge
     RateRange rate;

@@ -2,6 +2,7 @@
 #include "tools/study/vibration/record.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,31 @@ namespace tactus::study {
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
     std::optional<sound::Calibration> calibration;
     if (!settings.calibration.empty()) calibration = sound::parse_calibration(settings.calibration);
-    return {file, settings.log, calibration, settings.stretch};
+    std::optional<sound::Sensitivity> sensitivity;
+    if (!settings.sensitivity.empty()) sensitivity = sound::parse_sensitivity(settings.sensitivity);
+    return {file, settings.log, calibration, sensitivity, settings.stretch};
+}
+
+std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
+                                    double rate) {
+    std::vector<std::string> lines;
+    if (log) {
+        lines.push_back("read as: " + table::describe(log->form));
+        const std::string steps =
+            log->is_even() ? fmt::format("log, {} rows, even steps of {}", log->rows, readable(1.0 / rate, "s", 4))
+                           : fmt::format(
+                                 "uneven log, {} rows, steps {} to {}, standard deviation {}: "
+                                 "resampled",
+                                 log->rows, readable(log->shortest_step, "s"), readable(log->longest_step, "s"),
+                                 readable(log->step_deviation, "s", 2));
+        lines.push_back(fmt::format("{}; limited to {}, reliable to about {}; faster vibration is aliased", steps,
+                                    readable(0.5 * rate, "Hz", 4), readable(log->usable, "Hz")));
+    }
+    if (calibration.known)
+        lines.push_back(fmt::format("calibration: {} is {:.6g} {}, from {}", log ? "a value of 1" : "full scale",
+                                    calibration.factor, calibration.unit, calibration.source));
+    if (!calibration.remark.empty()) lines.push_back("calibration: " + calibration.remark);
+    return lines;
 }
 
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,

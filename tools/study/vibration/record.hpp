@@ -15,12 +15,17 @@ namespace tactus::study {
 struct RecordSettings {
     table::LogSelection log;
     std::string calibration;  ///< "9.81 m/s^2": quantity of a value of 1 (sound: full scale); empty: from the file
+    std::string sensitivity;    ///< "100 mV/g" of a sensor whose volts were recorded; empty: none
     std::vector<int> channels;  ///< from 1; empty: all
     sound::Stretch stretch;     ///< the part to analyse
 };
 
 /// Opens a record. Throws Error.
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
+
+/// What was understood of a record, a line each: the form of a log, its steps, the calibration.
+std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
+                                    double rate);
 
 /// Indices of the selected channels. Throws Error naming the file when one is missing.
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,

@@ -4,6 +4,7 @@
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/patches.hpp"
 
+#include <fmt/format.h>
 #include <sndfile.h>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -36,6 +38,15 @@ int first_channel(const fs::path& take, const std::string& group, const std::str
         }
     }
     return -1;
+}
+
+/// A touch whose force and sound are written to files.
+std::string recorded_touch() {
+    std::string patch = touch;
+    const std::string wire = "  \"ball.wrench -> out.wrench\",\n";
+    patch.insert(patch.find(wire) + wire.size(), "  \"ball.wrench -> force.in\",\n  \"loud.out -> sound.in\",\n");
+    return patch +
+           "[nodes.force]\ntype = \"record\"\nrate = \"1 kHz\"\n[nodes.sound]\ntype = \"record\"\nrate = \"48 kHz\"\n";
 }
 
 void flip_byte(const fs::path& path, std::int64_t from_end) {
@@ -174,6 +185,46 @@ TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes
     CHECK(told.out.starts_with("cut off; "));
     CHECK(told.out.find("values compared, equal so far") != std::string::npos);
     CHECK(told.out.find("identical") == std::string::npos);
+}
+
+TEST_CASE("the results of a killed run are written by replay, as far as the take reaches", "[slow]") {
+    Folder folder;
+    const std::string patch = folder.write("recorded.toml", recorded_touch()).string();
+    const fs::path take = folder.path / "take", back = folder.path / "back";
+    const std::string all = "render " + patch + " --seconds 0.2 --out " + (folder.path / "all").string();
+    REQUIRE(folder.tactus(all).code == 0);
+    {
+        Run run(folder,
+                patch + " --seconds 3000 --out " + (folder.path / "out").string() + " --record " + take.string(),
+                "render");
+        REQUIRE(wait_for([&] {
+            // Both are written in large pieces.
+            std::error_code ignored;
+            const auto log = fs::file_size(take / "timing.log", ignored);
+            const auto values = ignored ? 0 : fs::file_size(take / "streams" / "1-kHz.wav", ignored);
+            return !ignored && log > 1'000'000 && values > 1'000'000;
+        }));
+        run.stop(SIGKILL);
+    }
+    CHECK_FALSE(fs::exists(folder.path / "out" / "force.csv"));
+    CHECK_FALSE(fs::exists(folder.path / "out" / "summary.json"));
+    const Outcome replay = folder.tactus("replay " + take.string() + " --out " + back.string());
+    INFO(replay.err);
+    REQUIRE(replay.code == 0);
+    const json summary = json::parse(slurp(back / "summary.json"));
+    const double reached = summary["cut_off"]["reaches_s"];
+    CHECK(reached > 0.2);
+    CHECK(reached < 3000.0);
+    CHECK(summary["cut_off"]["asked_s"] == 3000.0);
+    CHECK(replay.out.find("reach " + fmt::format("{:.3f} s of 3000 s", reached)) != std::string::npos);
+    // The same as a run that nobody killed, and as long as is said.
+    const std::string whole = slurp(folder.path / "all" / "force.csv"), part = slurp(back / "force.csv");
+    REQUIRE(whole.size() > 1000);
+    CHECK(part.starts_with(whole));
+    CHECK(static_cast<double>(std::count(part.begin(), part.end(), '\n') - 1) == Approx(1000.0 * reached).margin(1.5));
+    CHECK(fs::file_size(back / "sound.wav") > fs::file_size(folder.path / "all" / "sound.wav"));
+    // Without a folder the way to them is said.
+    CHECK(folder.tactus("replay " + take.string()).out.find("--out FOLDER") != std::string::npos);
 }
 
 TEST_CASE("a patch is edited and its parameters are set while it runs, and the take repeats it all", "[live]") {

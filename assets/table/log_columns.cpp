@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/table/log_columns.hpp"
+
+#include "assets/table/clock_time.hpp"
+#include "assets/table/log_lines.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace tactus::table {
+
+namespace {
+
+bool speaks_of_time(const std::string& name) {
+    const std::string word = lower(name);
+    for (const std::string_view known :
+         {"t", "seconds", "second", "sec", "s", "ms", "us", "millis", "micros", "zeit", "zeitstempel", "temps", "tid",
+          "tiempo", "tempo", "x_value", "datetime", "uptime"})
+        if (word == known) return true;
+    return word.starts_with("t_") || word.starts_with("time") || word.starts_with("elapsed") ||
+           word.starts_with("date/time") || word.starts_with("date time") || word.ends_with(" time") ||
+           word.ends_with("_time");
+}
+
+class Chooser {
+public:
+    Chooser(const LogShape& shape, const std::vector<std::string_view>& first_row, const std::string& file,
+            const LogSelection& selection)
+        : shape_(shape), first_row_(first_row), file_(file), selection_(selection) {}
+
+    LogColumns choose() {
+        for (std::size_t i = 0; i < shape_.names.size(); ++i) {
+            NamedColumn named = parse_column_name(shape_.names[i]);
+            if (!shape_.units.empty())
+                if (auto unit = parse_column_unit(shape_.units[i])) named = {shape_.names[i], std::move(unit)};
+            out_.named.push_back(std::move(named));
+        }
+        choose_time();
+        choose_values();
+        return std::move(out_);
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& message) const {
+        const int line = shape_.header_line > 0 ? shape_.header_line : shape_.first_row;
+        throw Error(SourceLocation{file_, line, 1}, message);
+    }
+
+    std::size_t find(const std::string& wanted, const char* what) const {
+        const std::vector<std::string>& names = shape_.names;
+        const auto found = std::find(names.begin(), names.end(), wanted);
+        if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+        const auto bare = std::ranges::find(out_.named, wanted, &NamedColumn::name);
+        if (bare != out_.named.end()) return static_cast<std::size_t>(bare - out_.named.begin());
+        std::size_t number = 0;
+        const auto [end, failure] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+        if (failure == std::errc{} && end == wanted.data() + wanted.size() && number >= 1 && number <= names.size())
+            return number - 1;
+        std::vector<std::string> known = names;
+        for (const NamedColumn& column : out_.named) known.push_back(column.name);
+        fail(fmt::format("there is no {} '{}'{}; there are {}", what, wanted, did_you_mean(wanted, known),
+                         fmt::join(names, ", ")));
+    }
+
+    bool can_be_time(std::size_t i) const {
+        if (shape_.kinds[i] == CellKind::time) return i >= first_row_.size() || !is_date(first_row_[i]);
+        return shape_.kinds[i] == CellKind::number;
+    }
+
+    std::optional<std::size_t> found_time() const {
+        for (std::size_t i = 0; i < shape_.names.size(); ++i)
+            if (can_be_time(i) &&
+                (shape_.header_line > 0 ? speaks_of_time(out_.named[i].name) : shape_.names.size() > 1))
+                return i;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i)
+            if (can_be_time(i) && shape_.kinds[i] == CellKind::time) return i;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i)
+            if (can_be_time(i) && out_.named[i].unit && out_.named[i].unit->is_time()) return i;
+        return std::nullopt;
+    }
+
+    void choose_time() {
+        if (selection_.rate) {
+            if (!selection_.time_column.empty()) fail("a rate and a time column are stated; state one of them");
+            return;
+        }
+        if (!selection_.time_column.empty()) out_.time = find(selection_.time_column, "time column");
+        else out_.time = found_time();
+        if (!out_.time && shape_.names.size() == 1)
+            fail(
+                "there is only one column, and it holds no time; state the rate of the rows, as --sample-rate \"3.2 "
+                "kHz\"");
+        if (!out_.time)
+            fail(
+                fmt::format("no column name contains a time; name the column with --time-column, or state the rate of "
+                            "the rows, as --sample-rate \"3.2 kHz\"; there are {}",
+                            fmt::join(shape_.names, ", ")));
+        choose_time_unit();
+    }
+
+    void choose_time_unit() {
+        constexpr std::array<std::pair<std::string_view, double>, 4> units{
+            {{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"s", 1.0}}};
+        if (!selection_.time_unit.empty()) {
+            for (const auto& [unit, seconds] : units)
+                if (selection_.time_unit == unit) {
+                    out_.unit = unit, out_.seconds = seconds;
+                    return;
+                }
+            throw Error(
+                fmt::format("{}: the unit of time must be s, ms, us or ns, not '{}'", file_, selection_.time_unit));
+        }
+        const NamedColumn& column = out_.named[*out_.time];
+        std::optional<ColumnUnit> unit = column.unit;
+        if (!unit) unit = parse_column_unit(column.name);
+        out_.is_unit_stated = unit && unit->is_time();
+        if (!out_.is_unit_stated) return;
+        out_.unit = unit->text;
+        out_.seconds = unit->si;
+        for (const auto& [symbol, seconds] : units)
+            if (std::abs(out_.seconds / seconds - 1.0) < 1e-9) out_.unit = symbol;
+    }
+
+    /// The axes of the sensor that most probably measured the vibration.
+    std::vector<std::size_t> axes() const {
+        std::vector<std::pair<std::string, std::vector<std::size_t>>> families;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i) {
+            if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
+            const std::optional<std::string> family = axis_family(out_.named[i].name);
+            if (!family) continue;
+            const auto known = std::ranges::find(families, *family, &decltype(families)::value_type::first);
+            if (known == families.end()) families.push_back({*family, {i}});
+            else known->second.push_back(i);
+        }
+        if (families.empty()) return {};
+        const auto is_accelerometer = [&](const auto& family) {
+            const auto& unit = out_.named[family.second.front()].unit;
+            return unit ? unit->is_acceleration()
+                        : family.first == "a" || family.first == "gf" || family.first.starts_with("acc") ||
+                              family.first.starts_with("lin");
+        };
+        const auto chosen = std::ranges::find_if(families, is_accelerometer);
+        if (chosen != families.end()) return chosen->second;
+        return families.front().second;
+    }
+
+    void choose_values() {
+        for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
+        if (!out_.values.empty()) return;
+        std::vector<std::size_t> numbers, accelerations;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i) {
+            if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
+            // With a stated rate a column of times is no vibration.
+            if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && speaks_of_time(out_.named[i].name))
+                continue;
+            numbers.push_back(i);
+            const auto& unit = out_.named[i].unit;
+            if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
+                accelerations.push_back(i);
+        }
+        out_.values = numbers.size() == 1 ? numbers : axes();
+        if (out_.values.empty()) out_.values = accelerations;
+        if (out_.values.empty() && !numbers.empty() && std::ranges::all_of(numbers, [&](std::size_t i) {
+                return out_.named[i].unit &&
+                       out_.named[i].unit->dimension == out_.named[numbers.front()].unit->dimension;
+            }))
+            out_.values = numbers;
+        if (out_.values.empty())
+            fail(fmt::format("choose columns with --column; there are {}", fmt::join(shape_.names, ", ")));
+    }
+
+    const LogShape& shape_;
+    const std::vector<std::string_view>& first_row_;
+    const std::string& file_;
+    const LogSelection& selection_;
+    LogColumns out_;
+};
+
+}  // namespace
+
+LogColumns choose_log_columns(const LogShape& shape, const std::vector<std::string_view>& first_row,
+                              const std::string& file, const LogSelection& selection) {
+    return Chooser(shape, first_row, file, selection).choose();
+}
+
+}  // namespace tactus::table

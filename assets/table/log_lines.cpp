@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/table/log_lines.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tactus::table {
+
+namespace {
+
+void append_utf8(std::string& out, std::uint32_t code) {
+    const auto add = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+    if (code < 0x80) {
+        add(code);
+    } else if (code < 0x800) {
+        add(0xc0 | code >> 6);
+        add(0x80 | (code & 0x3f));
+    } else {
+        add(0xe0 | code >> 12);
+        add(0x80 | (code >> 6 & 0x3f));
+        add(0x80 | (code & 0x3f));
+    }
+}
+
+bool is_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t more = byte < 0x80                   ? 0
+                                 : byte >= 0xc2 && byte < 0xe0 ? 1
+                                 : byte < 0xf0                 ? 2
+                                 : byte < 0xf5                 ? 3
+                                                               : 9;
+        if (byte >= 0x80 && byte < 0xc2) return false;
+        if (i + more >= text.size()) return false;
+        for (std::size_t k = 1; k <= more; ++k)
+            if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
+        // No second form of a shorter code, no surrogates, nothing above U+10FFFF.
+        const auto second = more > 0 ? static_cast<unsigned char>(text[i + 1]) : 0;
+        if ((byte == 0xe0 && second < 0xa0) || (byte == 0xed && second >= 0xa0) || (byte == 0xf0 && second < 0x90) ||
+            (byte == 0xf4 && second >= 0x90))
+            return false;
+        i += more + 1;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
+std::string_view without_mark(std::string_view text, std::string& converted) {
+    if (text.starts_with("\xef\xbb\xbf")) return text.substr(3);
+    const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");
+    if (!little && !big) return text;
+    converted.clear();
+    converted.reserve(text.size() / 2);
+    for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+        const auto first = static_cast<unsigned char>(text[i]), second = static_cast<unsigned char>(text[i + 1]);
+        const std::uint32_t code = little ? first | second << 8u : second | first << 8u;
+        // Letters beyond the basic plane have no meaning in a log.
+        append_utf8(converted, code >= 0xd800 && code < 0xe000 ? 0xfffd : code);
+    }
+    return converted;
+}
+
+std::string as_utf8(std::string_view text) {
+    if (is_utf8(text)) return std::string(text);
+    std::string out;
+    for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
+    return out;
+}
+
+bool LogLines::next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    line = rest_.substr(0, end);
+    const bool both = rest_.substr(end).starts_with("\r\n");
+    rest_.remove_prefix(std::min(end + (both ? 2 : 1), rest_.size()));
+    while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
+    ++number_;
+    return true;
+}
+
+bool is_comment(std::string_view line, char separator) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return false;
+    line.remove_prefix(first);
+    return line.front() == '#' || line.front() == '%' || line.starts_with("//") ||
+           (line.front() == ';' && separator != ';');
+}
+
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+    fields.clear();
+    if (const std::size_t arrow = line.substr(0, 40).find(" -> "); arrow != std::string_view::npos) {
+        fields.push_back(trimmed(line.substr(0, arrow)));
+        line.remove_prefix(arrow + 4);
+    }
+    if (separator == no_separator) {
+        fields.push_back(trimmed(line));
+        return;
+    }
+    for (;;) {
+        if (separator == ' ') {
+            const std::size_t start = line.find_first_not_of(" \t");
+            if (start == std::string_view::npos) return;
+            line.remove_prefix(start);
+        }
+        std::size_t end = separator == ' ' ? line.find_first_of(" \t") : line.find(separator);
+        if (!line.empty() && line.front() == '"')
+            if (const std::size_t quote = line.find('"', 1); quote != std::string_view::npos && quote > end)
+                end = line.find(separator, quote);
+        end = std::min(end, line.size());
+        fields.push_back(trimmed(line.substr(0, end)));
+        if (end == line.size()) return;
+        line.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace tactus::table

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/calibration.hpp"
+
+#include "assets/sound/record_reader.hpp"
+#include "assets/sound/sound.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+struct Temporary {
+    std::filesystem::path path;
+    explicit Temporary(const char* name)
+        : path(std::filesystem::temp_directory_path() / fmt::format("tactus_{}_{}", ::getpid(), name)) {}
+    ~Temporary() { std::filesystem::remove(path); }
+};
+
+void write_log(const std::filesystem::path& path, const std::string& header, const std::string& row) {
+    std::ofstream out(path);
+    out << header << "\n";
+    for (int i = 0; i < 8; ++i) out << 0.001 * i << "," << row << "\n";
+}
+
+}  // namespace
+
+TEST_CASE("g is the standard gravity in a calibration, not the gram") {
+    const sound::Calibration g = sound::parse_calibration("2 g");
+    CHECK(g.is_acceleration);
+    CHECK(g.factor * g.si == Approx(19.6133));
+    CHECK(sound::parse_calibration("0.02 mm/s").si == Approx(1e-3));
+    CHECK_THROWS_WITH(sound::parse_calibration("0 m/s^2"), ContainsSubstring("other than 0"));
+    CHECK_THROWS_WITH(sound::parse_calibration("loud"), ContainsSubstring("a calibration must be"));
+}
+
+TEST_CASE("a comment that states what full scale is calibrates a sound") {
+    const auto stated = sound::stated_calibration("made by hand\ncalibration: 1 FS = 50 m/s²; sensor 3");
+    REQUIRE(stated);
+    CHECK(stated->factor == 50.0);
+    CHECK(stated->is_acceleration);
+    CHECK(sound::stated_calibration("full scale = 10 V; sensitivity: 100 mV/g")->factor == Approx(100.0));
+    CHECK(sound::stated_calibration("Calibration = 9.81 m/s^2")->factor == 9.81);
+    CHECK_FALSE(sound::stated_calibration("recorded offs = 3"));
+    CHECK_FALSE(sound::stated_calibration("a saw"));
+    const auto odd = sound::stated_calibration("calibration: by ear");
+    REQUIRE(odd);
+    CHECK_FALSE(odd->known);
+    CHECK_THAT(odd->remark, ContainsSubstring("not used"));
+}
+
+TEST_CASE("a sound keeps its calibration, and an option counts more") {
+    const Temporary file("calibration.wav");
+    const std::filesystem::path& path = file.path;
+    for (const auto format : {sound::SoundFormat::float_wav, sound::SoundFormat::flac}) {
+        sound::SoundWriter writer(path, 1, 1000, format, sound::calibration_comment("m/s^2"));
+        const std::vector<float> half(100, 0.5F);
+        writer.write(half.data(), half.size());
+        writer.finish();
+        sound::RecordReader reader(path, {}, std::nullopt);
+        CHECK(reader.calibration().known);
+        CHECK(reader.calibration().unit == "m/s^2");
+        CHECK_THAT(reader.calibration().source, ContainsSubstring("comment"));
+        sound::RecordReader stated(path, {}, sound::parse_calibration("3 m/s^2"));
+        CHECK(stated.calibration().factor == 3.0);
+        CHECK_THAT(stated.calibration().remark, ContainsSubstring("the option counts"));
+        sound::RecordBlock block;
+        REQUIRE(stated.next(block));
+        CHECK(block.channels[0][0] == 1.5);
+    }
+}
+
+TEST_CASE("the header of a log calibrates it, a sensitivity makes volts an acceleration") {
+    const Temporary file("calibration.csv");
+    const std::filesystem::path& path = file.path;
+    write_log(path, "t [s],ax [g],ay [mg]", "0.5,500");
+    sound::RecordReader g(path, {}, std::nullopt);
+    CHECK(g.calibration().unit == "g");
+    sound::RecordBlock block;
+    REQUIRE(g.next(block));
+    CHECK(block.channels[0][3] == Approx(0.5));
+    CHECK(block.channels[1][3] == Approx(0.5));  // in the unit of the first
+    write_log(path, "t [s],accel_x_mV", "200");
+    const auto sensitivity = sound::parse_sensitivity("100 mV/g");
+    sound::RecordReader volts(path, {}, std::nullopt, sensitivity);
+    CHECK(volts.calibration().is_acceleration);
+    REQUIRE(volts.next(block));
+    CHECK(block.channels[0][3] == Approx(2.0));
+    write_log(path, "t,a", "200");
+    CHECK_THROWS_WITH(sound::RecordReader(path, {}, std::nullopt, sensitivity),
+                      ContainsSubstring("needs a record in volts"));
+    sound::RecordReader both(path, {}, sound::parse_calibration("1 mV"), sensitivity);
+    REQUIRE(both.next(block));
+    CHECK(block.channels[0][3] == Approx(2.0));
+    CHECK_THROWS_WITH(sound::parse_sensitivity("100 mV"), ContainsSubstring("volts per unit"));
+    CHECK_THROWS_WITH(sound::parse_sensitivity("100 N/g"), ContainsSubstring("volts per unit"));
+}
+
+TEST_CASE("columns of different quantities stay uncalibrated, and that is said") {
+    const Temporary file("calibration.csv");
+    const std::filesystem::path& path = file.path;
+    write_log(path, "t [s],u [V],ax [g]", "0.5,500");
+    table::LogSelection selection;
+    selection.columns = {"u", "ax"};
+    const sound::RecordReader reader(path, selection, std::nullopt);
+    CHECK_FALSE(reader.calibration().known);
+    CHECK_THAT(reader.calibration().remark, ContainsSubstring("different units ('u': V, 'ax': g)"));
+}
