@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::fit {
@@ -80,15 +81,18 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
             const RegistrationSettings& settings) {
     const Spread spread = spread_of(moving);
     Pose pose = start;
+    // A pose changes little in a step: the last target of a point is a good guess of the next.
+    std::vector<std::size_t> last(moving.size(), std::numeric_limits<std::size_t>::max());
     for (int stage = 0; stage < settings.stages + 20; ++stage) {
         const double progress = std::min(1.0, static_cast<double>(stage) / std::max(1, settings.stages - 1));
         const double s = settings.widest * std::pow(settings.finest / settings.widest, progress);
         const Vec3 centre = pose.apply(spread.middle);
         geometry::Matrix6 k{};
         geometry::Vector6 push{}, step{};
-        for (const contact::SurfacePoint& p : moving) {
+        for (std::size_t i = 0; i < moving.size(); ++i) {
+            const contact::SurfacePoint& p = moving[i];
             const Vec3 x = pose.apply(p.position);
-            const std::size_t to = fixed.nearest(x);
+            const std::size_t to = last[i] = fixed.nearest(x, last[i]);
             const Vec3& n = fixed.normal(to);
             const double facing = glm::dot(pose.rotate(p.normal), n);
             if (!(facing > least_cosine)) continue;
