@@ -36,18 +36,14 @@ public:
         head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
     }
 
-    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false.
+    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
+    /// when two cubes share a slot.
     template <class Visit>
     void around(const Vec3& p, double radius, const Visit& visit) const {
         const std::int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
         const std::int64_t bx = beside(p.x, x), by = beside(p.y, y), bz = beside(p.z, z);
-        std::size_t seen[8];
-        std::size_t slots = 0;
         for (int n = 0; n < 8; ++n) {
             const std::size_t slot = slot_of(x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0));
-            // Two cubes may share a slot; it is visited once.
-            if (std::find(seen, seen + slots, slot) != seen + slots) continue;
-            seen[slots++] = slot;
             for (std::uint32_t i = head_[slot]; i != none; i = points_[i].next) {
                 const Vec3 apart = points_[i].place - p;
                 const double d2 = glm::dot(apart, apart);

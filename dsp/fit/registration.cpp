@@ -168,9 +168,13 @@ double median_distance(std::span<const contact::SurfacePoint> moving, const Regi
     return all[all.size() / 2];
 }
 
-Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
-                              const Pose& start, const RegistrationSettings& settings) {
-    if (moving.empty()) throw Error("there is no surface to register");
+namespace {
+
+enum class From : std::uint8_t { near, far };
+
+/// `near`: the start may be close already, as it is not when starts are only compared.
+Registration registered(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                        const Pose& start, const RegistrationSettings& settings, From where) {
     const std::vector<contact::SurfacePoint> some = thinned(moving, settings.most_points);
     const auto from_scale = [&](double widest, double finest) {
         RegistrationSettings scales = settings;
@@ -182,6 +186,7 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
         return made;
     };
     const Registration far = from_scale(settings.widest, settings.finest);
+    if (where == From::far) return far;
     // A displaced part rotates the whole while it is within the kernel's reach: continue from near with a narrow
     // kernel.
     const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
@@ -210,6 +215,14 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
     return best;
 }
 
+}  // namespace
+
+Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                              const Pose& start, const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    return registered(moving, fixed, start, settings, From::near);
+}
+
 Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
                                     std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings) {
@@ -229,7 +242,7 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
         const Quat rotation = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
         const Registration found =
-            register_surface(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse);
+            registered(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse, From::far);
         if (n == 0 || found.median < best.median) best = found;
     }
     return register_surface(moving, fixed, best.pose, settings);
