@@ -36,9 +36,8 @@ std::vector<double> proposal_by_intact(std::vector<contact::SurfacePoint> points
     key.add_file(settings.intact).add_file(settings.main.empty() ? settings.bone : settings.main);
     key.add("mirror", settings.mirror ? 1.0 : 0.0);
     IntactBone intact(settings.intact, settings.mirror);
-    NumberReader known(result_of(key, intact_numbers, note, [&] {
-        return intact.numbers_on(points_of_main(points, settings));
-    }));
+    NumberReader known(
+        result_of(key, intact_numbers, note, [&] { return intact.numbers_on(points_of_main(points, settings)); }));
     const fit::Registration on_main = known.registration();
     const fit::RegistrationTarget target(intact.laid(known));
     std::vector<double> numbers;

@@ -113,7 +113,7 @@ void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexc
                                           {"key", key.text()},
                                           {"checksum", checksum(key.text(), numbers)},
                                           {"numbers", numbers}}
-                                             .dump(0));
+                                         .dump(0));
     } catch (const std::exception&) {
         // A result that is not kept is computed again.
     }

@@ -21,8 +21,7 @@ MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::pat
     cases::CasePlan named;
     cases::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
     ResultKey key("mirrored side on a fragment", algorithm);
-    key.add_file(healthy).add_file(
-        cases::file_of(plan.fragments[static_cast<std::size_t>(main)].file, folder));
+    key.add_file(healthy).add_file(cases::file_of(plan.fragments[static_cast<std::size_t>(main)].file, folder));
     NumberReader read(known(key, mirror_fit_numbers, [&] {
         return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), loaded(main_).bone.points));
     }));
