@@ -129,6 +129,24 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
     return felt;
 }
 
+std::vector<std::string> unstated_laws(const compile::Plan& plan) {
+    std::vector<bool> is_between(plan.nodes.size(), false);
+    for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
+        const Ages from = ages_from(plan, static_cast<int>(source));
+        for (std::size_t sink = 0; sink < plan.nodes.size(); ++sink) {
+            if (plan.nodes[sink].type->role != NodeRole::hand_sink || from.age[sink] == unreached) continue;
+            const std::vector<Flicks> to_sink = ages_to(plan, static_cast<int>(sink));
+            for (std::size_t n = 0; n < plan.nodes.size(); ++n)
+                if (from.age[n] != unreached && to_sink[n] != unreached) is_between[n] = true;
+        }
+    }
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < plan.nodes.size(); ++n)
+        if (is_between[n] && plan.nodes[n].type->shapes_values) names.push_back(plan.nodes[n].name);
+    return names;
+}
+
 std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
                                    const std::function<double(const std::string&)>& max_stiffness) {
     const DrivenParams driven = driven_params(plan);

@@ -54,6 +54,9 @@ struct FeltSpring {
 /// All such parameters on all paths from a device_input to a device_output, in the order of nodes and names.
 std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
 
+/// Names of the nodes between a hand's device and its force whose law no parameter states, in the order of the patch.
+std::vector<std::string> unstated_laws(const compile::Plan& plan);
+
 /// Largest stiffness of a spring that a hand's device, of damping b in N·s/m, can feel without humming when its force is
 /// held for `period_s` and comes `delay_s` late: b / (T/2 + t_d), that is b / (T (½ + D)) for D periods of delay.
 /// Colgate and Schenkel 1997 for no delay; Gil, Sánchez, Hulin, Preusche and Hirzinger 2009 with delay. For an ideal mass

@@ -23,7 +23,7 @@
 //
 // Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
 // output; `void report(Report&) const` speaks after the run; `static constexpr NodeRole role` says what the type does
-// at the border of a patch.
+// at the border of a patch; `static constexpr bool shapes_values = true` that it makes a force as stiff as its law.
 #pragma once
 
 #include "graph/node/node_memory.hpp"
@@ -91,6 +91,7 @@ struct NodeType {
     std::string name;  ///< "blade_contact"
     std::string_view about;
     NodeRole role = NodeRole::inner;
+    bool shapes_values = false;  ///< by a law that no stiffness parameter states; on a force path `check` names it
     void* (*create)() = nullptr;
     void (*destroy)(void*) = nullptr;
     void (*visit)(void*, MemberVisitor&) = nullptr;
@@ -109,6 +110,12 @@ constexpr NodeRole role_of() {
 }
 
 template <class T>
+constexpr bool shapes_values() {
+    if constexpr (requires { T::shapes_values; }) return T::shapes_values;
+    else return false;
+}
+
+template <class T>
 NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
     static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
     static_assert(alignof(T) <= node_offset, "a node is aligned to 16 bytes");
@@ -116,6 +123,7 @@ NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, Membe
         .name = type_name_of(struct_name),
         .about = T::about,
         .role = role_of<T>(),
+        .shapes_values = shapes_values<T>(),
         .create = []() -> void* {
             void* const memory = take_node_memory(sizeof(T));
             try {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The saw beside published measurements, and what its front costs beside a blade without one.
+#include "assets/file/json.hpp"
 #include "dsp/contact/blade.hpp"
 #include "dsp/saw/published.hpp"
 #include "tools/bench/bench.hpp"
@@ -8,7 +9,6 @@
 #include "tools/study/saw/saw_trial.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <ctime>
 
@@ -23,7 +23,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct SawBenchChoice : BenchChoice {
     std::string figure;

@@ -107,3 +107,12 @@ TEST_CASE("a stiffness beyond what the device states is too stiff, whatever its 
     CHECK(felt[0].param->value == Approx(3900.0));
     CHECK_FALSE(felt[0].is_driven);
 }
+
+//  in ──► law ──► out     other stands beside the path
+TEST_CASE("a node on the way to the hand whose law no parameter states is named") {
+    const Compiled c = compiled("wires = [\"in.out -> law.a\", \"law.out -> out.in\", \"in.out -> other.a\"]\n" + hand +
+                                a_node("law", "pair") + a_node("other", "pair"));
+    INFO(c.said);
+    REQUIRE(c.plan);
+    CHECK(analyse::unstated_laws(*c.plan) == std::vector<std::string>{"law"});
+}

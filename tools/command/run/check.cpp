@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
@@ -14,7 +15,6 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -25,7 +25,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 
@@ -84,6 +84,10 @@ int check(const CheckChoice& choice) {
             json["device_classes"] = classes_json(study::class_verdicts(loops));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
+            for (const std::string& node : analyse::unstated_laws(engine.plan()))
+                json["warnings"].push_back(fmt::format(
+                    "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel",
+                    node));
             json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
             if (choice.z_width || !choice.z_width_figure.empty()) {
                 const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());
