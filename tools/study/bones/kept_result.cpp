@@ -7,22 +7,21 @@
 #include "dsp/core/hash.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace tactus::study {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr const char* format_name = "tactus_kept_result";
+constexpr std::string_view format_line = "tactus kept result 1\n";
 
 std::filesystem::path cache_folder() {
     // A relative path is not valid there (XDG base directory specification).
@@ -83,7 +82,7 @@ std::filesystem::path file_of_result(const ResultKey& key) {
     if (folder.empty() || key.text().empty()) return {};
     Hash hash;
     hash.add_text(key.text());
-    return folder / "results" / fmt::format("{:016x}.json", hash.value());
+    return folder / "results" / fmt::format("{:016x}.txt", hash.value());
 }
 
 std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string& note) {
@@ -91,11 +90,16 @@ std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string
     std::error_code failure;
     if (file.empty() || !std::filesystem::exists(file, failure)) return std::nullopt;
     try {
-        const Json json = Json::parse(file::read_whole_file(file));
-        std::vector<double> numbers = json.at("numbers").get<std::vector<double>>();
-        if (json.at("format") == format_name && json.at("key") == key.text() &&
-            json.at("checksum") == checksum(key.text(), numbers))
-            return numbers;
+        const std::string text = file::read_whole_file(file);
+        const std::string head = std::string(format_line) + key.text() + "\n\n";
+        if (text.starts_with(head)) {
+            std::istringstream lines(text.substr(head.size()));
+            std::string sum, number;
+            std::vector<double> numbers;
+            std::getline(lines, sum);
+            while (std::getline(lines, number)) numbers.push_back(std::strtod(number.c_str(), nullptr));
+            if (sum == checksum(key.text(), numbers)) return numbers;
+        }
     } catch (const std::exception&) {
         // Damaged or not ours: said below, and made again.
     }
@@ -106,14 +110,12 @@ std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string
 void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexcept {
     try {
         const std::filesystem::path file = file_of_result(key);
-        // JSON has no infinite numbers.
+        // No result has infinite numbers.
         if (file.empty() || !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) return;
         std::filesystem::create_directories(file.parent_path());
-        file::write_whole_file(file, Json{{"format", format_name},
-                                          {"key", key.text()},
-                                          {"checksum", checksum(key.text(), numbers)},
-                                          {"numbers", numbers}}
-                                         .dump(0));
+        std::string text = std::string(format_line) + key.text() + "\n\n" + checksum(key.text(), numbers) + "\n";
+        for (const double number : numbers) text += fmt::format("{:.17g}\n", number);
+        file::write_whole_file(file, text);
     } catch (const std::exception&) {
         // A result that is not kept is computed again.
     }
