@@ -11,7 +11,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace tactus::contact {
 
@@ -23,51 +24,55 @@ constexpr double finest = 1.0 / 3.0;  // of the spacing, at high curvature
 // Points whose normals differ by more than this lie on different sides of an edge or of a thin wall.
 constexpr double same_side = -0.3;
 
-/// Spatial hash of points by cubes; a query visits the 27 cubes around a position.
+/// Spatial hash of points by cubes of two radii: a ball touches at most eight of them, its own first.
 class Cubes {
 public:
-    Cubes(std::size_t expected, double side) : side_(side), head_(std::bit_ceil(2 * expected + 1), none) {}
+    /// `radius`: the greatest of a query.
+    Cubes(std::size_t expected, double radius) : side_(2.001 * radius), head_(std::bit_ceil(expected + 1), none) {}
 
     void add(const Vec3& p) {
         const std::size_t slot = slot_of(cell(p.x), cell(p.y), cell(p.z));
-        next_.push_back(head_[slot]);
-        head_[slot] = static_cast<std::uint32_t>(places_.size());
-        places_.push_back(p);
+        points_.push_back({p, head_[slot]});
+        head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
     }
 
-    /// Calls visit(index, distance²) for all within `radius` ≤ side; stops when it returns false.
+    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
+    /// when two cubes share a slot.
     template <class Visit>
     void around(const Vec3& p, double radius, const Visit& visit) const {
         const std::int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
-        std::size_t seen[27];
-        std::size_t slots = 0;
-        for (std::int64_t dz = -1; dz <= 1; ++dz)
-            for (std::int64_t dy = -1; dy <= 1; ++dy)
-                for (std::int64_t dx = -1; dx <= 1; ++dx) {
-                    const std::size_t slot = slot_of(x + dx, y + dy, z + dz);
-                    // Two cubes may share a slot; it is visited once.
-                    if (std::find(seen, seen + slots, slot) != seen + slots) continue;
-                    seen[slots++] = slot;
-                    for (std::uint32_t i = head_[slot]; i != none; i = next_[i]) {
-                        const Vec3 apart = places_[i] - p;
-                        const double d2 = glm::dot(apart, apart);
-                        if (d2 <= radius * radius && !visit(i, d2)) return;
-                    }
-                }
+        const std::int64_t bx = beside(p.x, x), by = beside(p.y, y), bz = beside(p.z, z);
+        for (int n = 0; n < 8; ++n) {
+            const std::size_t slot = slot_of(x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0));
+            for (std::uint32_t i = head_[slot]; i != none; i = points_[i].next) {
+                const Vec3 apart = points_[i].place - p;
+                const double d2 = glm::dot(apart, apart);
+                if (d2 <= radius * radius && !visit(i, d2)) return;
+            }
+        }
     }
 
 private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
+    struct Entry {
+        Vec3 place;
+        std::uint32_t next;  // in the same slot
+    };
+
     std::int64_t cell(double x) const { return static_cast<std::int64_t>(std::floor(x / side_)); }
+    /// The nearer neighbour of a cube along an axis.
+    std::int64_t beside(double x, std::int64_t cell) const {
+        return x / side_ - static_cast<double>(cell) < 0.5 ? -1 : 1;
+    }
     std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
         const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
         return mix(bits(x) | bits(y) << 21 | bits(z) << 42) & (head_.size() - 1);
     }
 
     double side_;
-    std::vector<std::uint32_t> head_, next_;
-    std::vector<Vec3> places_;
+    std::vector<std::uint32_t> head_;
+    std::vector<Entry> points_;
 };
 
 struct Candidates {
@@ -130,16 +135,14 @@ void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
 /// distance to accepted ones, then adds every candidate's area to the nearest accepted point.
 std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling& sampling) {
     const std::size_t count = all.position.size();
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
     const Random random{mix(sampling.seed)};
-    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-        const std::uint64_t x = random.bits(a), y = random.bits(b);
-        return x < y || (x == y && a < b);
-    });
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(count);
+    for (std::uint32_t n = 0; n < count; ++n) order[n] = {random.bits(n), n};
+    std::ranges::sort(order);
     Cubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
-    for (const std::uint32_t c : order) {
+    for (const auto& drawn : order) {
+        const std::uint32_t c = drawn.second;
         bool free = true;
         cubes.around(all.position[c], least_distance * sampling.spacing, [&](std::uint32_t k, double d2) {
             const double least = std::min(all.radius[c], all.radius[kept[k]]);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::fit {
@@ -80,15 +81,18 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
             const RegistrationSettings& settings) {
     const Spread spread = spread_of(moving);
     Pose pose = start;
+    // A pose changes little in a step: the last target of a point is a good guess of the next.
+    std::vector<std::size_t> last(moving.size(), std::numeric_limits<std::size_t>::max());
     for (int stage = 0; stage < settings.stages + 20; ++stage) {
         const double progress = std::min(1.0, static_cast<double>(stage) / std::max(1, settings.stages - 1));
         const double s = settings.widest * std::pow(settings.finest / settings.widest, progress);
         const Vec3 centre = pose.apply(spread.middle);
         geometry::Matrix6 k{};
         geometry::Vector6 push{}, step{};
-        for (const contact::SurfacePoint& p : moving) {
+        for (std::size_t i = 0; i < moving.size(); ++i) {
+            const contact::SurfacePoint& p = moving[i];
             const Vec3 x = pose.apply(p.position);
-            const std::size_t to = fixed.nearest(x);
+            const std::size_t to = last[i] = fixed.nearest(x, last[i]);
             const Vec3& n = fixed.normal(to);
             const double facing = glm::dot(pose.rotate(p.normal), n);
             if (!(facing > least_cosine)) continue;
@@ -164,9 +168,13 @@ double median_distance(std::span<const contact::SurfacePoint> moving, const Regi
     return all[all.size() / 2];
 }
 
-Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
-                              const Pose& start, const RegistrationSettings& settings) {
-    if (moving.empty()) throw Error("there is no surface to register");
+namespace {
+
+enum class From : std::uint8_t { near, far };
+
+/// `near`: the start may be close already, as it is not when starts are only compared.
+Registration registered(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                        const Pose& start, const RegistrationSettings& settings, From where) {
     const std::vector<contact::SurfacePoint> some = thinned(moving, settings.most_points);
     const auto from_scale = [&](double widest, double finest) {
         RegistrationSettings scales = settings;
@@ -178,6 +186,7 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
         return made;
     };
     const Registration far = from_scale(settings.widest, settings.finest);
+    if (where == From::far) return far;
     // A displaced part rotates the whole while it is within the kernel's reach: continue from near with a narrow
     // kernel.
     const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
@@ -206,6 +215,14 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
     return best;
 }
 
+}  // namespace
+
+Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                              const Pose& start, const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    return registered(moving, fixed, start, settings, From::near);
+}
+
 Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
                                     std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings) {
@@ -225,7 +242,7 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
         const Quat rotation = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
         const Registration found =
-            register_surface(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse);
+            registered(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse, From::far);
         if (n == 0 || found.median < best.median) best = found;
     }
     return register_surface(moving, fixed, best.pose, settings);

@@ -32,6 +32,8 @@ public:
     explicit RegistrationTarget(std::span<const contact::SurfacePoint> points);
 
     std::size_t nearest(const Vec3& place) const noexcept { return tree_.nearest(place); }
+    /// The same, faster when the point `guess` is near.
+    std::size_t nearest(const Vec3& place, std::size_t guess) const noexcept { return tree_.nearest(place, guess); }
     const Vec3& position(std::size_t n) const noexcept { return positions_[n]; }
     const Vec3& normal(std::size_t n) const noexcept { return normals_[n]; }
     /// m, distance of a position from the surface: to the nearest point's plane, or to the point when it is far away.

@@ -18,64 +18,98 @@
 namespace tactus::geometry {
 
 /// An implicit k-d tree: the median of a range of points, along the longest axis of its bounding box, is stored in the
-/// middle of the range.
+/// middle of the range. Points are stored in the order of the tree, so that a search reads memory in sequence. Cells
+/// are left out by their distance from the place on all axes (Arya and Mount 1993).
 class PointTree {
 public:
     explicit PointTree(std::span<const Vec3> points)
-        : points_(points.begin(), points.end()), order_(points.size()), axis_(points.size(), 0) {
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        arrange(0, order_.size());
+        : index_(points.size()), rank_(points.size()), axis_(points.size(), 0) {
+        std::iota(index_.begin(), index_.end(), std::uint32_t{0});
+        arrange(points, 0, points.size());
+        points_.reserve(points.size());
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            points_.push_back(points[index_[n]]);
+            rank_[index_[n]] = static_cast<std::uint32_t>(n);
+        }
     }
 
     bool empty() const noexcept { return points_.empty(); }
 
-    /// Index of the nearest point; 0 for an empty tree. Does not allocate.
+    /// Index of the nearest point, the lowest of several; 0 for an empty tree. Does not allocate.
     std::size_t nearest(const Vec3& place) const noexcept {
-        Search search{place, std::numeric_limits<double>::infinity(), 0};
-        look(search, 0, order_.size());
-        return search.best;
+        return found({place, std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()});
+    }
+
+    /// The same, faster when the point `guess` is near `place`. The result does not depend on it.
+    std::size_t nearest(const Vec3& place, std::size_t guess) const noexcept {
+        if (!(guess < points_.size())) return nearest(place);
+        const Vec3 difference = place - points_[rank_[guess]];
+        return found({place, glm::dot(difference, difference), static_cast<std::uint32_t>(guess)});
     }
 
 private:
+    static constexpr std::size_t leaf = 8;  // points of a cell that is not divided
+
     struct Search {
         Vec3 place;
         double least;
-        std::size_t best;
+        std::uint32_t best;
     };
 
-    void arrange(std::size_t first, std::size_t last) {
-        if (last - first < 2) return;
+    std::size_t found(Search search) const noexcept {
+        if (points_.empty()) return 0;
+        look(search, 0, points_.size(), Vec3(0.0), 0.0);
+        return search.best < points_.size() ? search.best : 0;
+    }
+
+    void arrange(std::span<const Vec3> points, std::size_t first, std::size_t last) {
+        if (last - first <= leaf) return;
         Vec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
         for (std::size_t n = first; n < last; ++n) {
-            low = glm::min(low, points_[order_[n]]);
-            high = glm::max(high, points_[order_[n]]);
+            low = glm::min(low, points[index_[n]]);
+            high = glm::max(high, points[index_[n]]);
         }
         const Vec3 extent = high - low;
         const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
         const std::size_t middle = (first + last) / 2;
-        const auto at = [this](std::size_t n) { return order_.begin() + static_cast<std::ptrdiff_t>(n); };
+        const auto at = [this](std::size_t n) { return index_.begin() + static_cast<std::ptrdiff_t>(n); };
         std::nth_element(at(first), at(middle), at(last),
-                         [&](std::size_t a, std::size_t b) { return points_[a][axis] < points_[b][axis]; });
+                         [&](std::uint32_t a, std::uint32_t b) { return points[a][axis] < points[b][axis]; });
         axis_[middle] = static_cast<std::uint8_t>(axis);
-        arrange(first, middle);
-        arrange(middle + 1, last);
+        arrange(points, first, middle);
+        arrange(points, middle + 1, last);
     }
 
-    void look(Search& search, std::size_t first, std::size_t last) const noexcept {
-        if (first >= last) return;
+    void test(Search& search, std::size_t n) const noexcept {
+        const Vec3 difference = search.place - points_[n];
+        const double square = glm::dot(difference, difference);
+        if (square < search.least || (square == search.least && index_[n] < search.best))
+            search.least = square, search.best = index_[n];
+    }
+
+    /// `outside`: distances from the place to the cell along the axes; `away2`: the sum of their squares.
+    void look(Search& search, std::size_t first, std::size_t last, const Vec3& outside, double away2) const noexcept {
+        if (last - first <= leaf) {
+            for (std::size_t n = first; n < last; ++n) test(search, n);
+            return;
+        }
         const std::size_t middle = (first + last) / 2;
-        const Vec3 difference = search.place - points_[order_[middle]];
-        const double square = glm::dot(difference, difference), side = difference[axis_[middle]];
-        if (square < search.least) search.least = square, search.best = order_[middle];
-        if (side < 0.0) look(search, first, middle);
-        else look(search, middle + 1, last);
-        if (side * side >= search.least) return;
-        if (side < 0.0) look(search, middle + 1, last);
-        else look(search, first, middle);
+        const int axis = axis_[middle];
+        const double side = search.place[axis] - points_[middle][axis];
+        if (side < 0.0) look(search, first, middle, outside, away2);
+        else look(search, middle + 1, last, outside, away2);
+        test(search, middle);
+        const double other2 = away2 + side * side - outside[axis] * outside[axis];
+        // Rounding must not leave out a point at the same distance.
+        if (other2 * (1.0 - 1e-12) > search.least) return;
+        Vec3 beyond = outside;
+        beyond[axis] = side;
+        if (side < 0.0) look(search, middle + 1, last, beyond, other2);
+        else look(search, first, middle, beyond, other2);
     }
 
     std::vector<Vec3> points_;
-    std::vector<std::size_t> order_;
+    std::vector<std::uint32_t> index_, rank_;  // number given to a stored point, and the reverse
     std::vector<std::uint8_t> axis_;
 };
 

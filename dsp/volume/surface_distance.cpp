@@ -13,6 +13,8 @@ namespace tactus::volume {
 
 namespace {
 
+constexpr int part_length = 16;  // samples of a row that are skipped together; even
+
 double widest_of(const Grid& layout) { return std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}); }
 
 // Per sample: the nearest triangle so far and its closest point.
@@ -79,14 +81,16 @@ struct Far {
             }
     }
 
-    // Propagates from the six neighbours of every second sample of a row (one colour of a chessboard): the neighbours
-    // have the other colour, so that all rows can be processed in parallel. Returns whether any distance decreased.
-    bool ask_neighbours(int j, int k, int colour, bool closely) const {
+    // Propagates from the six neighbours of every second sample of a part of a row (one colour of a chessboard): the
+    // neighbours have the other colour, so that all parts can be processed in parallel. Returns whether any distance
+    // decreased.
+    bool ask_neighbours(int part, int j, int k, int colour, bool closely) const {
         const Grid& layout = feet.layout;
         const auto& size = layout.size;
         const std::array<std::ptrdiff_t, 3> stride{1, size[0], static_cast<std::ptrdiff_t>(layout.index(0, 0, 1))};
         bool changed = false;
-        for (int i = (j + k + colour) & 1; i < size[0]; i += 2) {
+        const int end = std::min(size[0], (part + 1) * part_length);
+        for (int i = part * part_length + ((j + k + colour) & 1); i < end; i += 2) {
             const std::size_t sample = layout.index(i, j, k);
             float own = feet.apart2[sample];
             if (own <= band2) continue;
@@ -109,27 +113,34 @@ struct Far {
     }
 };
 
-// Until no distance decreases; skips rows without changes beside them.
+// Until no distance decreases; skips parts of rows without changes in or beside them.
 void settle(const Far& far, const RunJobs& run) {
     constexpr int most_rounds = 60;
-    const int rows = far.feet.layout.size[1], layers = far.feet.layout.size[2];
-    const auto row_of = [rows](int j, int k) {
-        return static_cast<std::size_t>(k) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(j);
+    const auto& size = far.feet.layout.size;
+    const int parts = (size[0] + part_length - 1) / part_length, rows = size[1], layers = size[2];
+    const auto at = [parts, rows](int part, int j, int k) {
+        return (static_cast<std::size_t>(k) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(parts) +
+               static_cast<std::size_t>(part);
     };
-    std::vector<char> active(row_of(0, layers), 1), changed(active.size());
+    std::vector<char> active(at(0, 0, layers), 1), changed(active.size());
     for (int round = 0; round < most_rounds; ++round) {
         std::fill(changed.begin(), changed.end(), 0);
         for (const int colour : {0, 1})
             run(layers, [&](int k) {
                 for (int j = 0; j < rows; ++j)
-                    if (active[row_of(j, k)] && far.ask_neighbours(j, k, colour, round == 0)) changed[row_of(j, k)] = 1;
+                    for (int part = 0; part < parts; ++part)
+                        if (active[at(part, j, k)] && far.ask_neighbours(part, j, k, colour, round == 0))
+                            changed[at(part, j, k)] = 1;
             });
         run(layers, [&](int k) {
             for (int j = 0; j < rows; ++j)
-                active[row_of(j, k)] = changed[row_of(j, k)] || (j > 0 && changed[row_of(j - 1, k)]) ||
-                                       (j + 1 < rows && changed[row_of(j + 1, k)]) ||
-                                       (k > 0 && changed[row_of(j, k - 1)]) ||
-                                       (k + 1 < layers && changed[row_of(j, k + 1)]);
+                for (int part = 0; part < parts; ++part)
+                    active[at(part, j, k)] =
+                        changed[at(part, j, k)] || (part > 0 && changed[at(part - 1, j, k)]) ||
+                        (part + 1 < parts && changed[at(part + 1, j, k)]) || (j > 0 && changed[at(part, j - 1, k)]) ||
+                        (j + 1 < rows && changed[at(part, j + 1, k)]) || (k > 0 && changed[at(part, j, k - 1)]) ||
+                        (k + 1 < layers && changed[at(part, j, k + 1)]);
         });
         if (std::find(active.begin(), active.end(), 1) == active.end()) return;
     }

@@ -69,6 +69,7 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     settings.reach = choice.reach * 1e-3;
     if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
     const study::FractureSurface found = study::propose_fracture_surface(settings);
+    if (!found.note.empty()) fmt::print(stderr, "note: {}\n", found.note);
     std::vector<cases::PaintedFace> faces;
     if (extension == ".json") faces = cases::write_paint_file(found.bone.points, settings.bone.string(), choice.out);
     else {

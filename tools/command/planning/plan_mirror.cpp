@@ -21,9 +21,9 @@ struct MirrorChoice : PlanChoice {
 };
 
 Json faces_json(const study::FacesThere& faces) {
-    return {{"contact_mm2", faces.gap.contact_area * 1e6},
-            {"gap_median_mm", faces.gap.facing_area > 0.0 ? Json(faces.gap.median * 1e3) : Json(nullptr)},
-            {"deepest_mm", faces.gap.deepest * 1e3},
+    return {{"contact_mm2", faces.contact * 1e6},
+            {"gap_median_mm", faces.facing > 0.0 ? Json(faces.median * 1e3) : Json(nullptr)},
+            {"deepest_mm", faces.deepest * 1e3},
             {"overlap_mm3", faces.overlap * 1e9}};
 }
 
@@ -39,7 +39,7 @@ Json comparison_json(const std::string& fragment, const study::MirrorComparison&
 void print_faces(const std::string& fragment, const char* when, const std::string& main,
                  const study::FacesThere& faces) {
     fmt::print("  {} {}: {:.0f} mm² touch {}, {:.0f} mm³ overlap, {:.2f} mm deep\n", fragment, when,
-               faces.gap.contact_area * 1e6, main, faces.overlap * 1e9, faces.gap.deepest * 1e3);
+               faces.contact * 1e6, main, faces.overlap * 1e9, faces.deepest * 1e3);
 }
 
 void print_comparison(const std::string& fragment, const std::string& main, const study::MirrorComparison& c) {
@@ -67,30 +67,27 @@ int mirror(const MirrorChoice& choice) {
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<int> numbers;
     for (const std::string& name : choice.names) numbers.push_back(cases::find_fragment(plan, name));
-    const std::vector<study::CaseFragment> loaded = study::load_fragments(plan, folder);
-    const study::LaidMirror laid = study::lay_mirror(plan, folder, loaded, numbers[0], choice.healthy);
+    study::MirrorStudy laid(plan, folder, numbers[0], choice.healthy);
     cases::PlanStep step;
     step.kind = cases::StepKind::mirror;
     step.by = "command";
-    step.mirror = laid.target;
+    step.mirror = laid.target();
     study::do_step(plan, std::move(step), choice.plan);
     // Compares the other fragments with the registered mirrored side.
-    const fit::RegistrationTarget target(laid.surface);
     Json others = Json::array();
     for (std::size_t n = 1; n < numbers.size(); ++n) {
         const int other = numbers[n];
-        const study::MirrorComparison found = study::compare_with_mirror(
-            target, loaded[static_cast<std::size_t>(numbers[0])], laid.stands, loaded[static_cast<std::size_t>(other)],
-            cases::state_of(plan).arrangement.pose(other));
+        const study::MirrorComparison found = laid.compare(other, cases::state_of(plan).arrangement.pose(other));
         others.push_back(comparison_json(choice.names[n], found));
         if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
         if (choice.settle)
             study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
     }
-    if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit, others).dump(2));
+    for (const std::string& note : laid.notes()) fmt::print(stderr, "note: {}\n", note);
+    if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit(), others).dump(2));
     else
         fmt::print("mirrored side on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", choice.names[0],
-                   laid.fit.registration.median * 1e3, laid.fit.registration.p90 * 1e3);
+                   laid.fit().registration.median * 1e3, laid.fit().registration.p90 * 1e3);
     return done;
 }
 

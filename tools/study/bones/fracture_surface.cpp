@@ -6,6 +6,7 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/intact_side.hpp"
+#include "tools/study/bones/kept_numbers.hpp"
 
 #include <algorithm>
 
@@ -18,22 +19,61 @@ std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::pat
     return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
 }
 
-/// Labels the points inside the unbroken bone; returns its registration to the fragments.
-LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
-    const std::vector<contact::SurfacePoint> main = settings.main.empty() ? points : points_of_fragment(settings.main);
-    const IntactSide intact = lay_intact_side(settings.intact, settings.mirror, main);
-    const fit::RegistrationTarget target(intact.points);
-    LaidIntact laid{intact.registration, std::nullopt};
+// To be raised with every change of code that changes a registration or what propose_inside labels.
+constexpr int algorithm = 1;
+
+std::vector<contact::SurfacePoint> points_of_main(const std::vector<contact::SurfacePoint>& points,
+                                                  const FractureSurfaceSettings& settings) {
+    return settings.main.empty() ? points : points_of_fragment(settings.main);
+}
+
+/// The registration and the numbers of the labelled points.
+std::vector<double> proposal_by_intact(std::vector<contact::SurfacePoint> points,
+                                       const FractureSurfaceSettings& settings, const cases::IntactOptions& options,
+                                       std::string& note) {
+    // Kept apart from the paint: the same for all fragments of a case that name the same main one.
+    ResultKey key("unbroken bone on a fragment", algorithm);
+    key.add_file(settings.intact).add_file(settings.main.empty() ? settings.bone : settings.main);
+    key.add("mirror", settings.mirror ? 1.0 : 0.0);
+    IntactBone intact(settings.intact, settings.mirror);
+    NumberReader known(
+        result_of(key, intact_numbers, note, [&] { return intact.numbers_on(points_of_main(points, settings)); }));
+    const fit::Registration on_main = known.registration();
+    const fit::RegistrationTarget target(intact.laid(known));
+    std::vector<double> numbers;
+    add_registration(numbers, on_main);
     Pose place;
     if (!settings.main.empty()) {
         fit::RegistrationSettings nearby;
         nearby.widest = 10e-3;
-        laid.on_bone = fit::register_surface(points, target, {}, nearby);
-        place = laid.on_bone->pose;
+        const fit::Registration own = fit::register_surface(points, target, {}, nearby);
+        add_registration(numbers, own);
+        place = own.pose;
     }
+    cases::propose_inside(points, target, place, options);
+    for (std::size_t n = 0; n < points.size(); ++n)
+        if (points[n].label == contact::surface_label::fracture) numbers.push_back(static_cast<double>(n));
+    return numbers;
+}
+
+/// Labels the points inside the unbroken bone; returns its registration to the fragments.
+LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
+                             std::string& note) {
     cases::IntactOptions options;
     if (settings.least_area) options.least_area = *settings.least_area;
-    cases::propose_inside(points, target, place, options);
+    ResultKey key("paint inside of the unbroken bone", algorithm);
+    key.add_file(settings.bone).add_file(settings.intact);
+    if (!settings.main.empty()) key.add_file(settings.main);
+    key.add("mirror", settings.mirror ? 1.0 : 0.0).add("least area", options.least_area);
+    key.add("points", static_cast<double>(points.size()));
+    NumberReader read(
+        result_of(key, std::nullopt, note, [&] { return proposal_by_intact(points, settings, options, note); }));
+    LaidIntact laid{read.registration(), std::nullopt};
+    if (!settings.main.empty()) laid.on_bone = read.registration();
+    for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+    while (!read.is_at_end())
+        if (const double n = read.next(); n >= 0.0 && n < static_cast<double>(points.size()))
+            points[static_cast<std::size_t>(n)].label = contact::surface_label::fracture;
     return laid;
 }
 
@@ -55,12 +95,13 @@ void propose_by_facing(std::vector<contact::SurfacePoint>& points, const Fractur
 }
 
 /// Labels the points proposed by the selected methods. A patch may fall into faces: small ones are left out, too.
-std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
+std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
+                                  std::string& note) {
     std::optional<LaidIntact> laid;
     double least_area = settings.least_area.value_or(20e-6);
     if (!settings.intact.empty()) {
         least_area = settings.least_area.value_or(cases::IntactOptions{}.least_area);
-        laid = propose_by_intact(points, settings);
+        laid = propose_by_intact(points, settings, note);
         std::vector<contact::SurfacePoint> others;
         for (const std::filesystem::path& other : settings.facing)
             for (const contact::SurfacePoint& p : points_of_fragment(other)) others.push_back(p);
@@ -80,13 +121,13 @@ std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, co
 }  // namespace
 
 FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings) {
-    FractureSurface out{bone_of_file(settings.bone), std::nullopt};
+    FractureSurface out{bone_of_file(settings.bone), std::nullopt, ""};
     std::vector<contact::SurfacePoint>& points = out.bone.points;
     if (points.empty()) points = contact::sample_surface(out.bone.distance, {});
     const bool has_paint = std::ranges::any_of(points, is_painted);
     const bool is_asked = !settings.facing.empty() || !settings.intact.empty();
     const std::vector<contact::SurfacePoint> before = points;
-    if (!settings.keep || !has_paint || is_asked) out.intact = propose(points, settings);
+    if (!settings.keep || !has_paint || is_asked) out.intact = propose(points, settings, out.note);
     if (settings.keep && has_paint)
         for (std::size_t n = 0; n < points.size(); ++n)
             if (is_painted(before[n])) points[n].label = contact::surface_label::fracture;

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tactus::study {
@@ -35,6 +36,7 @@ struct LaidIntact {
 struct FractureSurface {
     bone::Bone bone;  ///< its points are labelled
     std::optional<LaidIntact> intact;
+    std::string note;  ///< about a kept result (see kept_result.hpp) that was no use; else empty
 };
 
 /// Throws Error.

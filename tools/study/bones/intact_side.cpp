@@ -15,22 +15,39 @@ std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target
                          {target.plane_normal, target.plane_offset}, target.pose);
 }
 
-IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror,
-                           std::span<const contact::SurfacePoint> main) {
+const std::vector<contact::SurfacePoint>& IntactBone::points() {
     // Half the width of the openings that connect marrow to the outside at a threshold for cortex.
     constexpr double closing = 3e-3;
-    std::vector<contact::SurfacePoint> points =
-        is_mesh(file)
-            ? points_of_file(file)
-            : contact::sample_surface(volume::outer_shell(bone_of_file(file).distance, closing, on_threads()), {});
-    if (mirror) {
-        const fit::MirrorFit fit = fit::fit_mirror(points, main);
-        return {fit::mirrored(points, fit.plane, fit.pose), fit.registration};
+    if (points_.empty())
+        points_ = is_mesh(file_) ? points_of_file(file_)
+                                 : contact::sample_surface(
+                                       volume::outer_shell(bone_of_file(file_).distance, closing, on_threads()), {});
+    return points_;
+}
+
+std::vector<double> IntactBone::numbers_on(std::span<const contact::SurfacePoint> main) {
+    fit::MirrorFit laid;
+    if (mirror_) laid = fit::fit_mirror(points(), main);
+    else {
+        laid.registration = fit::register_from_anywhere(main, points(), fit::RegistrationTarget(points()));
+        laid.pose = laid.registration.pose.inverse();
     }
-    const fit::Registration found = fit::register_from_anywhere(main, points, fit::RegistrationTarget(points));
-    const Pose onto = found.pose.inverse();
-    for (contact::SurfacePoint& p : points) p = {onto.apply(p.position), onto.rotate(p.normal), p.area, p.label};
-    return {std::move(points), found};
+    std::vector<double> numbers;
+    add_registration(numbers, laid.registration);
+    const Vec3 &n = laid.plane.normal, &p = laid.pose.position;
+    const Quat& q = laid.pose.orientation;
+    numbers.insert(numbers.end(), {n.x, n.y, n.z, laid.plane.offset, p.x, p.y, p.z, q.w, q.x, q.y, q.z});
+    return numbers;
+}
+
+std::vector<contact::SurfacePoint> IntactBone::laid(NumberReader& numbers) {
+    fit::MirrorPlane plane;
+    for (double* number : {&plane.normal.x, &plane.normal.y, &plane.normal.z, &plane.offset}) *number = numbers.next();
+    const Pose onto = numbers.pose();
+    if (mirror_) return fit::mirrored(points(), plane, onto);
+    std::vector<contact::SurfacePoint> moved = points();
+    for (contact::SurfacePoint& p : moved) p = {onto.apply(p.position), onto.rotate(p.normal), p.area, p.label};
+    return moved;
 }
 
 }  // namespace tactus::study

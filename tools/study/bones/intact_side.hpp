@@ -4,24 +4,40 @@
 
 #include "assets/cases/case_plan.hpp"
 #include "dsp/fit/registration.hpp"
+#include "tools/study/bones/kept_numbers.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tactus::study {
-
-struct IntactSide {
-    std::vector<contact::SurfacePoint> points;  ///< in the frame of the fragment it is registered to
-    fit::Registration registration;  ///< registration of that fragment's points to it
-};
 
 /// The healthy side of a plan in the frame of the case; `folder` is the plan's folder. Throws Error. Does not check
 /// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder);
 
-/// Loads a bone file, a CT or a mesh and registers it to `main` from any position. Throws Error for a file without
-/// surface.
-IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror, std::span<const contact::SurfacePoint> main);
+/// Numbers of a registration of the unbroken bone, see IntactBone.
+inline constexpr std::size_t intact_numbers = 11 + 4 + 7;
+
+/// The unbroken bone of a file: a bone file, a CT or a mesh. Loaded when it is needed.
+class IntactBone {
+public:
+    IntactBone(std::filesystem::path file, bool mirror) : file_(std::move(file)), mirror_(mirror) {}
+
+    /// Registers it to a fragment from any position: the registration of the fragment's points to it, and how it lies
+    /// on the fragment. Throws Error for a file without surface.
+    std::vector<double> numbers_on(std::span<const contact::SurfacePoint> main);
+    /// Its points in the frame of the fragment, from these numbers after the registration.
+    std::vector<contact::SurfacePoint> laid(NumberReader& numbers);
+
+private:
+    const std::vector<contact::SurfacePoint>& points();
+
+    std::filesystem::path file_;
+    bool mirror_;
+    std::vector<contact::SurfacePoint> points_;
+};
 
 }  // namespace tactus::study

@@ -4,38 +4,66 @@
 
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/mirror.hpp"
+#include "tools/study/bones/kept_result.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace tactus::study {
 
-struct LaidMirror {
-    fit::MirrorFit fit;
-    cases::MirrorTarget target;                 ///< as stored in the plan
-    std::vector<contact::SurfacePoint> surface;   ///< the mirrored side in the frame of the case
-    Pose stands;                         ///< pose of the main fragment
-};
-
-/// Mirrors `healthy` (a bone file or mesh) and registers it to fragment `main` of a plan in `folder`. Throws Error.
-LaidMirror lay_mirror(const cases::CasePlan& plan, const std::filesystem::path& folder,
-                      const std::vector<CaseFragment>& fragments, int main, const std::filesystem::path& healthy);
-
 /// Contact between a fragment and the main one at a pose.
 struct FacesThere {
-    fit::SurfaceGap gap;
-    double overlap = 0.0;  ///< m³
+    double facing = 0.0, contact = 0.0;  ///< m²
+    double median = 0.0, deepest = 0.0;  ///< m
+    double overlap = 0.0;                ///< m³
 };
 
-/// Compares a fragment with the mirrored side. `stands`: pose of `main`.
+/// Comparison of a fragment with the mirrored side.
 struct MirrorComparison {
     fit::Registration registration;
-    Motion away;                ///< motion of its centre from the current to the best pose
+    Motion away;  ///< motion of its centre from the current to the best pose
     FacesThere before, after;
 };
-MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main,
-                                     const Pose& stands, const CaseFragment& other, const Pose& from);
+
+/// The healthy side of a case on its main fragment. What it finds is kept (see kept_result.hpp): a file is only loaded
+/// when a result with it is not known.
+class MirrorStudy {
+public:
+    /// `healthy`: a bone file, a CT or a mesh. Throws Error, also for a file of the plan that has changed.
+    MirrorStudy(const cases::CasePlan& plan, const std::filesystem::path& folder, int main,
+                const std::filesystem::path& healthy);
+
+    const fit::MirrorFit& fit() const { return fit_; }
+    const cases::MirrorTarget& target() const { return target_; }  ///< as stored in the plan
+    const std::vector<std::string>& notes() const { return notes_; }  ///< about kept results that were no use
+
+    /// Registers a fragment to the mirrored side from its pose `from`.
+    MirrorComparison compare(int other, const Pose& from);
+
+private:
+    const CaseFragment& loaded(int fragment);
+    const std::vector<contact::SurfacePoint>& healthy_points();
+    const fit::RegistrationTarget& surface();
+    FacesThere faces_there(int moving, const Pose& at);
+    std::vector<double> known(const ResultKey& key, std::size_t count,
+                              const std::function<std::vector<double>()>& make);
+
+    const cases::CasePlan& plan_;
+    std::filesystem::path folder_, healthy_;
+    int main_;
+    fit::MirrorFit fit_;
+    cases::MirrorTarget target_;
+    Pose stands_;  ///< pose of the main fragment
+    std::vector<std::optional<CaseFragment>> loaded_;
+    std::vector<contact::SurfacePoint> points_;
+    std::optional<fit::RegistrationTarget> surface_;
+    std::vector<std::string> notes_;
+};
 
 }  // namespace tactus::study

@@ -52,6 +52,14 @@ TEST_CASE("a broken hip is reduced against its mirrored other side as far as a r
     CHECK(away["away"]["angle_deg"].get<double>() == Approx(9.3).margin(4.0));
     CHECK(away["median_after_mm"].get<double>() < 1.5);
     CHECK(away["median_before_mm"].get<double>() > away["median_after_mm"].get<double>());
+    // A second time the registration is there already: the fragment lies at its best pose, and nothing is loaded.
+    const Outcome again = folder.tactus("plan mirror " + plan + " " + healthy.string() + " main part --settle --json");
+    INFO(again.err);
+    REQUIRE(again.code == 0);
+    const json kept = json::parse(again.out);
+    CHECK(kept["residual_mm"] == found["residual_mm"]);
+    CHECK(kept["others"][0]["pose"] == away["pose"]);
+    CHECK(kept["others"][0]["away"]["distance_mm"] == 0.0);
 }
 
 TEST_CASE(

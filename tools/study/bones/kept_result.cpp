@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/bones/kept_result.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace tactus::study {
+
+namespace {
+
+constexpr std::string_view format_line = "tactus kept result 1\n";
+
+std::filesystem::path cache_folder() {
+    // A relative path is not valid there (XDG base directory specification).
+    if (const char* named = std::getenv("XDG_CACHE_HOME"); named && *named == '/')
+        return std::filesystem::path(named) / "tactus";
+    if (const char* home = std::getenv("HOME"); home && *home == '/')
+        return std::filesystem::path(home) / ".cache" / "tactus";
+    return {};
+}
+
+/// Whether all data of a file is in it: a header may name files of samples.
+bool is_whole(const std::filesystem::path& path) {
+    const std::filesystem::path extension = path.extension();
+    constexpr std::array<const char*, 5> whole{".vdb", ".stl", ".ply", ".obj", ".nii"};
+    if (std::ranges::find(whole, extension) != whole.end()) return true;
+    if (extension != ".nrrd") return path.string().ends_with(".nii.gz");
+    std::ifstream file(path, std::ios::binary);
+    for (std::string line; std::getline(file, line) && !line.empty() && line != "\r";) {
+        std::ranges::transform(line, line.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (line.starts_with("data file") || line.starts_with("datafile")) return false;
+        if (line.size() > 10'000) return false;
+    }
+    return true;
+}
+
+std::string checksum(const std::string& key, const std::vector<double>& numbers) {
+    Hash hash;
+    hash.add_text(key);
+    hash.add_bytes(numbers.data(), numbers.size() * sizeof(double));
+    return fmt::format("{:016x}", hash.value());
+}
+
+}  // namespace
+
+ResultKey::ResultKey(const std::string& what, int version) : text_(fmt::format("{} {}", what, version)) {}
+
+ResultKey& ResultKey::add_file(const std::filesystem::path& path) {
+    const std::filesystem::path file = bone::file_of_bone(path);
+    if (!std::filesystem::is_regular_file(file) || !is_whole(file)) {
+        is_complete_ = false;
+        return *this;
+    }
+    Hash hash;
+    file::add_file(hash, file);
+    const std::string all = path.string(), own = file.string();
+    text_ += fmt::format("\nfile {} {:016x} {}", std::filesystem::file_size(file), hash.value(),
+                         file.extension().string() + (all.size() > own.size() ? all.substr(own.size()) : ""));
+    return *this;
+}
+
+ResultKey& ResultKey::add(const std::string& name, double number) {
+    text_ += fmt::format("\n{} {:.17g}", name, number);
+    return *this;
+}
+
+std::filesystem::path file_of_result(const ResultKey& key) {
+    const std::filesystem::path folder = cache_folder();
+    if (folder.empty() || key.text().empty()) return {};
+    Hash hash;
+    hash.add_text(key.text());
+    return folder / "results" / fmt::format("{:016x}.txt", hash.value());
+}
+
+std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string& note) {
+    const std::filesystem::path file = file_of_result(key);
+    std::error_code failure;
+    if (file.empty() || !std::filesystem::exists(file, failure)) return std::nullopt;
+    try {
+        const std::string text = file::read_whole_file(file);
+        const std::string head = std::string(format_line) + key.text() + "\n\n";
+        if (text.starts_with(head)) {
+            std::istringstream lines(text.substr(head.size()));
+            std::string sum, number;
+            std::vector<double> numbers;
+            std::getline(lines, sum);
+            while (std::getline(lines, number)) numbers.push_back(std::strtod(number.c_str(), nullptr));
+            if (sum == checksum(key.text(), numbers)) return numbers;
+        }
+    } catch (const std::exception&) {
+        // Damaged or not ours: said below, and made again.
+    }
+    note = fmt::format("{} is damaged or not a kept result; it is ignored and made again", file.string());
+    return std::nullopt;
+}
+
+void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexcept {
+    try {
+        const std::filesystem::path file = file_of_result(key);
+        // No result has infinite numbers.
+        if (file.empty() || !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) return;
+        std::filesystem::create_directories(file.parent_path());
+        std::string text = std::string(format_line) + key.text() + "\n\n" + checksum(key.text(), numbers) + "\n";
+        for (const double number : numbers) text += fmt::format("{:.17g}\n", number);
+        file::write_whole_file(file, text);
+    } catch (const std::exception&) {
+        // A result that is not kept is computed again.
+    }
+}
+
+std::vector<double> result_of(const ResultKey& key, std::optional<std::size_t> count, std::string& note,
+                              const std::function<std::vector<double>()>& make) {
+    if (auto kept = kept_result(key, note); kept && (!count || kept->size() == *count)) return *std::move(kept);
+    std::vector<double> numbers = make();
+    keep_result(key, numbers);
+    return numbers;
+}
+
+}  // namespace tactus::study
