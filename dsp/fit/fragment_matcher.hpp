@@ -39,7 +39,6 @@ inline FitSettings settings_of_faces() noexcept {
     FitSettings settings;
     settings.widest = 3e-3;
     settings.outline = 0.0;
-    settings.least_score = 0.2;
     settings.most_penetration = 0.6e-3;
     // Bias from chips accumulates along a chain of pieces: half of the limit for a single pair.
     settings.polish = 0.05e-3;
@@ -66,6 +65,9 @@ public:
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
+    /// A painted face, numbered over all fragments; and its fragment.
+    const FitSurface& face(std::size_t n) const noexcept { return faces_[n].surface; }
+    int fragment_of(std::size_t face) const noexcept { return faces_[face].fragment; }
     std::size_t faces_of(int fragment) const noexcept;
 
     /// Local search from the present poses. `stands`: fragments that count as partners, except the moving one.

@@ -28,5 +28,6 @@ Verb snap_verb();
 Verb passivity_verb();
 Verb device_verb();
 Verb saw_verb();
+Verb fits_verb();
 
 }  // namespace tactus::bench
