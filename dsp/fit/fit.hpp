@@ -45,7 +45,7 @@ struct FitSettings {
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis: of all painted points together
     double least_score = Acceptance::least_score;  ///< below it the result is no_match
-    double most_rms = 0.8;  ///< rms distance within the overlap, as share of sigma: above it the result is no_match
+    double most_rms = Acceptance::most_rms;  ///< rms distance in the overlap, share of sigma: above it it is no_match
     double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
     double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
     double least_margin = Acceptance::least_margin;  ///< to the second best pose, as share of the best score

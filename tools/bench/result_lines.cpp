@@ -20,8 +20,10 @@ ResultLines::ResultLines(std::filesystem::path file, std::string key) : file_(st
     std::ifstream in(file_);
     std::vector<Json> part;
     std::size_t number = 0;
+    std::uintmax_t kept = 0, read = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
+        read += line.size() + 1;
         Json row = Json::parse(line, nullptr, false);
         if (row.is_discarded() && in.peek() == std::ifstream::traits_type::eof()) break;
         if (!row.is_object() || !row.contains(key_) || !row[key_].is_number_integer())
@@ -31,11 +33,11 @@ ResultLines::ResultLines(std::filesystem::path file, std::string key) : file_(st
             done_.insert(row[key_].get<int>());
             rows_.insert(rows_.end(), part.begin(), part.end());
             part.clear();
-        } else {
-            if (!part.empty() && part.front()[key_] != row[key_]) part.clear();
-            part.push_back(std::move(row));
-        }
+            kept = read;
+        } else part.push_back(std::move(row));
     }
+    in.close();
+    if (kept < std::filesystem::file_size(file_)) std::filesystem::resize_file(file_, kept);
 }
 
 void ResultLines::add(int number, const std::vector<Json>& rows) {
