@@ -29,5 +29,6 @@ Verb passivity_verb();
 Verb device_verb();
 Verb saw_verb();
 Verb fits_verb();
+Verb assembly_verb();
 
 }  // namespace tactus::bench
