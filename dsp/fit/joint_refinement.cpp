@@ -94,9 +94,7 @@ public:
     void restore(const std::vector<Pose>& was) { std::ranges::copy(was, poses_.begin()); }
 
 private:
-    const Pose& pose_of(std::size_t face) const {
-        return poses_[static_cast<std::size_t>(matcher_.fragment_of(face))];
-    }
+    const Pose& pose_of(std::size_t face) const { return poses_[static_cast<std::size_t>(matcher_.fragment_of(face))]; }
     Vec3 place_of(std::size_t face) const { return pose_of(face).apply(matcher_.face(face).centre); }
     int unknown_of(std::size_t face) const {
         return unknown_[static_cast<std::size_t>(body_[static_cast<std::size_t>(matcher_.fragment_of(face))])];

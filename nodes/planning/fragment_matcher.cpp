@@ -92,7 +92,8 @@ private:
             const coupling::SceneObject& other = scene->objects[n];
             if (!is_valid(other.pose)) return nothing();
             poses_[n] = Pose{other.pose.position, glm::normalize(other.pose.orientation)} * other.body.home.inverse();
-            stands_[n] = !goes_along(static_cast<std::size_t>(place), n) && other.body.map && (other.stands || partners.index == 1);
+            stands_[n] = !goes_along(static_cast<std::size_t>(place), n) && other.body.map &&
+                         (other.stands || partners.index == 1);
         }
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
@@ -148,8 +149,8 @@ private:
             if (!scene->objects[m].body.map) continue;
             const fit::PlacedBone mine = placed(m, motion * poses_[m]);
             for (std::size_t n = 0; n < scene->count; ++n)
-                if (stands_[n] && fit::lie_in_each_other(mine, placed(n, poses_[n]),
-                                                         matcher_->settings.fit.most_penetration))
+                if (stands_[n] &&
+                    fit::lie_in_each_other(mine, placed(n, poses_[n]), matcher_->settings.fit.most_penetration))
                     return true;
         }
         return false;

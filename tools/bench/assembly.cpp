@@ -39,12 +39,13 @@ Json row_of(int number) {
 }
 
 void print(const Json& row) {
-    fmt::print("case {}: {} in {} pieces, {} missing, chips {:.0f} %: {} of {} placed, {} within 0.3 mm, {} falsely; "
-               "worst {:.3f} mm; {:.1f} s\n",
-               row["case"].get<int>(), row["bone"].get<std::string>(), row["pieces"].get<int>(),
-               row["missing"].get<int>(), row["chips"].get<double>() * 100.0, row["placed"].get<int>(),
-               row["with_neighbour"].get<int>(), row["within_0.3_mm"].get<int>(), row["falsely_placed"].get<int>(),
-               row["worst_error_mm"].get<double>(), row["seconds"].get<double>());
+    fmt::print(
+        "case {}: {} in {} pieces, {} missing, chips {:.0f} %: {} of {} placed, {} within 0.3 mm, {} falsely; "
+        "worst {:.3f} mm; {:.1f} s\n",
+        row["case"].get<int>(), row["bone"].get<std::string>(), row["pieces"].get<int>(), row["missing"].get<int>(),
+        row["chips"].get<double>() * 100.0, row["placed"].get<int>(), row["with_neighbour"].get<int>(),
+        row["within_0.3_mm"].get<int>(), row["falsely_placed"].get<int>(), row["worst_error_mm"].get<double>(),
+        row["seconds"].get<double>());
     std::fflush(stdout);
 }
 
@@ -58,7 +59,7 @@ Json total_of(const std::vector<Json>& rows) {
         falsely += row["falsely_placed"].get<int>();
         worst = std::max(worst, row["worst_error_mm"].get<double>());
     }
-    return {{"cases", rows.size()},      {"with_neighbour", with},     {"placed", placed},
+    return {{"cases", rows.size()},    {"with_neighbour", with},    {"placed", placed},
             {"within_0.3_mm", within}, {"falsely_placed", falsely}, {"worst_error_mm", worst}};
 }
 

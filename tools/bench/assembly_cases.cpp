@@ -75,9 +75,9 @@ AssemblyScore put_together(const AssemblyCase& one) {
     std::vector<Neighbours> neighbours;
     study::PlanMatching matching(std::move(fragments));
     const double begin = seconds_used();
-    const study::PlanAssembly made = study::assemble(
-        matching, fit::Arrangement(static_cast<std::size_t>(count)),
-        std::vector<std::optional<cases::PlanFit>>(static_cast<std::size_t>(count)));
+    const study::PlanAssembly made =
+        study::assemble(matching, fit::Arrangement(static_cast<std::size_t>(count)),
+                        std::vector<std::optional<cases::PlanFit>>(static_cast<std::size_t>(count)));
     AssemblyScore score;
     score.pieces = count;
     score.seconds = seconds_used() - begin;
@@ -101,7 +101,9 @@ AssemblyScore put_together(const AssemblyCase& one) {
     std::vector<int> part(static_cast<std::size_t>(count), -1);
     for (std::size_t p = 0; p < made.parts.size(); ++p)
         for (const int n : made.parts[p]) part[static_cast<std::size_t>(n)] = static_cast<int>(p);
-    const auto same = [&](int a, int b) { return part[static_cast<std::size_t>(a)] == part[static_cast<std::size_t>(b)]; };
+    const auto same = [&](int a, int b) {
+        return part[static_cast<std::size_t>(a)] == part[static_cast<std::size_t>(b)];
+    };
     // What hangs together in truth, and what of it was connected rightly.
     std::vector<int> whole(static_cast<std::size_t>(count)), rightly(static_cast<std::size_t>(count));
     for (int n = 0; n < count; ++n) whole[static_cast<std::size_t>(n)] = rightly[static_cast<std::size_t>(n)] = n;

@@ -47,7 +47,8 @@ void add_pieces(std::vector<Piece>& pieces, const PairGroup& group, bool is_jaw,
     settings.spacing = std::max(0.42e-3, group.voxel);
     study::break_and_scan(whole(is_jaw), settings, [&](study::ScannedFragment fragment) {
         if (group.is_proposed) cases::propose_fracture(fragment.bone.points);
-        pieces.push_back({std::move(fragment.bone.points), std::move(fragment.bone.distance), fragment.place, bone, -1});
+        pieces.push_back(
+            {std::move(fragment.bone.points), std::move(fragment.bone.distance), fragment.place, bone, -1});
     });
 }
 
@@ -154,7 +155,8 @@ private:
                               &b = matcher_->face(static_cast<std::size_t>(f));
         const Random random{group_.seed * 31 + static_cast<std::uint64_t>(i * 64 + j)};
         Quat from = (piece(j).place.inverse() * piece(i).place).orientation;
-        if (!is_as_in_bone) from = rotation_by(2.0 * std::numbers::pi * random.uniform(7) * fit::direction_of(b.mean_normal));
+        if (!is_as_in_bone)
+            from = rotation_by(2.0 * std::numbers::pi * random.uniform(7) * fit::direction_of(b.mean_normal));
         const Quat turned = fit::opposed(a, b, from);
         return {b.centre - turned * a.centre, turned};
     }
@@ -187,8 +189,8 @@ private:
         const auto [m, f] = similar(i, j);
         const Vec3 middle = is_true ? touching(i, j) : matcher_->face(static_cast<std::size_t>(m)).centre;
         const Random random{group_.seed * 97 + static_cast<std::uint64_t>(i * 64 + j)};
-        poses[static_cast<std::size_t>(i)] =
-            is_true ? shaken(place, middle, 4e-3, 10.0 * degree, random) : shaken(place, middle, 2e-3, 5.0 * degree, random);
+        poses[static_cast<std::size_t>(i)] = is_true ? shaken(place, middle, 4e-3, 10.0 * degree, random)
+                                                     : shaken(place, middle, 2e-3, 5.0 * degree, random);
         for (const bool is_global : {false, true}) {
             PairTrial trial;
             trial.kind = kind;

@@ -131,18 +131,19 @@ int bench_fits(const FitsChoice& choice) {
 }
 
 Verb fits_verb() {
-    return {"fits", "how well true fits are told from false ones, on broken bones with known truth",
-            [](VerbOptions& verb) -> Action {
-                const auto choice = std::make_shared<FitsChoice>();
-                verb.add("--first", choice->first, "number of the first broken bone").shows_default().range(0, 1'000'000);
-                verb.add("--groups", choice->groups, "number of broken bones").shows_default().range(0, 10'000);
-                verb.add("--half", choice->half, "of the broken bones: set (thresholds), judge, or both")
-                    .one_of({"set", "judge", "both"})
-                    .shows_default();
-                verb.add("--out", choice->out, "file of results, JSON lines; what it holds is not done again");
-                verb.flag("--json", choice->json, "as JSON");
-                return [choice] { return bench_fits(*choice); };
-            }};
+    return {
+        "fits", "how well true fits are told from false ones, on broken bones with known truth",
+        [](VerbOptions& verb) -> Action {
+            const auto choice = std::make_shared<FitsChoice>();
+            verb.add("--first", choice->first, "number of the first broken bone").shows_default().range(0, 1'000'000);
+            verb.add("--groups", choice->groups, "number of broken bones").shows_default().range(0, 10'000);
+            verb.add("--half", choice->half, "of the broken bones: set (thresholds), judge, or both")
+                .one_of({"set", "judge", "both"})
+                .shows_default();
+            verb.add("--out", choice->out, "file of results, JSON lines; what it holds is not done again");
+            verb.flag("--json", choice->json, "as JSON");
+            return [choice] { return bench_fits(*choice); };
+        }};
 }
 
 }  // namespace tactus::bench

@@ -27,8 +27,8 @@ ResultLines::ResultLines(std::filesystem::path file, std::string key) : file_(st
         Json row = Json::parse(line, nullptr, false);
         if (row.is_discarded() && in.peek() == std::ifstream::traits_type::eof()) break;
         if (!row.is_object() || !row.contains(key_) || !row[key_].is_number_integer())
-            throw Error(fmt::format("{}:{}: is no result of this study; name another file with --out", file_.string(),
-                                    number));
+            throw Error(
+                fmt::format("{}:{}: is no result of this study; name another file with --out", file_.string(), number));
         if (row.contains(end_mark)) {
             done_.insert(row[key_].get<int>());
             rows_.insert(rows_.end(), part.begin(), part.end());

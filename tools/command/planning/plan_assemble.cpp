@@ -28,9 +28,9 @@ void add_steps(cases::CasePlan& plan, const study::PlanAssembly& made) {
 }
 
 std::string residual_words(const study::FragmentResidual& r) {
-    return r.faces == 0 ? "no face lies on another"
-                        : fmt::format("{:.3f} mm rms over {} pairs of faces, {:.0f} mm²", r.rms * 1e3, r.faces,
-                                      r.area * 1e6);
+    return r.faces == 0
+               ? "no face lies on another"
+               : fmt::format("{:.3f} mm rms over {} pairs of faces, {:.0f} mm²", r.rms * 1e3, r.faces, r.area * 1e6);
 }
 
 struct Told {
@@ -44,6 +44,8 @@ Told told_of(const cases::CasePlan& plan, const study::PlanMatching& matching, c
     for (const study::PlanMatch& stays : made.stays) {
         std::string reason =
             stays.as_scanned ? std::string(as_scanned_note)
+            : !state.arrangement.can_move(stays.match.moving)
+                ? "it is locked, and so is what it would go to; unlock one of them ('tactus plan unlock')"
             : matching.faces_of(stays.match.moving) == 0
                 ? "it has no painted fracture; paint it, see 'tactus fracture-surface'"
                 : study::why_not_placed(plan, matching, state.arrangement, stays, fit::Arrangement::none,
@@ -83,9 +85,12 @@ Json json_of(const cases::CasePlan& plan, const study::PlanAssembly& made, const
                              {"overlap_mm2", r.area * 1e6},
                              {"faces", r.faces}});
     }
-    return {{"version", 1},       {"ok", is_done},
-            {"placed", placed},   {"stays", stays},
-            {"residuals", residuals}, {"assemblies", study::assembly_names(plan, state)},
+    return {{"version", 1},
+            {"ok", is_done},
+            {"placed", placed},
+            {"stays", stays},
+            {"residuals", residuals},
+            {"assemblies", study::assembly_names(plan, state)},
             {"problems", told.problems}};
 }
 
@@ -129,9 +134,10 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_assemble_verb() {
-    return {"assemble",
-            "put all shown fragments together, the surest fits first; 1: they are in several parts, or lie in each other",
-            add};
+    return {
+        "assemble",
+        "put all shown fragments together, the surest fits first; 1: they are in several parts, or lie in each other",
+        add};
 }
 
 }  // namespace tactus::command

@@ -140,8 +140,8 @@ void AssemblyParts::return_to(const Arrangement& arrangement) {
         }
         // Exactly, for the bodies that stay.
         for (const int n : list)
-            if (locked_[static_cast<std::size_t>(n)] || body_[static_cast<std::size_t>(n)] ==
-                                                            body_[static_cast<std::size_t>(base)])
+            if (locked_[static_cast<std::size_t>(n)] ||
+                body_[static_cast<std::size_t>(n)] == body_[static_cast<std::size_t>(base)])
                 poses_[static_cast<std::size_t>(n)] = arrangement.pose(n);
     }
 }

@@ -61,7 +61,11 @@ class Assembler {
 public:
     Assembler(PlanMatching& matching, const Arrangement& arrangement,
               const std::vector<std::optional<cases::PlanFit>>& fits)
-        : matching_(matching), matcher_(matching.matcher()), arrangement_(arrangement), parts_(arrangement, [&](int n) { return surface_of(n); }), refused_(arrangement.size()) {
+        : matching_(matching),
+          matcher_(matching.matcher()),
+          arrangement_(arrangement),
+          parts_(arrangement, [&](int n) { return surface_of(n); }),
+          refused_(arrangement.size()) {
         for (std::size_t n = 0; n < refused_.size(); ++n) {
             refused_[n].match.moving = static_cast<int>(n);
             refused_[n].from = arrangement.pose(static_cast<int>(n));
@@ -194,8 +198,8 @@ private:
         bool is_cut = false;
         for (std::size_t n = parts_.links().size(); n-- > 0;) {
             AssemblyLink& link = parts_.links()[n];
-            const fit::FitQuality now = best_quality(link.a, link.b);
             if (link.was_before) continue;
+            const fit::FitQuality now = best_quality(link.a, link.b);
             link.match.quality = now;
             fit::FitSettings settings = matching_.settings().fit;
             if (fit::judge(now, false, link.match.margin, settings) == fit::FitVerdict::fit) continue;
@@ -218,6 +222,7 @@ private:
     /// Of the pair of faces of two fragments that covers most.
     fit::FitQuality best_quality(int a, int b) const {
         fit::FitQuality best;
+        if (matcher_.faces() == 0) return best;
         fit::FitEnergy energy = matcher_.make_energy();
         for (std::size_t m = 0; m < matcher_.faces(); ++m)
             for (std::size_t f = 0; f < matcher_.faces(); ++f) {
@@ -274,8 +279,8 @@ private:
             placed.match.faces = std::max(1, made.residuals[static_cast<std::size_t>(link.a)].faces);
             placed.from = arrangement_.pose(link.a);
             placed.was_painted = matching_.fragment(link.a).was_painted;
-            placed.moved = motion_between(placed.from, placed.match.pose,
-                                          middle_of(matching_.fragment(link.a).bone.points));
+            placed.moved =
+                motion_between(placed.from, placed.match.pose, middle_of(matching_.fragment(link.a).bone.points));
             made.placed.push_back(placed);
         }
         for (std::size_t n = 1; n < made.parts.size(); ++n) made.stays.push_back(why_apart(made.parts[n]));
@@ -284,8 +289,7 @@ private:
                 if (!arrangement_.is_hidden(a) && !arrangement_.is_hidden(b) &&
                     matching_.lie_in_each_other(a, made.poses[static_cast<std::size_t>(a)], b,
                                                 made.poses[static_cast<std::size_t>(b)]))
-                    made.overlaps.push_back(
-                        {a, b, matching_.overlap_volume(a, parts_.pose(a), b, parts_.pose(b))});
+                    made.overlaps.push_back({a, b, matching_.overlap_volume(a, parts_.pose(a), b, parts_.pose(b))});
         return made;
     }
 
@@ -301,7 +305,8 @@ private:
         double most = -1.0;
         for (const int n : part) {
             const PlanMatch& refused = refused_[static_cast<std::size_t>(n)];
-            if (refused.match.partner == Arrangement::none || parts_.part_of(refused.match.partner) == parts_.part_of(n))
+            if (refused.match.partner == Arrangement::none ||
+                parts_.part_of(refused.match.partner) == parts_.part_of(n))
                 continue;
             if (const double worth = worths_.at(n); worth > most) best = n, most = worth;
         }
