@@ -108,13 +108,16 @@ TEST_CASE("two pieces of a broken hip that do not touch are not fitted to each o
     if (!has(labels)) return;
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    for (const char* part : {"1", "2"})
+    for (const std::string part : {"1", "2"}) {
         REQUIRE(folder
                     .tactus("import " + labels.string() + " --label 2 --component " + part + " -o " +
-                            file(std::string("part") + part + ".vdb"))
+                            file("part" + part + ".vdb"))
                     .code == 0);
+        REQUIRE(folder.tactus("export " + file("part" + part + ".vdb") + " -o " + file("part" + part + ".stl")).code ==
+                0);
+    }
     const std::string plan = file("hip.plan.json");
-    REQUIRE(folder.tactus("plan new " + plan + " large=" + file("part1.vdb") + " small=" + file("part2.vdb")).code ==
+    REQUIRE(folder.tactus("plan new " + plan + " large=" + file("part1.stl") + " small=" + file("part2.stl")).code ==
             0);
     const Outcome alone = folder.tactus("plan snap " + plan + " small large --mode global --json");
     INFO(alone.out << alone.err);
