@@ -5,7 +5,7 @@
 
 namespace tactus::fit {
 
-/// Set by `tactus bench fits --half set`, 14 broken bones, 826 pairs that do not belong together and 212 true fits;
+/// Set by `tactus bench fits --half set`, 14 broken bones: 413 pairs of pieces that do not belong together, each in two modes, and 212 true fits;
 /// judged by `tactus bench fits --half judge`. In brackets: the weakest true fit but for 2 %, and the strongest false one
 /// that the other thresholds let pass.
 struct Acceptance {
