@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -62,22 +63,22 @@ struct Broken {
             if (fragment["name"] == name) return pose_in(fragment["pose"]);
         throw std::runtime_error("no fragment " + name);
     }
-    /// Of one piece beside another, m: at the place of the first that lies at `at` in the bone.
-    double error(const std::string& name, int piece, int beside, const Vec3& at) const {
-        const Pose was = truth(name, beside).inverse() * truth(name, piece);
-        const Pose now = planned(name + std::to_string(beside)).inverse() * planned(name + std::to_string(piece));
-        const Vec3 there = truth(name, piece).inverse().apply(at);
-        return glm::length(now.apply(there) - was.apply(there));
-    }
-    /// The worst over the middles of all fits that were made: partners share a face there.
+    /// How far the fragments that were fitted to each other are from there, worst of all within 20 mm of the middle of
+    /// the bone, m.
     double worst(const std::string& name, const json& placed) const {
+        const json shown = json::parse(run("show", "--json").out);
+        std::map<std::string, Pose> poses;
+        for (const json& fragment : shown["fragments"]) poses[fragment["name"]] = pose_in(fragment["pose"]);
         double most = 0.0;
         for (const json& row : placed) {
-            const int a = row["fragment"].get<std::string>().back() - '0',
-                      b = row["partner"].get<std::string>().back() - '0';
+            const std::string a = row["fragment"], b = row["partner"];
+            const Pose a_place = truth(name, a.back() - '0'), b_place = truth(name, b.back() - '0');
+            const Pose was = b_place.inverse() * a_place, now = poses.at(b).inverse() * poses.at(a);
             for (const double x : {-20.0, 0.0, 20.0})
-                for (const double z : {-20.0, 0.0, 20.0})
-                    most = std::max(most, error(name, a, b, Vec3(x, 0.0, z) * 1e-3));
+                for (const double z : {-20.0, 0.0, 20.0}) {
+                    const Vec3 there = a_place.inverse().apply(Vec3(x, 0.0, z) * 1e-3);
+                    most = std::max(most, glm::length(now.apply(there) - was.apply(there)));
+                }
         }
         return most;
     }
