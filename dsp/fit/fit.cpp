@@ -117,7 +117,7 @@ std::string_view name_of(FitVerdict verdict) {
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
     if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
-        quality.rms > settings.most_rms * settings.sigma)
+        quality.share < settings.least_share || quality.rms > settings.most_rms * settings.sigma)
         return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
     if (margin < settings.least_margin) return FitVerdict::ambiguous;

@@ -7,6 +7,7 @@
 // (constant pull of the moving points, contact, a hand on springs that yields in 50 ms).
 #pragma once
 
+#include "dsp/fit/acceptance.hpp"
 #include "dsp/fit/fit_energy.hpp"
 
 #include <array>
@@ -43,10 +44,11 @@ struct FitSettings {
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis: of all painted points together
-    double least_score = 0.25;  ///< below it the result is no_match
-    double most_rms = 0.8;  ///< rms distance within the overlap, as share of sigma: above it the result is no_match
-    double least_overlap = 0.0;  ///< m²; a smaller overlap is chance: no_match
-    double least_margin = 0.1;  ///< to the second best pose, as share of the best score
+    double least_score = Acceptance::least_score;  ///< below it the result is no_match
+    double most_rms = Acceptance::most_rms;  ///< rms distance in the overlap, share of sigma: above it it is no_match
+    double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
+    double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
+    double least_margin = Acceptance::least_margin;  ///< to the second best pose, as share of the best score
     double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double most_penetration = 0.5e-3;  ///< m
 };

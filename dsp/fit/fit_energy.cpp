@@ -216,7 +216,7 @@ contact::ContactSum FitEnergy::look_at_half(FitHalf half, const Pose& pose) noex
 
 FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     FitQuality q;
-    double squares = 0.0, covered = 0.0, signed_sum = 0.0;
+    double squares = 0.0, covered = 0.0, signed_sum = 0.0, area = 0.0;
     std::size_t seen = 0;
     const Pose poses[2] = {pose, pose.inverse()};
     for (std::size_t s = 0; s < 2; ++s) {
@@ -237,6 +237,7 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
             covered += share;
             squares += share * here.value * here.value;
             signed_sum += share * here.value;
+            area += 0.5 * share * points.area;
             if (s == 0) q.overlap += share * points.area;
         }
         for (const Vec3& p : points.outline) {
@@ -245,6 +246,7 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
         }
     }
     q.covered = 0.5 * covered;
+    q.share = std::min(1.0, area / std::max(std::min(moving_->area, fixed_->area), 1e-12));
     q.rms = covered > 0.0 ? std::sqrt(squares / covered) : 0.0;
     q.gap = covered > 0.0 ? signed_sum / covered : 0.0;
     q.penetration = std::max(0.0, -median_of(depths_, seen, 0.01));

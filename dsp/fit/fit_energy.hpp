@@ -48,6 +48,7 @@ struct FitQuality {
     double covered = 0.0;  ///< share of both paints within 2σ of the other and with opposite normals
     double rms = 0.0;  ///< m, of the distances within the overlap
     double overlap = 0.0;  ///< m² of the moving paint that is covered
+    double share = 0.0;  ///< covered area of both, on average, as a share of the smaller paint; at most 1
     double penetration = 0.0;  ///< m, exceeded by 1 % of the points of paint and outline of both sides
     double gap = 0.0;  ///< m, mean signed distance within the overlap: positive when bone is missing between
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline

@@ -50,24 +50,24 @@ FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, con
     for (const FragmentSurface& fragment : fragments)
         if (fragment.distance) widen_for(settings.fit, fragment.distance->spacing);
     settings.fit.polish = std::max(polish, 0.5 * settings.fit.polish);
+    paint_.assign(fragments.size(), 0.0);
     for (std::size_t n = 0; n < fragments.size(); ++n)
         for (const auto& face : split_faces(fragments[n].points)) {
             if (face.size() < 40) continue;
             faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.most_points)});
+            paint_[n] += faces_.back().surface.area;
         }
     if (faces_.size() > settings.most_faces)
         throw Error(
             fmt::format("the fragments have {} painted faces and at most {} can be matched: paint less, or "
                         "leave out fragments",
                         faces_.size(), settings.most_faces));
-    std::size_t points = 0, outline = 0;
     for (const Face& face : faces_) {
-        points = std::max(points, face.surface.position.size());
-        outline = std::max(outline, face.surface.outline.size());
+        most_face_points_ = std::max(most_face_points_, face.surface.position.size());
+        most_outline_ = std::max(most_outline_, face.surface.outline.size());
     }
     const std::size_t joined = std::max<std::size_t>(settings.most_joined, 1);
-    for (std::size_t n = 0; n < joined && !faces_.empty(); ++n)
-        energies_.emplace_back(faces_.front().surface, faces_.front().surface).reserve(points, outline);
+    for (std::size_t n = 0; n < joined && !faces_.empty(); ++n) energies_.push_back(make_energy());
     pairs_.reserve(faces_.size() * faces_.size());
     joined_.reserve(joined);
     stood_.reserve(fragments.size());
@@ -97,8 +97,15 @@ Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<co
                            poses[static_cast<std::size_t>(f.fragment)].inverse() * moving);
 }
 
-FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const Pose> starts) noexcept {
-    FitEnergy& e = energy(0, pair);
+FitEnergy FragmentMatcher::make_energy() const {
+    FitEnergy made(faces_.front().surface, faces_.front().surface);
+    made.reserve(most_face_points_, most_outline_);
+    return made;
+}
+
+FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
+                                               std::span<const Pose> starts) const noexcept {
+    e.rebind(faces_[pair.moving].surface, faces_[pair.fixed].surface);
     const FitSettings& fit = settings.fit;
     const double gyration = e.moving().gyration;
     int steps = 0;
@@ -174,7 +181,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
                                            {beside - u, flat_on},
                                            {beside + v, flat_on},
                                            {beside - v, flat_on}}};
-        solved_.push_back(solve(pair, starts));
+        solved_.push_back(solve(energies_[0], pair, starts));
     }
     // In order of score; a chance fit far from where the fragment is held is not what the hand intends.
     const auto worth = [this](const Solved& s) {
@@ -234,7 +241,7 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
         starts[static_cast<std::size_t>(n)] = {Vec3(0.0),
                                                glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on};
     solved_.clear();
-    solved_.push_back(solve(pair, starts));
+    solved_.push_back(solve(energies_[0], pair, starts));
     match_ = {};
     match_.moving = moving;
     lead(solved_.front(), poses, stands);

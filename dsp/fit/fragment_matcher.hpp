@@ -13,6 +13,7 @@
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/fit_energy.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -34,12 +35,23 @@ struct FragmentMatch {
     int faces = 0;  ///< number of face pairs that were fitted together
 };
 
+/// Where one pair of faces of two fragments fits, wherever the fragments are.
+struct FacePairFit {
+    std::size_t moving = 0, fixed = 0;  ///< faces, as the matcher counts them
+    Pose pose;  ///< of the moving fragment in the frame of the fixed one
+    double score = -1.0, second = 0.0;  ///< of the best pose and of the second best; negative: none
+    double overlap = 0.0;  ///< m² on each other
+
+    FacePairFit inverse() const { return {fixed, moving, pose.inverse(), score, second, overlap}; }
+    /// How much there is to it: small patches fit by chance.
+    double worth() const { return score > 0.0 ? score * std::sqrt(overlap) : 0.0; }
+};
+
 /// Faces of a fragment from the middle are smaller than whole fractures: the required overlap is smaller.
 inline FitSettings settings_of_faces() noexcept {
     FitSettings settings;
     settings.widest = 3e-3;
     settings.outline = 0.0;
-    settings.least_score = 0.2;
     settings.most_penetration = 0.6e-3;
     // Bias from chips accumulates along a chain of pieces: half of the limit for a single pair.
     settings.polish = 0.05e-3;
@@ -66,6 +78,9 @@ public:
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
+    /// A painted face, numbered over all fragments; and its fragment.
+    const FitSurface& face(std::size_t n) const noexcept { return faces_[n].surface; }
+    int fragment_of(std::size_t face) const noexcept { return faces_[face].fragment; }
     std::size_t faces_of(int fragment) const noexcept;
 
     /// Local search from the present poses. `stands`: fragments that count as partners, except the moving one.
@@ -74,6 +89,17 @@ public:
     /// relative to its partner's present pose. When the set of placed fragments changes, the search restarts.
     const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void begin_search() noexcept;
+
+    /// Tries one pair of faces with all rotations, and from `held` (m: the moving fragment in the frame of the fixed
+    /// one). For preparations: may run in several threads at once, each with an energy of its own, from `make_energy`.
+    FacePairFit fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed, const Pose& held) const;
+    FitEnergy make_energy() const;
+    /// Starts where a pair of faces fits and fits all faces that fit there together, as `near` does. The moving
+    /// fragment is that of `pair.moving`.
+    const FragmentMatch& place(const FacePairFit& pair, std::span<const Pose> poses,
+                               std::span<const char> stands) noexcept;
+    /// Quality of a pair of faces at poses of all fragments.
+    FitQuality quality_of(FitEnergy& energy, std::size_t moving, std::size_t fixed, std::span<const Pose> poses) const;
     /// Number of face pairs that `search` still has to try; 0: it starts over.
     std::size_t left() const noexcept { return left_; }
 
@@ -102,12 +128,15 @@ private:
     FitEnergy& energy(std::size_t slot, const Pair& pair) noexcept;
     Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
     Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
-    Solved solve(const Pair& pair, std::span<const Pose> starts) noexcept;
+    Solved solve(FitEnergy& energy, const Pair& pair, std::span<const Pose> starts) const noexcept;
+    double least_overlap(int moving, int partner) const noexcept;
     void join(const Solved& best, const Pose& at, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     bool same_search(int moving, std::span<const char> stands) noexcept;
 
     std::vector<Face> faces_;
+    std::vector<double> paint_;  ///< m², painted area of each fragment
+    std::size_t most_face_points_ = 0, most_outline_ = 0;
     std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs that are fitted together
     std::vector<Pair> pairs_;
     std::vector<Solved> solved_;

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <numbers>
+#include <vector>
 
 namespace tactus::fit {
 
@@ -113,7 +115,53 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     together.look(solver.state().proxy);
     find_free(free_, together(solver.state().proxy, contact::ContactParts::all).stiffness,
               faces_[best.pair.moving].surface.gyration, fit.least_hold);
-    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, fit);
+    FitSettings required = fit;
+    required.least_overlap = least_overlap(match_.moving, match_.partner);
+    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, required);
+}
+
+double FragmentMatcher::least_overlap(int moving, int partner) const noexcept {
+    const auto paint = [this](int n) { return paint_[static_cast<std::size_t>(n)]; };
+    return std::max(settings.fit.least_overlap,
+                    Acceptance::least_paint_share * std::min(paint(moving), paint(partner)));
+}
+
+FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed,
+                                       const Pose& held) const {
+    constexpr int spins = 16;
+    const FitSurface &a = faces_[moving].surface, &b = faces_[fixed].surface;
+    const Vec3 about = direction_of(b.mean_normal);
+    const Quat flat_on = opposed(a, b, {1.0, 0.0, 0.0, 0.0});
+    std::vector<Pose> starts;
+    for (int n = 0; n < spins; ++n)
+        starts.push_back({Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on});
+    const Pose from = between_centres(a, b, held);
+    if (glm::length(from.position) < settings.near) {
+        const Quat facing = opposed(a, b, from.orientation);
+        const Vec3 beside = from.position - glm::dot(from.position, about) * about;
+        starts.insert(starts.end(), {from, {Vec3(0.0), from.orientation}, {Vec3(0.0), facing}, {beside, facing}});
+    }
+    const Solved solved = solve(energy, {moving, fixed, 0.0}, starts);
+    FacePairFit found{moving, fixed, between_bodies(a, b, solved.best.pose), solved.best.score, solved.second, 0.0};
+    found.overlap = energy.quality(solved.best.pose, settings.fit.sigma).overlap;
+    return found;
+}
+
+const FragmentMatch& FragmentMatcher::place(const FacePairFit& pair, std::span<const Pose> poses,
+                                            std::span<const char> stands) noexcept {
+    match_ = {};
+    match_.moving = faces_[pair.moving].fragment;
+    const Pose at = between_centres(faces_[pair.moving].surface, faces_[pair.fixed].surface, pair.pose);
+    lead({{pair.moving, pair.fixed, 0.0}, {at, pair.score}, pair.second}, poses, stands);
+    return match_;
+}
+
+FitQuality FragmentMatcher::quality_of(FitEnergy& energy, std::size_t moving, std::size_t fixed,
+                                       std::span<const Pose> poses) const {
+    energy.rebind(faces_[moving].surface, faces_[fixed].surface);
+    set_law(energy, 0.0);
+    const Pose& body = poses[static_cast<std::size_t>(faces_[moving].fragment)];
+    return energy.quality(centres({moving, fixed, 0.0}, body, poses), settings.fit.sigma);
 }
 
 }  // namespace tactus::fit

@@ -3,6 +3,7 @@
 
 #include "dsp/coupling/scene.hpp"
 #include "dsp/fit/as_scanned.hpp"
+#include "dsp/fit/overlap.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 
@@ -19,7 +20,8 @@ struct FragmentMatcher {
     static constexpr auto about =
         "Searches in the background for a fit of the held fragment to the placed ones: from its present pose, on all "
         "faces together; if none fits nearby, each of its faces on each other face in turn. A fit that only repeats "
-        "the position in the scan is reported as ambiguous.";
+        "the position in the scan is reported as ambiguous, one inside of a placed fragment as blocked. The thresholds "
+        "are those of the plan verbs.";
 
     In<tactus::coupling::Scene> scene{"case_scene.scene of the same plan"};
     In<double> held{"place of the held fragment; -1: none"};
@@ -40,7 +42,7 @@ struct FragmentMatcher {
     Choice partners{{"standing", "all"}, "standing: fragments that are locked or fitted; all: every other fragment"};
     Choice reach{{"near", "anywhere"},
                  "near: search from the present pose; anywhere: also each face on each other face in turn"};
-    Param least_score{"0.2", "0", "1", "minimum score of a match"};
+    Param least_score{"0", "0", "1", "minimum score of a match, where it is more than the 0.3 that every fit needs"};
     Param points{structural, "700", "100", "20000", "number of points per face"};
 
     void prepare(const Setup& setup) {
@@ -90,12 +92,12 @@ private:
             const coupling::SceneObject& other = scene->objects[n];
             if (!is_valid(other.pose)) return nothing();
             poses_[n] = Pose{other.pose.position, glm::normalize(other.pose.orientation)} * other.body.home.inverse();
-            const bool goes_along = n == static_cast<std::size_t>(place) || (mine.unit >= 0 && mine.unit == other.unit);
-            stands_[n] = !goes_along && other.body.map && (other.stands || partners.index == 1);
+            stands_[n] = !goes_along(static_cast<std::size_t>(place), n) && other.body.map &&
+                         (other.stands || partners.index == 1);
         }
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
-        matcher_->settings.fit.least_score = least_score;
+        matcher_->settings.fit.least_score = std::max<double>(fit::Acceptance::least_score, least_score);
         fit::FragmentMatch match = judged(matcher_->near(place, poses, stands));
         if (match.verdict != fit::FitVerdict::fit && reach.index == 1) {
             if (was_ != place) matcher_->begin_search();
@@ -130,7 +132,33 @@ private:
         if (fit::is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map,
                                into))
             match.verdict = fit::FitVerdict::ambiguous;
+        else if (lies_in_placed(match)) match.verdict = fit::FitVerdict::blocked;
         return match;
+    }
+
+    /// Whether what moves along would lie in a placed fragment. Those that are not at their place may be anywhere.
+    bool lies_in_placed(const fit::FragmentMatch& match) const noexcept {
+        const auto moving = static_cast<std::size_t>(match.moving);
+        const Pose motion = match.pose * poses_[moving].inverse();
+        const auto placed = [&](std::size_t n, const Pose& pose) {
+            const coupling::Body& body = scene->objects[n].body;
+            return fit::PlacedBone{plan->bones[n].points, body.map, pose, pose * body.home};
+        };
+        for (std::size_t m = 0; m < scene->count; ++m) {
+            if (m != moving && !goes_along(moving, m)) continue;
+            if (!scene->objects[m].body.map) continue;
+            const fit::PlacedBone mine = placed(m, motion * poses_[m]);
+            for (std::size_t n = 0; n < scene->count; ++n)
+                if (stands_[n] &&
+                    fit::lie_in_each_other(mine, placed(n, poses_[n]), matcher_->settings.fit.most_penetration))
+                    return true;
+        }
+        return false;
+    }
+
+    bool goes_along(std::size_t moving, std::size_t other) const noexcept {
+        const int unit = scene->objects[moving].unit;
+        return moving == other || (unit >= 0 && unit == scene->objects[other].unit);
     }
 
     void nothing() noexcept {

@@ -28,5 +28,7 @@ Verb snap_verb();
 Verb passivity_verb();
 Verb device_verb();
 Verb saw_verb();
+Verb fits_verb();
+Verb assembly_verb();
 
 }  // namespace tactus::bench

@@ -248,6 +248,7 @@ TEST_CASE("a few dozen voxels that lie on each other are no fit, however well th
     fit::widen_for(settings, Vec3(1e-3));
     fit::FitQuality quality;
     quality.score = 0.9;
+    quality.share = 0.9;
     quality.overlap = 100e-6;
     CHECK(fit::judge(quality, false, 0.5, settings) == fit::FitVerdict::fit);
     quality.overlap = 25e-6;

@@ -93,6 +93,30 @@ TEST_CASE("the matcher does not lead to a fit that only repeats the scan, wherev
     }
 }
 
+TEST_CASE("the matcher does not lead a fragment into a placed one, however well its face fits its partner") {
+    const Vec3 far = Vec3(6.0, 2.0, -3.0) * mm;
+    const auto displaced = scanned(far);
+    const ShownCase shown(displaced);
+    const Pose there{-far, {1.0, 0.0, 0.0, 0.0}};
+    for (const bool in_the_way : {false, true}) {
+        CAPTURE(in_the_way);
+        coupling::Scene now = shown.now;
+        now.objects[1].pose = beside * there * now.objects[1].body.home;
+        // The third one is taken to stand where the right half belongs, turned so that no face of it looks there.
+        now.objects[2].stands = true;
+        const Pose place{Vec3(in_the_way ? 14.0 : 90.0, 0.0, 0.0) * mm, rotation_by({0.0, 0.0, 3.14159265})};
+        now.objects[2].pose = place * now.objects[2].body.home;
+        NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
+        matcher.asset("plan", displaced);
+        matcher.feed("scene", now).feed<double>("held", 1.0).feed<bool>("engaged", true);
+        matcher.prepare();
+        matcher.run(2);
+        CHECK(matcher.last<double>("partner") == 0.0);
+        CHECK(matcher.last<bool>("fits") == !in_the_way);
+        CHECK(matcher.last<double>("verdict") == (in_the_way ? 4.0 : 0.0));
+    }
+}
+
 TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
     const auto bone = std::make_shared<const bone::Bone>(broken()->bones[0]);
     NodeHarness node("brush", servo);

@@ -110,6 +110,11 @@ std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings)
     if (q.overlap < settings.least_overlap)
         return fmt::format("the faces lie on each other on less than {:.0f} mm², which any two surfaces do",
                            settings.least_overlap * 1e6);
+    if (q.share < settings.least_share)
+        return fmt::format("the faces lie on each other on {:.0f} % of the smaller one, which any two surfaces do",
+                           q.share * 100.0);
+    if (q.rms < settings.most_rms * settings.sigma)
+        return fmt::format("only {:.0f} mm² of the painted fracture fit, which is chance", q.overlap * 1e6);
     return fmt::format("the faces do not match: their distances are spread over more than {:.2f} mm",
                        settings.most_rms * settings.sigma * 1e3);
 }
@@ -126,9 +131,6 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
                                  ? "bring it nearer to its place, correct the paint, or use --mode global"
                              : only == fit::Arrangement::none ? "name the partner, or correct the paint"
                                                               : "correct the paint";
-    if (found.is_small)
-        return fmt::format("only {:.0f} mm² of the painted fracture fit, which is chance; {}",
-                           match.quality.overlap * 1e6, next);
     if (found.inside != fit::Arrangement::none) {
         const std::string& other = plan.fragments[static_cast<std::size_t>(found.inside)].name;
         return fmt::format(

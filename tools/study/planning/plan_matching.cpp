@@ -3,6 +3,7 @@
 
 #include "dsp/fit/as_scanned.hpp"
 #include "dsp/fit/assemblies.hpp"
+#include "dsp/fit/overlap.hpp"
 #include "tools/study/bones/intact_side.hpp"
 
 #include <algorithm>
@@ -34,67 +35,38 @@ std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
 }  // namespace
 
 PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder)
-    : loaded_(load_fragments(plan, folder, cases::Paint::or_proposed)) {
+    : PlanMatching(load_fragments(plan, folder, cases::Paint::or_proposed)) {}
+
+PlanMatching::PlanMatching(std::vector<CaseFragment> fragments) : loaded_(std::move(fragments)) {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
     fit::MatcherSettings settings;
     settings.most_points = 2000;
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
 
-namespace {
-
-// Small patches of any two surfaces fit by chance.
-constexpr double least_fitted_area = 30e-6;  // m²
-constexpr double least_fitted_share = 0.1;  // of the paint of the fragment that has less
-constexpr double most_deep_area = 10e-6;  // m²: as much of a surface may lie deep in another bone
-
-double painted_area(const CaseFragment& fragment) {
-    double area = 0.0;
-    for (const contact::SurfacePoint& p : fragment.bone.points)
-        if (p.label == contact::surface_label::fracture) area += p.area;
-    return area;
+bool PlanMatching::lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const {
+    const CaseFragment &mine = fragment(a), &other = fragment(b);
+    return fit::lie_in_each_other({mine.bone.points, &mine.map, at, at}, {other.bone.points, &other.map, there, there},
+                                  settings().fit.most_penetration);
 }
 
-/// m² of the points' surface deeper than `depth` in the other bone.
-double deep_area(const CaseFragment& fragment, const Pose& pose, const CaseFragment& other, const Pose& other_pose,
-                 double depth) {
-    const Pose into = other_pose.inverse() * pose;
-    double area = 0.0;
-    for (const contact::SurfacePoint& p : fragment.bone.points) {
-        const volume::Sample here = other.map.sample(into.apply(p.position));
-        if (here.inside && here.value < -depth) area += p.area;
-    }
-    return area;
+double PlanMatching::overlap_volume(int a, const Pose& at, int b, const Pose& there) const {
+    return fit::overlap_volume(fragment(a).bone.distance, at, fragment(b).map, there);
 }
 
-double coarsest(const CaseFragment& fragment) {
-    const Vec3& spacing = fragment.bone.distance.spacing;
-    return std::max({spacing.x, spacing.y, spacing.z});
-}
-
-}  // namespace
-
-double PlanMatching::least_overlap(const fit::FragmentMatch& made) const {
-    return std::max(least_fitted_area, least_fitted_share * std::min(painted_area(fragment(made.moving)),
-                                                                     painted_area(fragment(made.partner))));
-}
-
-/// Looks for the shown fragment that what moves would lie in most, on more than what two scans differ by.
-void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement) const {
+/// Looks for the fragment that what moves would lie in most.
+void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement,
+                                    const std::vector<char>& counts) const {
     const int moving = found.match.moving, count = static_cast<int>(arrangement.size());
     const Pose motion = found.match.pose * arrangement.pose(moving).inverse();
     for (int m = 0; m < count; ++m) {
         if (!arrangement.move_together(moving, m)) continue;
         const Pose at = m == moving ? found.match.pose : motion * arrangement.pose(m);
         for (int n = 0; n < count; ++n) {
-            if (arrangement.move_together(moving, n) || arrangement.is_hidden(n)) continue;
-            const CaseFragment &mine = fragment(m), &other = fragment(n);
-            const Pose& there = arrangement.pose(n);
-            const double depth = std::max({settings().fit.most_penetration, coarsest(mine), coarsest(other)});
-            if (!(std::max(deep_area(mine, at, other, there, depth), deep_area(other, there, mine, at, depth)) >
-                  most_deep_area))
-                continue;
-            const double volume = fit::overlap_volume(mine.bone.distance, at, other.map, there);
+            if (arrangement.move_together(moving, n)) continue;
+            if (counts.empty() ? arrangement.is_hidden(n) : !counts[static_cast<std::size_t>(n)]) continue;
+            if (!lie_in_each_other(m, at, n, arrangement.pose(n))) continue;
+            const double volume = overlap_volume(m, at, n, arrangement.pose(n));
             if (found.inside != fit::Arrangement::none && !(volume > found.inside_volume)) continue;
             found.inside = n;
             found.inside_volume = volume;
@@ -102,7 +74,8 @@ void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& ar
     }
 }
 
-PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const {
+PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
+                               const std::vector<char>& counts) const {
     PlanMatch found;
     found.match = made;
     found.from = arrangement.pose(made.moving);
@@ -114,9 +87,7 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
         fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (found.match.verdict == fit::FitVerdict::fit) {
-        found.is_small = made.quality.overlap < least_overlap(made);
-        if (found.is_small) found.match.verdict = fit::FitVerdict::no_match;
-        else look_for_overlap(found, arrangement);
+        look_for_overlap(found, arrangement, counts);
         if (found.inside != fit::Arrangement::none) found.match.verdict = fit::FitVerdict::blocked;
     }
     found.moved = motion_between(found.from, made.pose, middle_of(points));

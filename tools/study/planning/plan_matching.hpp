@@ -22,7 +22,6 @@ struct PlanMatch {
     Pose from;                ///< pose of the fragment before
     Motion moved;             ///< motion of its centre from there
     bool was_painted = false; ///< the paint comes from the file; false: it was proposed
-    bool is_small = false;  ///< what fits is too small a part of the painted fracture; the verdict is `no_match`
     int inside = fit::Arrangement::none;  ///< fragment that it would lie in; the verdict is `blocked`
     double inside_volume = 0.0;  ///< m³ of both
     bool is_apart = false;  ///< it fits a fragment that is not connected to what stands, and nothing of that
@@ -37,11 +36,20 @@ class PlanMatching {
 public:
     /// Throws Error for a file that is missing or has changed.
     PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder);
+    explicit PlanMatching(std::vector<CaseFragment> fragments);
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
     const fit::MatcherSettings& settings() const { return matcher_->settings; }
     const CaseFragment& fragment(int n) const { return loaded_[static_cast<std::size_t>(n)]; }
+    fit::FragmentMatcher& matcher() { return *matcher_; }
+    /// Whether two fragments lie in each other at these poses.
+    bool lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const;
+    /// m³ of both.
+    double overlap_volume(int a, const Pose& at, int b, const Pose& there) const;
+    /// A match with doubts. `counts`: fragments that it must not lie in; empty: all that are shown.
+    PlanMatch judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
+                     const std::vector<char>& counts = {}) const;
 
     /// Fits a fragment from its current pose. Fragments that move along are no partners. `only`: one partner.
     PlanMatch near(const fit::Arrangement& arrangement, int moving, Partners partners,
@@ -50,9 +58,7 @@ public:
     PlanMatch anywhere(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
 
 private:
-    double least_overlap(const fit::FragmentMatch& made) const;
-    void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement) const;
-    PlanMatch judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const;
+    void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement, const std::vector<char>& counts) const;
 
     std::vector<CaseFragment> loaded_;
     std::vector<fit::FragmentSurface> surfaces_;

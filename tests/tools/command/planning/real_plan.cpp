@@ -111,6 +111,34 @@ TEST_CASE(
     CHECK(found["target"]["median_there_mm"].get<double>() > 2.0);
 }
 
+TEST_CASE("two pieces of a broken hip that do not touch are not fitted to each other by chance, and both stay") {
+    const auto labels = shared() / "hip003_labels.nrrd";
+    if (!has(labels)) return;
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    for (const std::string part : {"1", "2"}) {
+        REQUIRE(folder
+                    .tactus("import " + labels.string() + " --label 2 --component " + part + " -o " +
+                            file("part" + part + ".vdb"))
+                    .code == 0);
+        REQUIRE(folder.tactus("export " + file("part" + part + ".vdb") + " -o " + file("part" + part + ".stl")).code ==
+                0);
+    }
+    const std::string plan = file("hip.plan.json");
+    REQUIRE(folder.tactus("plan new " + plan + " large=" + file("part1.stl") + " small=" + file("part2.stl")).code ==
+            0);
+    const Outcome alone = folder.tactus("plan snap " + plan + " small large --mode global --json");
+    INFO(alone.out << alone.err);
+    CHECK(alone.code == 1);
+    CHECK(json::parse(alone.out)["placed"] == false);
+    CHECK_FALSE(json::parse(alone.out)["reason"].is_null());
+    const Outcome together = folder.tactus("plan assemble " + plan + " --json");
+    INFO(together.out << together.err);
+    CHECK(together.code == 1);
+    CHECK(json::parse(together.out)["placed"].empty());
+    CHECK(json::parse(together.out)["stays"].size() == 1);
+}
+
 TEST_CASE("the shifted part of a pelvis is found and laid on its reference by itself") {
     const auto displaced = shared() / "hemipelvis_displaced.ply";
     if (!has(displaced)) return;

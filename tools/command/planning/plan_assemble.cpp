@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan assemble: puts all shown fragments of a plan together as far as their fractures say how.
+#include "tools/command/planning/match_text.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/match_reason.hpp"
+#include "tools/study/planning/plan_assembly.hpp"
+#include "tools/study/planning/plan_words.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Adds a step for each fragment that is placed; the caller saves the plan.
+void add_steps(cases::CasePlan& plan, const study::PlanAssembly& made) {
+    const std::string now = cases::time_of_day();
+    for (const study::PlanMatch& placed : made.placed) {
+        cases::PlanStep step = study::step_of(plan, placed.match, "assemble");
+        step.time = now;
+        cases::add_step(plan, std::move(step));
+    }
+}
+
+std::string residual_words(const study::FragmentResidual& r) {
+    return r.faces == 0
+               ? "no face lies on another"
+               : fmt::format("{:.3f} mm rms over {} pairs of faces, {:.0f} mm²", r.rms * 1e3, r.faces, r.area * 1e6);
+}
+
+struct Told {
+    std::vector<std::string> reasons;  ///< of what stays
+    std::vector<std::string> problems;
+};
+
+Told told_of(const cases::CasePlan& plan, const study::PlanMatching& matching, const study::PlanAssembly& made,
+             const cases::PlanState& state) {
+    Told told;
+    for (const study::PlanMatch& stays : made.stays) {
+        std::string reason =
+            stays.as_scanned ? std::string(as_scanned_note)
+            : !state.arrangement.can_move(stays.match.moving)
+                ? "it is locked, and so is what it would go to; unlock one of them ('tactus plan unlock')"
+            : matching.faces_of(stays.match.moving) == 0
+                ? "it has no painted fracture; paint it, see 'tactus fracture-surface'"
+                : study::why_not_placed(plan, matching, state.arrangement, stays, fit::Arrangement::none,
+                                        study::MatchWay::anywhere);
+        told.reasons.push_back(std::move(reason));
+    }
+    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    for (const study::PlanOverlap& o : made.overlaps)
+        told.problems.push_back(fmt::format("'{}' and '{}' lie in each other with {:.0f} mm³; move or hide one of them",
+                                            name(o.first), name(o.second), o.volume * 1e9));
+    return told;
+}
+
+/// The whole part stays that the fragment belongs to.
+std::vector<std::string> part_of(const cases::CasePlan& plan, const study::PlanAssembly& made, int fragment) {
+    std::vector<std::string> names;
+    for (const auto& part : made.parts)
+        if (std::ranges::find(part, fragment) != part.end())
+            for (const int n : part) names.push_back(plan.fragments[static_cast<std::size_t>(n)].name);
+    return names;
+}
+
+Json json_of(const cases::CasePlan& plan, const study::PlanAssembly& made, const Told& told,
+             const cases::PlanState& state, bool is_done) {
+    Json placed = Json::array(), stays = Json::array(), residuals = Json::array();
+    for (const study::PlanMatch& p : made.placed) placed.push_back(match_json<Json>(plan, p, ""));
+    for (std::size_t n = 0; n < made.stays.size(); ++n) {
+        Json row = match_json<Json>(plan, made.stays[n], told.reasons[n]);
+        row["part"] = part_of(plan, made, made.stays[n].match.moving);
+        stays.push_back(std::move(row));
+    }
+    for (std::size_t n = 0; n < made.residuals.size(); ++n) {
+        const study::FragmentResidual& r = made.residuals[n];
+        if (state.arrangement.is_hidden(static_cast<int>(n))) continue;
+        residuals.push_back({{"fragment", plan.fragments[n].name},
+                             {"rms_mm", r.faces > 0 ? Json(r.rms * 1e3) : Json(nullptr)},
+                             {"overlap_mm2", r.area * 1e6},
+                             {"faces", r.faces}});
+    }
+    return {{"version", 1},
+            {"ok", is_done},
+            {"placed", placed},
+            {"stays", stays},
+            {"residuals", residuals},
+            {"assemblies", study::assembly_names(plan, state)},
+            {"problems", told.problems}};
+}
+
+void print(const cases::CasePlan& plan, const study::PlanAssembly& made, const Told& told,
+           const cases::PlanState& state) {
+    for (const study::PlanMatch& placed : made.placed) print_match(plan, placed, "");
+    for (std::size_t n = 0; n < made.stays.size(); ++n) {
+        const auto names = part_of(plan, made, made.stays[n].match.moving);
+        fmt::print("{} {} apart: {}\n", fmt::join(names, ", "), names.size() > 1 ? "stay" : "stays", told.reasons[n]);
+    }
+    for (std::size_t n = 0; n < made.residuals.size(); ++n)
+        if (!state.arrangement.is_hidden(static_cast<int>(n)))
+            fmt::print("{}: {}\n", plan.fragments[n].name, residual_words(made.residuals[n]));
+    for (const std::string& line : study::connection_words(plan, state)) fmt::print("{}\n", line);
+    for (const std::string& problem : told.problems) fmt::print("! {}\n", problem);
+}
+
+int assemble(const PlanChoice& choice) {
+    study::OpenPlan open(choice.plan);
+    cases::CasePlan& plan = open.plan;
+    const cases::PlanState before = cases::state_of(plan);
+    study::PlanMatching matching(plan, choice.plan.parent_path());
+    const study::PlanAssembly made = study::assemble(matching, before.arrangement, before.fits);
+    add_steps(plan, made);
+    const cases::PlanState state = cases::state_of(plan);
+    const Told told = told_of(plan, matching, made, state);
+    // All steps are written at once: a command that is stopped leaves the plan as it was.
+    if (!made.placed.empty()) cases::save_case_plan(plan, choice.plan);
+    const bool is_done = study::is_in_one_part(state) && told.problems.empty();
+    if (choice.json) fmt::print("{}\n", json_of(plan, made, told, state, is_done).dump(2));
+    else print(plan, made, told, state);
+    return is_done ? done : answer_is_no;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<PlanChoice>();
+    add_plan_options(verb, *choice);
+    return [choice] { return assemble(*choice); };
+}
+
+}  // namespace
+
+Verb plan_assemble_verb() {
+    return {
+        "assemble",
+        "put all shown fragments together, the surest fits first; 1: they are in several parts, or lie in each other",
+        add};
+}
+
+}  // namespace tactus::command
