@@ -65,7 +65,8 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0};
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
-        const Vec3 to = pose.position + axes_ * Vec3(first_ + pitch_ * static_cast<double>(n), -radius_, 0.0);
+        const double x = first_ + pitch_ * static_cast<double>(n);
+        const Vec3 to = pose.position + axes_ * Vec3(x, -shape_.behind(x) - radius_, 0.0);
         const bool jumped = glm::length(to - tooth.target) > jump;
         tooth.target = to;
         tooth.fresh = false;

@@ -32,7 +32,8 @@ struct SawBlade {
     Param sharpness{structural, "1", "0.1", "20",
                     "forces of the published teeth over those of these: the same thrust cuts that much more"};
     Flag sagittal{false,
-                  "the blade swings about an axis 'height' behind its teeth; otherwise it strokes along its length"};
+                  "the blade swings about an axis 'height' behind its teeth, which stand on an arc about it; otherwise "
+                  "it strokes along its length"};
     Param length{structural, "40 mm", "5 mm", "80 mm", "of the tooth line"};
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
     Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
@@ -60,6 +61,11 @@ struct SawBlade {
                                    carve::CutFront::most_nodes - 1));
         if (shape.kerf <= shape.thickness)
             setup.fail("the kerf is not wider than the blade, which would bind; widen 'kerf' or thin the blade");
+        if (shape.kind == saw::SawKind::sagittal && shape.height < 0.5 * (shape.length + shape.stroke) * 1.1)
+            setup.fail(fmt::format(
+                "a sagittal blade swings about an axis {:.3g} mm behind its teeth, too near for {:.3g} mm of "
+                "teeth and their stroke; lengthen 'height'",
+                shape.height * 1e3, shape.length * 1e3));
         law_ = saw::CuttingLaw{}.sharpened(sharpness);
         blade_.emplace(shape, stiffness);
         ticks_ = touching_ = thrust_ = deepest_ = 0.0;
