@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The saw beside published measurements, and what its front costs beside a blade without one.
+#include "assets/bone/bone.hpp"
 #include "dsp/contact/blade.hpp"
 #include "dsp/saw/published.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/saw_figure.hpp"
+#include "tools/study/saw/bone_trial.hpp"
 #include "tools/study/saw/saw_trial.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +29,7 @@ using Json = nlohmann::ordered_json;
 
 struct SawBenchChoice : BenchChoice {
     std::string figure;
+    std::vector<std::string> bones;
 };
 
 double cpu_seconds() {
@@ -195,7 +198,33 @@ Json costs(int rounds) {
             {"carve_fronts_over_samples", fronts / samples}};
 }
 
+/// Feed and removed volume over thrust on bones that were imported.
+int bench_bones(const SawBenchChoice& choice) {
+    constexpr double thrusts[] = {2.0, 4.0, 7.5, 12.0, 20.0};  // N
+    Json all = Json::array();
+    for (const std::string& file : choice.bones) {
+        const study::BoneTrial trial = study::run_bone_trial(bone::load_bone(file), thrusts);
+        Json rows = Json::array();
+        if (!choice.json)
+            fmt::print("{}: {:.1f} mm thick, {:.1f} mm wide, voxels of {:.2f} mm\n", file, trial.site.thickness * 1e3,
+                       trial.site.width * 1e3, trial.voxel * 1e3);
+        for (const study::BoneTrialRow& row : trial.rows) {
+            rows.push_back({{"thrust_N", row.thrust},
+                            {"feed_mm_per_s", row.feed * 1e3},
+                            {"removed_mm3_per_s", row.removal * 1e9},
+                            {"seconds", row.seconds}});
+            if (!choice.json)
+                fmt::print("  {:4.1f} N: feed {:6.3f} mm/s, {:6.2f} mm³/s over {:.2f} s\n", row.thrust, row.feed * 1e3,
+                           row.removal * 1e9, row.seconds);
+        }
+        all.push_back({{"bone", file}, {"thickness_mm", trial.site.thickness * 1e3}, {"rows", rows}});
+    }
+    if (choice.json) fmt::print("{}\n", all.dump(2));
+    return done;
+}
+
 int bench_saw(const SawBenchChoice& choice) {
+    if (!choice.bones.empty()) return bench_bones(choice);
     const Comparison made = compare();
     const Json cost = costs(choice.rounds);
     if (!choice.figure.empty()) picture::write_figure(picture::draw_saw_law(made.figure), choice.figure);
@@ -228,6 +257,9 @@ Verb saw_verb() {
                     .shows_default()
                     .range(1, 100);
                 verb.add("--figure", choice->figure, "draw the law and the measurements to this .svg or .png");
+                verb.add("--bone", choice->bones,
+                         "instead: feed and removed volume over thrust on this imported bone; may be given again")
+                    .one_each();
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_saw(*choice); };
             }};
