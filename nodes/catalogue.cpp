@@ -7,8 +7,13 @@
 
 // name of the struct, family (folder), file
 #define TACTUS_NODES(X)                 \
+    X(Absolute, math)                   \
     X(Actuator, vibration)              \
+    X(Add, math)                        \
     X(AdmittanceController, admittance) \
+    X(Adsr, time)                       \
+    X(And, logic)                       \
+    X(Angle, geometry)                  \
     X(AudioOutput, device)              \
     X(BladeContact, contact)            \
     X(Body, contact)                    \
@@ -17,51 +22,105 @@
     X(Button, device)                   \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
+    X(Clip, math)                       \
+    X(Clock, logic)                     \
+    X(Compare, logic)                   \
+    X(Compose, geometry)                \
     X(Constant, math)                   \
+    X(Counter, logic)                   \
+    X(Cross, geometry)                  \
+    X(Curve, math)                      \
+    X(Debounce, logic)                  \
+    X(Delay, time)                      \
     X(DeviceInput, device)              \
     X(DeviceOutput, device)             \
     X(DeviceWrench, device)             \
+    X(Differentiate, time)              \
     X(DirectCoupling, coupling)         \
+    X(Distance, geometry)               \
+    X(Divide, math)                     \
+    X(Dot, geometry)                    \
     X(DynamicCoupling, coupling)        \
+    X(Edge, logic)                      \
     X(Envelope, vibration)              \
     X(Equaliser, vibration)             \
+    X(Expression, math)                 \
     X(Filter, vibration)                \
     X(ForceShaping, coupling)           \
     X(FragmentMatcher, planning)        \
     X(Gain, vibration)                  \
+    X(Gate, logic)                      \
     X(GrantedPower, device)             \
     X(Grasp, coupling)                  \
     X(GripperInput, admittance)         \
     X(GripperOutput, admittance)        \
     X(HeldWeight, admittance)           \
     X(Insertion, contact)               \
+    X(Integrate, time)                  \
+    X(Interpolate, geometry)            \
+    X(Inverse, geometry)                \
+    X(JoinPose, geometry)               \
+    X(JoinTwist, geometry)              \
+    X(JoinVector, geometry)             \
+    X(JoinWrench, geometry)             \
     X(KerfHeat, contact)                \
+    X(Latch, logic)                     \
+    X(LookAt, geometry)                 \
     X(Magnitude, math)                  \
+    X(Maximum, math)                    \
+    X(Minimum, math)                    \
     X(Mix, vibration)                   \
+    X(Multiply, math)                   \
+    X(Negate, math)                     \
+    X(Noise, vibration)                 \
+    X(Normalise, geometry)              \
+    X(Not, logic)                       \
+    X(Or, logic)                        \
+    X(Oscillator, vibration)            \
     X(PassivityObserver, coupling)      \
     X(PlanFrame, training)              \
     X(PointProxy, coupling)             \
     X(Probe, record)                    \
     X(QuasiStaticCoupling, coupling)    \
+    X(RandomNumber, time)               \
     X(Range, math)                      \
     X(Record, record)                   \
+    X(Rotate, geometry)                 \
+    X(SampleAndHold, logic)             \
     X(Saw, vibration)                   \
     X(SawBlade, contact)                \
     X(Scene, contact)                   \
+    X(Select, logic)                    \
+    X(Sequencer, logic)                 \
     X(Shape, contact)                   \
     X(SimulatedHead, device)            \
     X(Sine, math)                       \
+    X(Slew, time)                       \
+    X(SlowOscillator, time)             \
+    X(Smooth, time)                     \
     X(SnapToFit, coupling)              \
     X(SpectralMonitor, vibration)       \
     X(SpectrumAnalyser, vibration)      \
     X(SphereContact, contact)           \
     X(SphereProxy, coupling)            \
+    X(SplitPose, geometry)              \
+    X(SplitTwist, geometry)             \
+    X(SplitVector, geometry)            \
+    X(SplitWrench, geometry)            \
     X(Spring, coupling)                 \
+    X(Subtract, math)                   \
     X(Sweep, vibration)                 \
     X(Task, training)                   \
     X(TestRig, admittance)              \
+    X(Timer, logic)                     \
+    X(ToNumber, math)                   \
+    X(ToSignal, math)                   \
+    X(TransformPoint, geometry)         \
     X(VoxmapContact, contact)           \
-    X(Workspace, device)
+    X(Workspace, device)                \
+    X(Wrap, math)                       \
+    X(WrenchSum, geometry)              \
+    X(Xor, logic)
 
 namespace tactus::nodes {
 

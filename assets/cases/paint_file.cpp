@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/paint_file.hpp"
 
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/faces.hpp"
@@ -10,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace tactus::cases {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 constexpr double stroke_radius = 0.9e-3;  // m
 constexpr double rounding = 2e-6;  // m, more than the rounding of a position and a radius in the file
@@ -92,7 +92,7 @@ void paint_from_file(std::span<contact::SurfacePoint> points, const std::filesys
 
 void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file,
                      bool keep) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = Json::parse_or_null(text);
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(
             "{}: expected {{\"radius_mm\": r, \"paint\": [[x, y, z], ...], \"erase\": [[x, y, z], ...]}}", file));

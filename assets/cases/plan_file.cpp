@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/plan_file.hpp"
 
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -18,7 +18,7 @@ namespace tactus::cases {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 constexpr std::string_view format_name = "tactus plan";
 constexpr std::size_t most_fragments = 1000;
@@ -87,12 +87,12 @@ public:
     bool has(const char* key) const { return json_.contains(key); }
     const Json& at(const char* key) const {
         const auto found = json_.find(key);
-        if (found == json_.end()) fail(fmt::format("has no '{}'", key));
+        if (!found) fail(fmt::format("has no '{}'", key));
         return *found;
     }
     std::string text(const char* key) const {
         const Json& value = at(key);
-        if (!value.is_string() || !is_plain(value.get_ref<const std::string&>()))
+        if (!value.is_string() || !is_plain(value.as_text()))
             fail(fmt::format("has a '{}' that is not a one-line text", key));
         return value.get<std::string>();
     }
@@ -179,7 +179,7 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
     if (item.has("group")) step.group = item.text("group");
     if (item.has("fragments"))
         for (const Json& name : item.list("fragments")) {
-            if (!name.is_string() || !is_plain(name.get_ref<const std::string&>()))
+            if (!name.is_string() || !is_plain(name.as_text()))
                 item.fail("has a 'fragments' list with an element that is not a name");
             try {
                 step.fragments.push_back(find_fragment(plan, name.get<std::string>()));
@@ -244,13 +244,13 @@ void read_alternatives(CasePlan& plan, const Item& top) {
 Json parsed(std::string_view text, const std::string& file) {
     try {
         return Json::parse(text);
-    } catch (const Json::parse_error& error) {
+    } catch (const file::JsonSyntaxError& error) {
         // The parser counts bytes from 1 and reports the byte after the text when the text ends too early.
         const bool cut = error.byte > text.size();
         throw Error(fmt::format("{}: {} at byte {} of {}; {}", file, cut ? "the plan is cut short" : "not JSON",
                                 error.byte, text.size(), cut ? "copy the whole file again" : "a plan is a JSON file"));
-    } catch (const Json::exception&) {
-        throw Error(fmt::format("{}: a number is out of range", file));
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file, error.message()));
     }
 }
 

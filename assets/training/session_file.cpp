@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/training/session_file.hpp"
 
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 
 namespace tactus::training {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 
 std::string text_in(const Json& json, const char* key) {
     const auto found = json.find(key);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+    return found && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 SessionTask read_task(const Json& json, const std::string& file) {
@@ -38,9 +38,9 @@ SessionAttempt read_attempt(const Json& json, const std::string& file) {
     const std::string& name = attempt.folder;
     if (name.empty() || fs::path(name).has_parent_path() || name == "." || name == "..")
         throw Error(fmt::format("{}: is damaged: '{}' is no folder of an attempt", file, name));
-    if (const auto seconds = json.find("seconds"); seconds != json.end() && seconds->is_number())
+    if (const auto seconds = json.find("seconds"); seconds && seconds->is_number())
         attempt.seconds = seconds->get<double>();
-    if (const auto early = json.find("ended_early"); early != json.end() && early->is_boolean())
+    if (const auto early = json.find("ended_early"); early && early->is_boolean())
         attempt.ended_early = early->get<bool>();
     return attempt;
 }
@@ -49,7 +49,7 @@ SessionAttempt read_attempt(const Json& json, const std::string& file) {
 
 SessionFile load_session_file(const fs::path& path) {
     const std::string file = path.string();
-    const Json json = Json::parse(file::read_whole_file(path), nullptr, false);
+    const Json json = Json::parse_or_null(file::read_whole_file(path));
     if (!json.is_object() || !json.contains("format") || !json.contains("tasks") || !json.contains("attempts") ||
         !json["tasks"].is_array() || !json["attempts"].is_array())
         throw Error(fmt::format("{}: is damaged, or no session", file));

@@ -172,7 +172,7 @@ private:
 
     double thickness(const Vec3& p, const Vec3& feed) const {
         double solid = 0.0, hollow = 0.0;
-        for (double t = step_; t < deepest_site_site; t += step_) {
+        for (double t = step_; t < deepest_site; t += step_) {
             const Vec3 at = p + feed * t;
             if (d(at) >= 0.0 && t > 2.0 * step_ + 0.5e-3) break;
             // A scan blurs the bone's own surface: half a millimetre may look soft.

@@ -49,7 +49,7 @@ void GenerationBuilder::allocate() {
         }
         for (const compile::PlanInput& input : node.inputs) {
             if (!input.port->type) continue;
-            const bool is_signal = input.port->type == &value::signal && input.port->kind == InputKind::stream;
+            const bool is_signal = input.port->type == &value::signal && input.port->kind != InputKind::batch;
             if (is_signal) {
                 input.port->data = silence[static_cast<std::size_t>(node.group)];
                 input.port->stride = sizeof(float);

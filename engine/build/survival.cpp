@@ -36,6 +36,8 @@ void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std
     // A batch input was prepared for the rate of its source.
     if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
     if (input.port->kind != InputKind::any) return;
+    // What a probe reports and a recorder writes is that of one source.
+    if (!plan.nodes[static_cast<std::size_t>(wire.to_node)].outputs.empty()) return;
     std::string source = wire.asset;
     if (wire.from_node >= 0) {
         const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
@@ -53,6 +55,9 @@ std::vector<std::string> structures_of(const compile::Plan& plan) {
         std::string& text = texts.emplace_back(fmt::format("{} seed {}\n", node.type->name, plan.patch.seed));
         Describer describer(text);
         node.type->visit(node.instance.get(), describer);
+        for (const compile::PlanInput& input : node.inputs)
+            if (input.port->kind == InputKind::any && input.port->type)
+                text += fmt::format("{} takes {}\n", input.name, input.port->type->name);
     }
     for (const compile::PlanWire& wire : plan.wires)
         if (wire.to_input >= 0) describe_wire(plan, wire, texts[static_cast<std::size_t>(wire.to_node)]);

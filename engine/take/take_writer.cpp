@@ -2,6 +2,7 @@
 #include "engine/take/take_writer.hpp"
 
 #include "assets/bone/bone.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/group_runtime.hpp"
@@ -9,7 +10,6 @@
 #include "graph/patch/sub_patch.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -18,7 +18,7 @@
 
 namespace tactus::take {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 namespace fs = std::filesystem;
 
 namespace {

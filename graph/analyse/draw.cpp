@@ -23,9 +23,10 @@ struct Place {
     int column = 0, row = 0;
 };
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> colours{{{"pose", "#2563eb"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> colours{{{"pose", "#2563eb"},
                                                                                 {"wrench", "#dc2626"},
                                                                                 {"twist", "#7c3aed"},
+                                                                                {"vector", "#db2777"},
                                                                                 {"number", "#475569"},
                                                                                 {"bool", "#0d9488"},
                                                                                 {"signal", "#d97706"}}};

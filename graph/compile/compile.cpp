@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/compile.hpp"
 
+#include "graph/compile/decide_types.hpp"
 #include "graph/patch/sub_patch.hpp"
 
 #include <utility>
@@ -14,6 +15,7 @@ std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Prob
     patch::flatten(plan.patch, problems);
     if (problems.list.size() > earlier) return std::nullopt;
     resolve_nodes(plan, catalogue, problems);
+    decide_types(plan);
     form_groups(plan, problems);
     resolve_wires(plan, problems);
     // An order is only worth finding among wires that exist: otherwise one slip is reported twice.

@@ -144,12 +144,22 @@ private:
             return;
         }
         const ValueType& type = source_type();
-        if (port.kind == InputKind::any) port.type = &type;
+        if (port.kind == InputKind::any) take_type(port, type);
         if (port.type != &type)
             throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
                                     type.name, source_.to_node, source_.to_port, port.type->name));
         check_mode(port, type);
         port.period = plan_.groups[static_cast<std::size_t>(node(wire_.from_node).group)].period;
+    }
+
+    void take_type(Input& port, const ValueType& type) {
+        if (&type == &value::undecided)
+            throw Error(fmt::format("the type of '{}.{}' is not known: feed an input of '{}' by a node of known type",
+                                    source_.from_node, source_.from_port, source_.from_node));
+        if (!(port.takes & kind_of(type)))
+            throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
+                                    type.name, source_.to_node, source_.to_port, type_names(port.takes)));
+        if (!port.type) port.type = &type;
     }
 
     void check_mode(const Input& port, const ValueType& type) {

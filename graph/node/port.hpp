@@ -29,6 +29,7 @@ struct Input {
     InputKind kind = InputKind::value;
     bool is_optional = false;
     bool connected = false;
+    ValueKinds takes = kinds::every;  ///< of an input of several types
     // A batch: `count` values at `data`, taken at logical times `times`.
     int count = 0;
     const Flicks* times = nullptr;
@@ -90,11 +91,21 @@ struct Batch : Input {
     std::span<const Flicks> sample_times() const { return {times, static_cast<std::size_t>(count)}; }
 };
 
-/// An input of any type, for probes and recorders; `type` is that of the wire.
+/// An input of several types; `type` is that of the wire. In a node with an `AnyOut` all of them have one type.
 struct AnyIn : Input {
-    AnyIn(const char* about_ = "") {
+    AnyIn(const char* about_ = "", ValueKinds takes_ = kinds::every) {
+        takes = takes_;
         kind = InputKind::any;
         about = about_;
+    }
+    AnyIn(Optional, const char* about_ = "", ValueKinds takes_ = kinds::every) : AnyIn(about_, takes_) {
+        is_optional = true;
+    }
+
+    /// The value of this call, of `type`; the samples of a signal are adjacent.
+    template <class T>
+    const T* as() const {
+        return reinterpret_cast<const T*>(data);
     }
 };
 
@@ -112,6 +123,18 @@ struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
     Out& operator=(const Element<T>& value) {
         get() = value;
         return *this;
+    }
+};
+
+/// An output of the type that the wires give to the node's `AnyIn` inputs; `type` is known in `prepare`.
+struct AnyOut : Output {
+    AnyOut(const char* about_ = "") {
+        type = &value::undecided;
+        about = about_;
+    }
+    template <class T>
+    T* as() {
+        return reinterpret_cast<T*>(data);
     }
 };
 

@@ -3,8 +3,10 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <array>
 #include <bit>
 #include <new>
+#include <vector>
 
 namespace tactus::value {
 
@@ -13,6 +15,7 @@ namespace {
 constexpr std::string_view pose_columns[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
 constexpr std::string_view twist_columns[] = {"vx", "vy", "vz", "wx", "wy", "wz"};
 constexpr std::string_view wrench_columns[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
+constexpr std::string_view vector_columns[] = {"x", "y", "z"};
 constexpr std::string_view number_columns[] = {"value"};
 
 template <class T>
@@ -99,6 +102,17 @@ const ValueType wrench{
     .make_default = set_default<Wrench>,
 };
 
+const ValueType vector{
+    .name = "vector",
+    .size = sizeof(Vec3),
+    .columns = vector_columns,
+    .hash = hash_words<Vec3>,
+    .interpolate = [](const void* a, const void* b, double t,
+                      void* out) { *static_cast<Vec3*>(out) = mix(as<Vec3>(a), as<Vec3>(b), t); },
+    .to_columns = [](const void* p, double* out) { put(as<Vec3>(p), out); },
+    .make_default = [](void* out) { new (out) Vec3(0.0); },
+};
+
 const ValueType number{
     .name = "number",
     .size = sizeof(double),
@@ -128,4 +142,43 @@ const ValueType signal{
     .make_default = set_default<float>,
 };
 
+const ValueType undecided{
+    .name = "type of the input",
+    .size = sizeof(double),
+    .columns = {},
+    .hash = hash_words<double>,
+    .make_default = set_default<double>,
+};
+
+std::span<const ValueType* const> plain_types() {
+    static constexpr std::array<const ValueType*, 7> types{&number, &boolean, &signal, &vector, &pose, &twist, &wrench};
+    return types;
+}
+
 }  // namespace tactus::value
+
+namespace tactus {
+
+ValueKinds kind_of(const ValueType& type) {
+    unsigned bit = 1;
+    for (const ValueType* plain : value::plain_types()) {
+        if (plain == &type) return static_cast<ValueKinds>(bit);
+        bit <<= 1;
+    }
+    return kinds::snapshot;
+}
+
+std::string type_names(ValueKinds set) {
+    std::vector<std::string_view> names;
+    for (const ValueType* plain : value::plain_types())
+        if (set & kind_of(*plain)) names.push_back(plain->name);
+    if (set & kinds::snapshot) names.emplace_back("snapshot");
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+        text += names[i];
+    }
+    return text;
+}
+
+}  // namespace tactus

@@ -56,8 +56,30 @@ struct ValueType {
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
 };
 
+/// A set of value types, for inputs that take several: the bits of `kinds`.
+using ValueKinds = std::uint8_t;
+
+namespace kinds {
+inline constexpr ValueKinds number = 1, boolean = 2, signal = 4, vector = 8, pose = 16, twist = 32, wrench = 64;
+inline constexpr ValueKinds snapshot = 128;
+/// A sum of two has a meaning.
+inline constexpr ValueKinds addable = number | signal | vector | twist | wrench;
+/// All but large things.
+inline constexpr ValueKinds plain = addable | boolean | pose;
+inline constexpr ValueKinds every = plain | snapshot;
+}  // namespace kinds
+
+/// The one bit of `kinds` that a type has.
+ValueKinds kind_of(const ValueType& type);
+/// "number, vector or wrench".
+std::string type_names(ValueKinds kinds);
+
 namespace value {
-extern const ValueType pose, twist, wrench, number, boolean, signal;
+extern const ValueType pose, twist, wrench, vector, number, boolean, signal;
+/// Of an output whose type the wires of its node decide, until they have.
+extern const ValueType undecided;
+/// All plain types, those without snapshots.
+std::span<const ValueType* const> plain_types();
 
 template <SnapshotHandle T>
 inline const ValueType snapshot{
@@ -78,6 +100,7 @@ constexpr const ValueType& value_type() {
     if constexpr (std::is_same_v<T, Pose>) return value::pose;
     else if constexpr (std::is_same_v<T, Twist>) return value::twist;
     else if constexpr (std::is_same_v<T, Wrench>) return value::wrench;
+    else if constexpr (std::is_same_v<T, Vec3>) return value::vector;
     else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Ramp>) return value::number;
     else if constexpr (std::is_same_v<T, bool>) return value::boolean;
     else if constexpr (std::is_same_v<T, Signal>) return value::signal;

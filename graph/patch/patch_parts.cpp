@@ -18,8 +18,14 @@ namespace {
 struct SignalPorts final : MemberVisitor {
     explicit SignalPorts(std::string_view wanted_) : wanted(wanted_) {}
 
-    void input(std::string_view name, Input& port) override { look(name, port.type, port.unit, true); }
-    void output(std::string_view name, Output& port) override { look(name, port.type, port.unit, false); }
+    // A port of several types counts: whether it carries a signal, the wires decide.
+    void input(std::string_view name, Input& port) override {
+        const bool takes_signals = port.kind == InputKind::any && (port.takes & kinds::signal);
+        look(name, port.type == &value::signal || takes_signals, port.unit, true);
+    }
+    void output(std::string_view name, Output& port) override {
+        look(name, port.type == &value::signal || port.type == &value::undecided, port.unit, false);
+    }
 
     std::string_view wanted;
     std::vector<std::string> names;
@@ -27,8 +33,8 @@ struct SignalPorts final : MemberVisitor {
     std::string unit;
 
 private:
-    void look(std::string_view name, const ValueType* type, std::string_view its_unit, bool input) {
-        if (type != &value::signal) return;
+    void look(std::string_view name, bool may_be_signal, std::string_view its_unit, bool input) {
+        if (!may_be_signal) return;
         names.emplace_back(name);
         if (name != wanted) return;
         found = true;

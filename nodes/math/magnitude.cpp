@@ -7,17 +7,16 @@ namespace tactus::nodes {
 
 struct Magnitude {
     static constexpr auto about =
-        "Length of a force, velocity or position (or of a torque or angular velocity); absolute value of a number.";
+        "Length of a vector, force, velocity or position (or of a torque or angular velocity); absolute value of a "
+        "number.";
 
-    AnyIn in{"a wrench, twist, pose or number"};
+    AnyIn in{"what has a length", kinds::wrench | kinds::twist | kinds::pose | kinds::vector | kinds::number};
     Out<double> out{"the length, in SI units"};
     Choice part{{"linear", "angular"}, "linear: force, velocity, position; angular: torque, angular velocity"};
 
     void prepare(const Setup& setup) {
         if (!in.type) setup.fail("magnitude needs a wire to 'in'");
         const bool has_angular = in.type == &value::wrench || in.type == &value::twist;
-        if (!has_angular && in.type != &value::pose && in.type != &value::number)
-            setup.fail("magnitude takes a wrench, twist, pose or number, not a " + std::string(in.type->name));
         if (!has_angular && part.is("angular"))
             setup.fail("a " + std::string(in.type->name) + " has no angular part to take the magnitude of");
         first_ = part.is("angular") ? 3 : 0;

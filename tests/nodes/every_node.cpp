@@ -14,9 +14,11 @@ namespace {
 /// The types that an input of any type is tried with.
 std::vector<const ValueType*> wires_of(const NodeType& type) {
     NodeHarness probe(type);
-    if (!probe.takes_any()) return {&value::number};
-    if (type.name == "magnitude") return {&value::wrench, &value::twist, &value::pose, &value::number};
-    return {&value::number, &value::boolean, &value::pose, &value::twist, &value::wrench, &value::signal};
+    if (probe.takes() == 0) return {&value::number};
+    std::vector<const ValueType*> types;
+    for (const ValueType* any : value::plain_types())
+        if (probe.takes() & kind_of(*any)) types.push_back(any);
+    return types;
 }
 
 template <class Check>

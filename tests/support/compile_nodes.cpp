@@ -74,6 +74,15 @@ struct Truth {
 };
 TACTUS_NODE(Truth, out, in)
 
+struct Pair {
+    static constexpr auto about = "Two values of one type.";
+    AnyIn a{"first", kinds::number | kinds::signal};
+    AnyIn b{optional, "second", kinds::number | kinds::signal};
+    AnyOut out{"both"};
+    void process(const Tick&) noexcept {}
+};
+TACTUS_NODE(Pair, a, b, out)
+
 struct DeviceInput {
     static constexpr auto about = "Where a path begins.";
     static constexpr NodeRole role = NodeRole::hand_source;
@@ -93,10 +102,10 @@ TACTUS_NODE(DeviceOutput, in)
 }  // namespace
 
 compile::Catalogue test_catalogue() {
-    static const std::array types{&node_type_Source(),      &node_type_Relay(), &node_type_Sum(),
-                                  &node_type_Wave(),        &node_type_Gain(),  &node_type_Path(),
-                                  &node_type_Truth(),       &node_type_Stiff(), &node_type_DeviceInput(),
-                                  &node_type_DeviceOutput()};
+    static const std::array types{&node_type_Source(),      &node_type_Relay(),       &node_type_Sum(),
+                                  &node_type_Wave(),        &node_type_Gain(),        &node_type_Path(),
+                                  &node_type_Truth(),       &node_type_Pair(),        &node_type_Stiff(),
+                                  &node_type_DeviceInput(), &node_type_DeviceOutput()};
     return types;
 }
 

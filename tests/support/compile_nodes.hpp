@@ -7,7 +7,7 @@
 
 namespace tactus {
 
-/// The types below: source, relay, sum, wave, gain, path, truth, device_input, device_output.
+/// The types below: source, relay, sum, wave, gain, path, truth, pair, device_input, device_output.
 compile::Catalogue test_catalogue();
 
 struct Compiled {

@@ -111,6 +111,8 @@ NodeHarness::NodeHarness(const NodeType& type, Options options)
         if (port.kind == InputKind::any) port.type = options_.any;
         takes_blocks_ |= port.kind == InputKind::stream || (port.kind == InputKind::any && port.type == &value::signal);
     }
+    for (const OutputSlot& output : members_->outputs)
+        if (output.port->type == &value::undecided) output.port->type = options_.any;
     for (const OutputSlot& output : members_->outputs) takes_blocks_ |= output.port->type == &value::signal;
     for (auto& [name, asset] : members_->assets)
         if (!asset->is_optional) asset->loaded = sample_asset(asset->type_name);
@@ -143,6 +145,15 @@ NodeHarness& NodeHarness::disconnect(const std::string& name) {
     throw Error("no input '" + name + "'");
 }
 
+NodeHarness& NodeHarness::connect(const std::string& name) {
+    for (InputSlot& input : members_->inputs)
+        if (input.name == name) {
+            input.port->connected = true;
+            return *this;
+        }
+    throw Error("no input '" + name + "'");
+}
+
 NodeHarness& NodeHarness::disconnect_optional() {
     for (InputSlot& input : members_->inputs)
         if (input.port->is_optional) input.port->connected = false;
@@ -164,8 +175,10 @@ NodeHarness& NodeHarness::feed_bytes(const std::string& name, std::function<void
     throw Error("no input '" + name + "'");
 }
 
-bool NodeHarness::takes_any() const {
-    return std::ranges::any_of(members_->inputs, [](const InputSlot& i) { return i.port->kind == InputKind::any; });
+ValueKinds NodeHarness::takes() const {
+    for (const InputSlot& input : members_->inputs)
+        if (input.port->kind == InputKind::any) return input.port->takes;
+    return 0;
 }
 
 void NodeHarness::prepare() {
@@ -267,7 +280,7 @@ void NodeHarness::run(std::int64_t activations, std::uint64_t partition) {
         drive_params(index_);
         fill_inputs(index_, frames);
         spoil_signals();
-        const Tick tick{index_, options_.period, index_ == 0 ? 0 : options_.period, frames};
+        const Tick tick{index_, options_.period, options_.period, frames};
         {
             const RealtimeScope scope;
             type_.process(node_, tick);

@@ -79,6 +79,8 @@ public:
     /// Leaves an optional input without a wire.
     NodeHarness& disconnect(const std::string& input);
     NodeHarness& disconnect_optional();
+    /// Gives an optional input its wire back.
+    NodeHarness& connect(const std::string& input);
     /// Feeds an input by a function of the activation index.
     template <class T>
     NodeHarness& feed(const std::string& input, std::function<T(std::int64_t)> function) {
@@ -121,7 +123,8 @@ public:
     Report report() const;
 
     bool takes_blocks() const { return takes_blocks_; }
-    bool takes_any() const;
+    /// What an input of several types takes; 0: there is none.
+    ValueKinds takes() const;
     FakeHost host;
 
     /// The values of a device before each activation; by default they follow the feed.

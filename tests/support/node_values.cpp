@@ -110,7 +110,8 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
     } else if (&type == &value::wrench) {
         const Vec3 force = draw.vector(10.0);
         put(out, Wrench{force, draw.vector(0.5)});
-    } else if (&type == &value::number) put(out, draw.number(10.0));
+    } else if (&type == &value::vector) put(out, draw.vector(1.0));
+    else if (&type == &value::number) put(out, draw.number(10.0));
     else if (&type == &value::boolean) put(out, random.uniform(static_cast<std::uint64_t>(k)) < 0.5);
     else if (&type == &value::signal) {
         const double v = draw.number(1.0);

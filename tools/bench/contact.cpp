@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost per point of a pointshell against a voxmap, compared with OpenVDB sampling the same positions.
+#include "assets/file/json.hpp"
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/contact/shape.hpp"
@@ -10,7 +11,6 @@
 #include "tools/bench/contact_peer.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 constexpr int grid_size = 256;
 const std::string grid_name = fmt::format("{0}x{0}x{0}", grid_size);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a process of its own costs a device: from a commit of the engine to the first sample that knows its force, beside
 // the same driver inside the engine.
+#include "assets/file/json.hpp"
 #include "devices/hosted/clocks.hpp"
 #include "devices/hosted/hosted_device.hpp"
 #include "tools/bench/bench.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <pthread.h>
 #include <sys/mman.h>
@@ -20,7 +20,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct DeviceBenchChoice {
     double seconds = 5.0, rate = 1000.0, process_rate = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost per node: a chain of gains in this engine, in Pure Data and in scsynth.
 #include "engine/run/engine.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
@@ -12,7 +13,6 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <time.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@
 
 namespace tactus::bench {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 

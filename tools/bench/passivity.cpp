@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/study/passivity/bounces.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -29,7 +29,7 @@ int bench_passivity(const PassivityChoice& choice) {
     const std::vector<study::BounceRow> rows = study::throw_at_contacts(choice.matrix, tell);
     const bool all_ok = std::ranges::all_of(rows, &study::BounceRow::ok);
     if (choice.json) {
-        nlohmann::ordered_json json{{"ok", all_ok}, {"rows", nlohmann::ordered_json::array()}};
+        file::Json json{{"ok", all_ok}, {"rows", file::Json::array()}};
         for (const study::BounceRow& row : rows)
             json["rows"].push_back({{"node", row.node},
                                     {"device", row.device},

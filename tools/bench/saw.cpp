@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The saw beside published measurements, and what its front costs beside a blade without one.
 #include "assets/bone/bone.hpp"
+#include "assets/file/json.hpp"
 #include "dsp/contact/blade.hpp"
 #include "dsp/saw/kerf_heat.hpp"
 #include "dsp/saw/published.hpp"
@@ -11,7 +12,6 @@
 #include "tools/study/saw/saw_trial.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <ctime>
 
@@ -27,7 +27,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct SawBenchChoice : BenchChoice {
     std::string figure;

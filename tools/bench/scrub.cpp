@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost of random access to a take: repeating the run once, and then each jump.
+#include "assets/file/json.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/view/take_bench.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -45,7 +45,7 @@ int bench_scrub(const ScrubBenchChoice& choice) {
     };
     const double kept_mb = static_cast<double>(bench.scene()->kept_bytes()) * 1e-6;
     if (choice.json) {
-        const nlohmann::ordered_json json{
+        const file::Json json{
             {"seconds", bench.length()},       {"repeated_ms", repeated_ms},    {"kept_mb", kept_mb},
             {"jump_median_ms", quantile(0.5)}, {"jump_p99_ms", quantile(0.99)}, {"jump_max_ms", jumps.back()}};
         fmt::print("{}\n", json.dump(2));

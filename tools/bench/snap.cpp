@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Success rate of snap-to-fit on simulated fractures, compared with common variants of ICP.
+#include "assets/file/json.hpp"
 #include "assets/library/mandible.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/fit.hpp"
@@ -14,7 +15,6 @@
 #include "tools/study/bones/fragment_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct SnapBenchChoice {
     std::uint64_t seed = 1001;
@@ -239,7 +239,7 @@ int bench_snap(const SnapBenchChoice& choice) {
     if (live) {
         const Json more = live_rows();
         if (!choice.json) print_live(more);
-        rows.insert(rows.end(), more.begin(), more.end());
+        for (const Json& row : more) rows.push_back(row);
     }
     if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"rows", rows}}.dump(2));
     return done;

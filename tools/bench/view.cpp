@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost of remeshing a bone while it is sawn (only changed bricks, compared with OpenVDB's volumeToMesh of the whole
 // bone; processor time), and of drawing a large bone.
+#include "assets/file/json.hpp"
 #include "dsp/carve/carver.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/brick_surface.hpp"
@@ -11,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <time.h>
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 /// Processor time of all threads, ms; other load on the machine does not count.
 double now_ms() {

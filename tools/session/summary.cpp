@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/summary.hpp"
 
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/io/lost_device.hpp"
@@ -8,13 +9,12 @@
 #include "tools/session/task_summary.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 namespace tactus::session {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 
@@ -204,14 +204,14 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
                                       folder.string())
                         : fmt::format("{}: is neither the results of a run nor a take nor a session", folder.string()));
     }
-    const Json json = Json::parse(file::read_whole_file(file), nullptr, false);
+    const Json json = Json::parse_or_null(file::read_whole_file(file));
     if (!json.is_object()) throw Error(fmt::format("{}: not JSON", file.string()));
     const auto task = json.find("task");
-    if (task == json.end() || !task->is_object())
+    if (!task || !task->is_object())
         throw Error(fmt::format("{}: the run had no node 'task', so there is nothing to score", file.string()));
     const auto text = [&](const char* key) {
         const auto found = task->find(key);
-        if (found == task->end() || !found->is_string())
+        if (!found || !found->is_string())
             throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
         return found->get<std::string>();
     };

@@ -10,6 +10,7 @@ std::uint32_t colour_of(const ValueType* type) {
     if (type == &value::pose) return colour(0x5ab0ff);
     if (type == &value::wrench) return colour(0xff7171);
     if (type == &value::twist) return colour(0xc08bff);
+    if (type == &value::vector) return colour(0xf28bc4);
     if (type == &value::number) return colour(0xb9c4d4);
     if (type == &value::boolean) return colour(0x4fd1c5);
     if (type == &value::signal) return colour(0xf5a742);

@@ -298,6 +298,8 @@ const std::map<std::string, std::string>& without_contact() {
         {"force_shaping", "scales a force"},
         {"held_weight", "a weight that the hand carries: gravity and a grip that moves"},
         {"passivity_observer", "watches and damps"},
+        {"join_wrench", "puts a force and a torque together"},
+        {"wrench_sum", "adds forces"},
         {"spring", "between two poses, without contact"},
     };
     return all;

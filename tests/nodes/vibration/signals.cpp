@@ -46,9 +46,9 @@ TEST_CASE("a sine has the frequency, amplitude and phase that it is given, a min
 }
 
 TEST_CASE("a mix is the sum of the connected signals times their gains") {
-    NodeHarness node("mix");
+    NodeHarness node("mix", {.any = &value::signal});
     node.disconnect_optional();
-    NodeHarness two("mix");
+    NodeHarness two("mix", {.any = &value::signal});
     for (const char* open : {"in2", "in3", "in4", "in5", "in6", "in7"}) two.disconnect(open);
     two.feed("in1", 0.5f).feed("in8", -2.0f);
     two.set("gain1", "3").set("gain8", "0.25");

@@ -25,8 +25,8 @@ press "type constant"
 key ctrl+z
 press "type constant"
 pull constant.value loud.factor
-! connect level.value loud.in
-pull level.value loud.in
+! connect tone.signal loud.factor
+pull tone.signal loud.factor
 double loud.out
 frames 30
 press "scope 0 plot"

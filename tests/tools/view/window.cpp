@@ -20,7 +20,7 @@ scope tone.signal spectrum
 select tone
 set tone.frequency "220 Hz"
 ! set tone.frequency "3 kg"
-! connect level.value loud.in
+! connect tone.signal loud.factor
 add gain "48 kHz"
 wire loud.out in
 rename gain echo

@@ -45,11 +45,11 @@ TEST_CASE("an edit at the bench that does not compile is refused with the compil
     CHECK_FALSE(bench.set("tone", "frequency", "3 kg"));
     CHECK(bench.messages().back().is_problem);
     CHECK(bench.messages().back().text.find("frequency") != std::string::npos);
-    CHECK_FALSE(bench.connect("level.value", "loud.in"));
+    CHECK_FALSE(bench.connect("tone.signal", "loud.factor"));
     CHECK_FALSE(bench.disconnect("loud.in"));
     CHECK_FALSE(bench.remove("tone"));
     CHECK_FALSE(bench.rename("tone", "loud"));
-    CHECK(bench.objection("level.value", "loud.in"));
+    CHECK(bench.objection("tone.signal", "loud.factor"));
     CHECK_FALSE(bench.objection("tone.signal", "loud.in"));
     CHECK(bench.editor().text() == voice);
     CHECK(bench.picture().nodes.size() == 3);
@@ -58,15 +58,15 @@ TEST_CASE("an edit at the bench that does not compile is refused with the compil
 TEST_CASE("a new node waits as a draft until its inputs have wires, then joins as one edit") {
     const Folder folder;
     Workbench bench(choice_in(folder));
-    bench.begin_draft("gain", bench.picture().nodes[0].group);
+    bench.begin_draft("filter", bench.picture().nodes[0].group);
     REQUIRE(bench.draft());
     CHECK(bench.editor().text() == voice);
-    CHECK(bench.draft()->node.name == "gain");
+    CHECK(bench.draft()->node.name == "filter");
     bench.connect_draft("level.value", "in");
     REQUIRE(bench.draft());
     bench.connect_draft("loud.out", "in");
     CHECK_FALSE(bench.draft());
-    CHECK(bench.picture().find("gain") >= 0);
+    CHECK(bench.picture().find("filter") >= 0);
     bench.begin_draft("constant", 0);
     CHECK_FALSE(bench.draft());
     CHECK(bench.picture().find("constant") >= 0);

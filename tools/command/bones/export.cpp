@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/export.hpp"
+#include "assets/file/json.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
@@ -9,7 +10,6 @@
 #include "tools/study/bones/crop_bone.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -52,7 +52,7 @@ bone::BoneQuantity quantity_of(const std::string& text) {
                                 : bone::BoneQuantity::hu;
 }
 
-nlohmann::ordered_json export_mesh(const std::vector<bone::Bone>& bones, const std::filesystem::path& out) {
+file::Json export_mesh(const std::vector<bone::Bone>& bones, const std::filesystem::path& out) {
     std::vector<mesh::ColouredSurface> surfaces;
     double volume = 0.0;
     std::size_t triangles = 0;
@@ -65,7 +65,7 @@ nlohmann::ordered_json export_mesh(const std::vector<bone::Bone>& bones, const s
     return {{"triangles", triangles}, {"volume_mm3", volume * 1e9}};
 }
 
-nlohmann::ordered_json export_volume(const std::vector<bone::Bone>& bones, const ExportChoice& choice) {
+file::Json export_volume(const std::vector<bone::Bone>& bones, const ExportChoice& choice) {
     const bone::BoneQuantity quantity = quantity_of(choice.quantity);
     const volume::Grid volume = bone::volume_of_bones(bones, quantity);
     volume::write_volume(volume,
@@ -83,7 +83,7 @@ int export_bone(const ExportChoice& choice) {
                                 choice.out.string()));
     std::vector<bone::Bone> bones = chosen_bones(choice);
     crop(bones, choice, is_mesh);
-    nlohmann::ordered_json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
+    file::Json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
     std::vector<std::string> names;
     for (const bone::Bone& bone : bones) names.push_back(bone.name);
     json["bones"] = names;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus fracture: simulated, displaced fragments of a bone, with ground truth.
 #include "tools/study/bones/fracture.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
@@ -10,7 +11,6 @@
 #include "tools/session/load_plan.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <numbers>
@@ -19,7 +19,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct FractureChoice {
     std::filesystem::path bone, out;

@@ -2,12 +2,12 @@
 // tactus fracture-surface: proposes the fracture surface of a fragment and applies manual corrections.
 #include "tools/study/bones/fracture_surface.hpp"
 #include "assets/cases/paint_file.hpp"
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -15,7 +15,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct FractureSurfaceChoice {
     study::FractureSurfaceSettings settings;

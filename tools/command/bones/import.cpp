@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/bone.hpp"
 #include "assets/bone/import_steps.hpp"
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
@@ -11,7 +12,6 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <optional>
@@ -27,12 +27,12 @@ struct ImportChoice : bone::ImportOptions {
     bool json = false;
 };
 
-nlohmann::ordered_json threshold_json(const bone::ImportSummary& s) {
+file::Json threshold_json(const bone::ImportSummary& s) {
     if (!s.threshold.hu) return nullptr;
-    nlohmann::ordered_json json{{"hu", *s.threshold.hu},
-                                {"from", s.threshold.from},
-                                {"above_mm3", s.threshold.above_mm3},
-                                {"kept_mm3", s.threshold.kept_mm3}};
+    file::Json json{{"hu", *s.threshold.hu},
+                    {"from", s.threshold.from},
+                    {"above_mm3", s.threshold.above_mm3},
+                    {"kept_mm3", s.threshold.kept_mm3}};
     if (s.threshold.mask_mm3) json["mask_mm3"] = *s.threshold.mask_mm3;
     return json;
 }
@@ -49,7 +49,7 @@ std::string threshold_text(const bone::ImportSummary& s, const std::string& comp
     return text;
 }
 
-nlohmann::ordered_json json_of(const bone::ImportSummary& s) {
+file::Json json_of(const bone::ImportSummary& s) {
     return {{"frame", s.frame},
             {"hu", s.hu},
             {"voxel_mm", s.voxel_mm},
@@ -91,16 +91,16 @@ int import_label_map(const ImportChoice& choice, const bone::ImportOptions& opti
     std::vector<bone::Bone> bones;
     for (bone::ImportedBone& each : made) bones.push_back(std::move(each.bone));
     bone::save_bones(bones, choice.out);
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    file::Json list = file::Json::array();
     std::string text = choice.out.string() + "\n";
     for (std::size_t n = 0; n < bones.size(); ++n) {
-        nlohmann::ordered_json one{{"name", bones[n].name}, {"label", std::stoi(bones[n].provenance.at("label"))}};
+        file::Json one{{"name", bones[n].name}, {"label", std::stoi(bones[n].provenance.at("label"))}};
         one.update(json_of(made[n].summary));
         list.push_back(std::move(one));
         text += fmt::format("{}: {}  surface: {}\n", bones[n].name, text_of(made[n].summary, choice),
                             bones[n].provenance.at("surface"));
     }
-    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"bones", list}, {"file", choice.out.string()}}.dump(2));
+    if (choice.json) fmt::print("{}\n", file::Json{{"bones", list}, {"file", choice.out.string()}}.dump(2));
     else fmt::print("{}", text);
     return done;
 }
@@ -116,7 +116,7 @@ int import_bone(const ImportChoice& choice) {
     if (!choice.ct.empty()) throw Error("--ct is for label maps: choose a label with --label N or --label all");
     const bone::ImportSummary summary = bone::import_bone_file(options, choice.out, progress);
     line.clear();
-    nlohmann::ordered_json json = json_of(summary);
+    file::Json json = json_of(summary);
     json["file"] = choice.out.string();
     if (choice.json) fmt::print("{}\n", json.dump(2));
     else fmt::print("{}: {}", choice.out.string(), text_of(summary, choice));

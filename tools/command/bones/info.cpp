@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
@@ -8,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <memory>
@@ -27,22 +27,22 @@ struct InfoChoice {
     bool json = false;
 };
 
-nlohmann::ordered_json json_of(const Inspection& found) {
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+file::Json json_of(const Inspection& found) {
+    file::Json parts = file::Json::array();
     for (const InspectedPart& part : found.parts)
         parts.push_back({{"volume_mm3", part.volume_mm3}, {"bounds_mm", part.bounds_mm}});
-    nlohmann::ordered_json json{{"kind", found.kind},
-                                {"frame", found.frame},
-                                {"size", found.size},
-                                {"spacing_mm", found.spacing_mm},
-                                {"uniform", found.uniform},
-                                {"tilt_deg", found.tilt_deg},
-                                {"hu", found.hu},
-                                {"range", found.range},
-                                {"suggested_threshold", nullptr},
-                                {"unit", nullptr},
-                                {"unit_question", nullptr},
-                                {"components", parts}};
+    file::Json json{{"kind", found.kind},
+                    {"frame", found.frame},
+                    {"size", found.size},
+                    {"spacing_mm", found.spacing_mm},
+                    {"uniform", found.uniform},
+                    {"tilt_deg", found.tilt_deg},
+                    {"hu", found.hu},
+                    {"range", found.range},
+                    {"suggested_threshold", nullptr},
+                    {"unit", nullptr},
+                    {"unit_question", nullptr},
+                    {"components", parts}};
     if (found.threshold) json["suggested_threshold"] = *found.threshold;
     if (!found.unit.empty()) json["unit"] = found.unit;
     if (!found.unit_question.empty()) json["unit_question"] = found.unit_question;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus register: registers a surface to another one of the same shape, as a whole or by parts.
+#include "assets/file/json.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/bones/registration.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -14,7 +14,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct RegisterChoice {
     study::RegisterSettings settings;

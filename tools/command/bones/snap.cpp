@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus snap: fits two fragments and reports a verdict.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/old_words.hpp"
@@ -9,7 +10,6 @@
 #include "tools/study/bones/snapping.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -18,7 +18,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct SnapChoice {
     study::SnapSettings settings;
@@ -50,7 +50,7 @@ study::SnapSettings settings_of(const SnapChoice& choice) {
         settings.moving_paint.file = choice.paint.substr(0, comma);
         settings.fixed_paint.file = choice.paint.substr(comma + 1);
     } else if (choice.paint != "auto") {
-        const Json strokes = Json::parse(file::read_whole_file(choice.paint), nullptr, false);
+        const Json strokes = Json::parse_or_null(file::read_whole_file(choice.paint));
         settings.moving_paint = strokes_of(strokes, "moving", choice.paint);
         settings.fixed_paint = strokes_of(strokes, "fixed", choice.paint);
     }

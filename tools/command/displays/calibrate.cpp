@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus calibrate: touched positions in, a display file out.
 #include "assets/display/touch_file.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/hosted_device.hpp"
@@ -12,7 +13,6 @@
 #include "tools/study/displays/touch_session.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <poll.h>
 #include <unistd.h>
@@ -90,10 +90,10 @@ int calibrate(const CalibrateChoice& choice) {
     if (!choice.keep.empty()) file::write_whole_file(choice.keep, display::touches_text(touches));
     const display::DisplayFit fit = display::fit_display(touches, options);
     const study::TouchesOff all = study::touches_off(fit);
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    file::Json parts = file::Json::array();
     std::string text;
     for (const display::TouchedPart& part : fit.parts) {
-        nlohmann::ordered_json off = nlohmann::ordered_json::array();
+        file::Json off = file::Json::array();
         text += study::part_text(part) + "\n";
         for (std::size_t i = 0; i < part.touches.size(); ++i) {
             const display::Touch& touch = touches[part.touches[i]];
@@ -107,11 +107,11 @@ int calibrate(const CalibrateChoice& choice) {
     }
     study::write_calibrated(choice.out, study::calibrated_display(base, fit), fit);
     if (choice.json)
-        fmt::print("{}\n", nlohmann::ordered_json{{"display", choice.out.string()},
-                                                  {"rig", choice.out.string()},  // the key before
-                                                  {"rms_mm", all.rms * 1e3},
-                                                  {"worst_mm", all.worst * 1e3},
-                                                  {"parts", parts}}
+        fmt::print("{}\n", file::Json{{"display", choice.out.string()},
+                                      {"rig", choice.out.string()},  // the key before
+                                      {"rms_mm", all.rms * 1e3},
+                                      {"worst_mm", all.worst * 1e3},
+                                      {"parts", parts}}
                                .dump(2));
     else
         fmt::print(

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/grippers/rig_text.hpp"
 
+#include "assets/file/json.hpp"
 #include "tools/command/batch.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -19,7 +19,7 @@ using study::RigRow;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 Json finite(const std::optional<double>& value) { return value ? finite(*value) : Json(); }

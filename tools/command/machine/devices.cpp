@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "dsp/core/error.hpp"
@@ -7,7 +8,6 @@
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -16,8 +16,7 @@ namespace tactus::command {
 namespace {
 
 int devices(bool json) {
-    nlohmann::ordered_json list{{"haptic", nlohmann::ordered_json::array()},
-                                {"audio", nlohmann::ordered_json::array()}};
+    file::Json list{{"haptic", file::Json::array()}, {"audio", file::Json::array()}};
     for (const haptic::HapticDriver& driver : haptic::haptic_drivers())
         list["haptic"].push_back({{"driver", driver.name}, {"about", driver.summary}});
     std::string no_sound = "none";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "dsp/core/units.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/command/options.hpp"
@@ -6,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -15,16 +15,21 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
+
+/// "any", or "number, vector or wrench".
+std::string several(const Input& port) {
+    return port.takes == kinds::every ? "any" : type_names(port.takes);
+}
 
 class Describer : public MemberVisitor {
 public:
     Json ports_in = Json::array(), ports_out = Json::array(), parameters = Json::array();
 
     void input(std::string_view name, Input& port) override {
-        std::string type = port.type ? std::string(port.type->name) : "any";
+        std::string type = port.type ? std::string(port.type->name) : several(port);
         if (port.kind == InputKind::batch) type = "batch of " + type;
         ports_in.push_back({{"name", name},
                             {"type", type},
@@ -126,7 +131,7 @@ int nodes(const std::string& wanted, bool json) {
     }
     if (list.empty()) throw Error(fmt::format("no node type '{}'{}", wanted, did_you_mean(wanted, names)));
     if (json) fmt::print("{}\n", Json{{"version", 1}, {"rows", list}}.dump(2));
-    else if (!wanted.empty()) print_whole(list.front());
+    else if (!wanted.empty()) print_whole(list[0]);
     else
         for (const Json& node : list) fmt::print("{:<16} {}\n", text_of(node, "type"), text_of(node, "about"));
     return done;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan check: whether the fragments hang together, every fit holds, and the files are those of the plan.
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/json.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace tactus::command {
 
 namespace {
 
 int check(const PlanChoice& choice) {
-    using Json = nlohmann::ordered_json;
+    using file::Json;
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const cases::PlanState state = cases::state_of(plan);
     std::vector<std::string> problems = cases::changed_files(plan, choice.plan.parent_path());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan export: placed meshes, ITK transforms and 3D Slicer landmarks.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct ExportChoice : PlanChoice {
     std::string format = "stl";

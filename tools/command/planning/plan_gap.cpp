@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan gap: gap, contact and overlap of placed fragments.
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 Json json_of(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan mirror: registers the mirrored healthy side as a target.
 #include "tools/study/planning/plan_mirror.hpp"
+#include "assets/file/json.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <numbers>
 
@@ -13,7 +13,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct MirrorChoice : PlanChoice {
     std::filesystem::path healthy;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan report: the plan as one HTML page.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/report/plan_page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace tactus::command {
 
@@ -27,7 +27,7 @@ int report(const ReportChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const std::filesystem::path out = choice.out.empty() ? page_of(choice.plan) : choice.out;
     file::write_whole_file(out, picture::plan_page(plan, study::load_fragments(plan, choice.plan.parent_path())));
-    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"report", out.string()}}.dump(2));
+    if (choice.json) fmt::print("{}\n", file::Json{{"report", out.string()}}.dump(2));
     else fmt::print("{}\n", out.string());
     return done;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan settle: refines fitted fragments against all their neighbours.
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
@@ -7,7 +8,6 @@
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace tactus::command {
 
@@ -44,7 +44,7 @@ int settle(const SettleChoice& choice) {
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
     const std::vector<int> held = held_fragments(cases::state_of(plan));
     study::PlanMatching matching(plan, choice.plan.parent_path());
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    file::Json rows = file::Json::array();
     bool all_fit = true;
     const auto settle_one = [&](int n) {
         const fit::Arrangement now = cases::state_of(plan).arrangement;
@@ -54,7 +54,7 @@ int settle(const SettleChoice& choice) {
         const bool fits = found.match.verdict == fit::FitVerdict::fit;
         if (fits) study::do_step(plan, study::step_of(plan, found.match, "settle"), choice.plan);
         all_fit = all_fit && fits;
-        rows.push_back(match_json<nlohmann::ordered_json>(plan, found, reason));
+        rows.push_back(match_json<file::Json>(plan, found, reason));
         if (!choice.json) print_match(plan, found, reason);
     };
     for (int pass = 0; pass < choice.passes; ++pass)
@@ -67,8 +67,7 @@ int settle(const SettleChoice& choice) {
     if (choice.json)
         fmt::print(
             "{}\n",
-            nlohmann::ordered_json{{"version", 1}, {"rows", rows}, {"assemblies", study::assembly_names(plan, state)}}
-                .dump(2));
+            file::Json{{"version", 1}, {"rows", rows}, {"assemblies", study::assembly_names(plan, state)}}.dump(2));
     else
         for (const std::string& line : study::connection_words(plan, state)) fmt::print("{}\n", line);
     return all_fit && study::is_in_one_part(state) ? done : answer_is_no;

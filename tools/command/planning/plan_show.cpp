@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan show: the content of a plan as text or JSON.
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/json.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/counted.hpp"
@@ -9,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <numbers>
 
@@ -17,7 +17,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 /// The groups that hold a fragment, innermost first.
 std::vector<std::string> groups_of(const cases::PlanState& state, int fragment) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan snap: moves a fragment of a plan to the pose where its fracture fits.
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/match_reason.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace tactus::command {
 
@@ -43,7 +43,7 @@ int snap_fragment(const SnapChoice& choice) {
     const bool has_place = fits || found.as_scanned;
     if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);
     if (choice.json) {
-        using Json = nlohmann::ordered_json;
+        using file::Json;
         Json json = match_json<Json>(plan, found, reason);
         if (target)
             json["target"] = {{"median_before_mm", 1e3 * target->before},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
@@ -14,7 +15,6 @@
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -25,7 +25,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/run/check_rows.hpp"
 
+#include "assets/file/json.hpp"
 #include "graph/analyse/latency.hpp"
 #include "tools/command/run/check_process.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 

@@ -2,12 +2,11 @@
 // What `check` found, as rows of JSON.
 #pragma once
 
+#include "assets/file/json.hpp"
 #include "engine/build/generation.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/study/passivity/z_width.hpp"
 #include "tools/study/patch_stiffness.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <memory>
 #include <optional>
@@ -16,29 +15,28 @@
 namespace tactus::command {
 
 /// Errors, groups, paths and processes of devices. Without a plan the errors alone.
-nlohmann::ordered_json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems);
+file::Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems);
 
 /// One row per path; loops through a hand also have a stiffness.
-nlohmann::ordered_json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops);
+file::Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops);
 
 /// The position loops of admittance controllers: gain and stability limit.
-nlohmann::ordered_json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
+file::Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
 
 /// The outputs to a hand. Those that may return more energy than the hand has put in are among the `warnings`.
-nlohmann::ordered_json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes,
-                                    nlohmann::ordered_json& warnings);
+file::Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, file::Json& warnings);
 
 /// By which law each node's bodies touch.
-nlohmann::ordered_json contact_json(const std::vector<study::NodeContactLaw>& laws);
+file::Json contact_json(const std::vector<study::NodeContactLaw>& laws);
 
-nlohmann::ordered_json classes_json(const std::vector<study::ClassVerdict>& verdicts);
+file::Json classes_json(const std::vector<study::ClassVerdict>& verdicts);
 
-nlohmann::ordered_json z_width_json(const std::vector<study::ZWidthCurve>& curves);
+file::Json z_width_json(const std::vector<study::ZWidthCurve>& curves);
 
 /// True when no path exceeds its stiffness limit and no loop is unstable.
-bool is_stable(const nlohmann::ordered_json& found);
+bool is_stable(const file::Json& found);
 
 /// A stiffness could not be judged.
-bool is_unknown(const nlohmann::ordered_json& found);
+bool is_unknown(const file::Json& found);
 
 }  // namespace tactus::command

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/run/check_text.hpp"
 
+#include "assets/file/json.hpp"
 #include "tools/command/run/check_rows.hpp"
 #include "tools/counted.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <string>
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 
@@ -71,10 +71,10 @@ void print_classes(const Json& classes) {
 /// The part of a path's line after its latency.
 std::string stiffness_text(const Json& row) {
     if (!row.contains("ok")) return {};
-    const double limit = row["stiffness_limit_N_per_mm"];
+    const double limit = row["stiffness_limit_N_per_mm"].get<double>();
     std::string text = limit > 0.0 ? fmt::format(" {:>7.3g} N/mm", limit) : fmt::format(" {:>12}", "unknown");
     if (row["declared_by"].is_null()) return text;
-    const double declared = row["declared_N_per_mm"];
+    const double declared = row["declared_N_per_mm"].get<double>();
     text += fmt::format(" {:>7.3g} N/mm  {}", declared, row["declared_by"].get<std::string>());
     const Json& most = row["max_stiffness_N_per_mm"];
     if (!most.is_null() && declared > most.get<double>())
@@ -89,7 +89,7 @@ void print_loops(const Json& loops) {
     for (const Json& loop : loops)
         fmt::print("{:<32} {:>8.4g} 1/s {:>8.4g} 1/s  in a hand of {:.3g} N/mm{}\n", loop["node"].get<std::string>(),
                    loop["gain_per_s"].get<double>(), loop["gain_limit_per_s"].get<double>(),
-                   loop["hand_stiffness_N_per_mm"].get<double>(), loop["ok"] ? "" : "  UNSTABLE");
+                   loop["hand_stiffness_N_per_mm"].get<double>(), loop["ok"].get<bool>() ? "" : "  UNSTABLE");
 }
 
 void print_plan(const Json& json) {

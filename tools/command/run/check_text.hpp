@@ -2,11 +2,11 @@
 // What `check` found, as text for people.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "assets/file/json.hpp"
 
 namespace tactus::command {
 
 /// Prints all but the errors, which go to standard error.
-void print_check(const nlohmann::ordered_json& found);
+void print_check(const file::Json& found);
 
 }  // namespace tactus::command

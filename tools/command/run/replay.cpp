@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/engine.hpp"
 #include "engine/take/take_compare.hpp"
@@ -14,7 +15,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -27,7 +27,7 @@ using namespace session;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct ReplayChoice {
     std::filesystem::path take, out;  // out: folder for the results; empty: none

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus compare: judges whether two vibration records are equivalent, for two files or for folders.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/batch.hpp"
@@ -12,7 +13,6 @@
 #include "tools/picture/report/html_report.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -78,14 +78,14 @@ std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<st
 }
 
 std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures, const Count& count) {
-    nlohmann::ordered_json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
-                                {"passed", count.passed},
-                                {"failed", count.failed},
-                                {"bad", count.bad}};
-    json["pairs"] = nlohmann::ordered_json::array();
+    file::Json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
+                    {"passed", count.passed},
+                    {"failed", count.failed},
+                    {"bad", count.bad}};
+    json["pairs"] = file::Json::array();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        nlohmann::ordered_json row{{"reference", pairs[i].reference.string()}, {"output", pairs[i].output.string()}};
-        if (failures[i].empty()) row.update(nlohmann::ordered_json::parse(comparison_json(pairs[i])));
+        file::Json row{{"reference", pairs[i].reference.string()}, {"output", pairs[i].output.string()}};
+        if (failures[i].empty()) row.update(file::Json::parse(comparison_json(pairs[i])));
         else row["error"] = failures[i];
         json["pairs"].push_back(std::move(row));
     }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/comparison_text.hpp"
 
+#include "assets/file/json.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::ComparedPair;
 using study::Judged;
 using study::name_of_line;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus equalise: designs an inverse filter from a measured response and checks the actuator's limits.
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/equalisation.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct EqualiseChoice {
     study::EqualiseSettings settings;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus exposure: hand-arm vibration exposure (ISO 5349-1).
 #include "tools/study/vibration/exposure.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
@@ -9,7 +10,6 @@
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using Operation = study::ExposureOperation;
 
 struct ExposureChoice : RecordChoice {

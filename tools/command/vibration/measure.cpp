@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus measure: identifies a system in a patch or behind a sound card with a sine sweep.
+#include "assets/file/json.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/measurement.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -14,7 +14,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct MeasureChoice {
     study::MeasureSettings settings;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus model: fits the model of a saw to its recordings.
+#include "assets/file/json.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/saw_modelling.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::ModelDistance;
 using study::ModelledRecording;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus orders: order analysis of a machine with a changing rate.
 #include "tools/study/vibration/orders.hpp"
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -8,7 +9,6 @@
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct OrdersChoice : RecordChoice {
     study::OrdersSettings settings;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus spectrum: spectral analysis of records.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -11,7 +12,6 @@
 #include "tools/picture/report/spectrum_page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <functional>
 #include <memory>
@@ -84,12 +84,12 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
 
 void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& outcomes,
                 const std::vector<std::string>& failures) {
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    file::Json all = file::Json::array();
     for (std::size_t i = 0; i < files.size(); ++i) {
-        if (failures[i].empty()) all.push_back(nlohmann::ordered_json::parse(outcomes[i].text));
+        if (failures[i].empty()) all.push_back(file::Json::parse(outcomes[i].text));
         else all.push_back({{"file", files[i].string()}, {"error", failures[i]}});
     }
-    fmt::print("{}\n", nlohmann::ordered_json{{"version", 1}, {"rows", all}}.dump(2));
+    fmt::print("{}\n", file::Json{{"version", 1}, {"rows", all}}.dump(2));
 }
 
 int spectrum(const SpectrumChoice& choice) {

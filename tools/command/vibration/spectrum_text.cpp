@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/spectrum_text.hpp"
 
+#include "assets/file/json.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::AnalysedChannel;
 using study::AnalysedFile;
 using study::band_deviation;

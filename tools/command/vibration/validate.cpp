@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus validate: compares the handle's vibration in a patch with each recording that its saw plays.
+#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/patch_options.hpp"
@@ -10,7 +11,6 @@
 #include "tools/picture/report/validation_page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -19,7 +19,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 using study::Validation;
 using study::ValidationRun;
 

@@ -275,6 +275,9 @@ std::string short_value(const ValueType& type, const Feed::Latest& latest, const
     if (&type == &value::wrench) return fmt::format("{:.2f} N", length(0));
     if (&type == &value::twist) return fmt::format("{:.1f} mm/s", length(0) * 1e3);
     if (&type == &value::boolean) return c[0] != 0.0 ? "true" : "false";
+    if (&type == &value::vector && unit != "m")
+        return fmt::format("{:.3g} {:.3g} {:.3g}{}{}", c[0], c[1], c[2], unit.empty() ? "" : " ", unit);
+    if (&type == &value::vector) return fmt::format("{:.1f} {:.1f} {:.1f} mm", c[0] * 1e3, c[1] * 1e3, c[2] * 1e3);
     if (unit == "m") return fmt::format("{:.3f} mm", c[0] * 1e3);
     return fmt::format("{:.4g}{}{}", c[0], unit.empty() ? "" : " ", unit);
 }

@@ -81,6 +81,7 @@ Feed::Latest LiveFeed::latest(const std::string& port) const {
     if (&type == &value::pose) return as_columns(observer_->latest<Pose>(port), type);
     if (&type == &value::twist) return as_columns(observer_->latest<Twist>(port), type);
     if (&type == &value::wrench) return as_columns(observer_->latest<Wrench>(port), type);
+    if (&type == &value::vector) return as_columns(observer_->latest<Vec3>(port), type);
     if (&type == &value::number) return as_columns(observer_->latest<double>(port), type);
     if (&type == &value::boolean) return as_columns(observer_->latest<bool>(port), type);
     if (&type == &value::signal) return as_columns(observer_->latest<float>(port), type);

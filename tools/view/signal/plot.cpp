@@ -72,6 +72,7 @@ Display display_of(const ValueType& type, const std::string& unit) {
     if (&type == &value::pose) return {1e3, "mm", 3};
     if (&type == &value::twist) return {1e3, "mm/s", 3};
     if (&type == &value::wrench) return {1.0, "N", 3};
+    if (&type == &value::vector) return unit == "m" ? Display{1e3, "mm", 3} : Display{1.0, unit, 3};
     return {1.0, unit, 1};
 }
 

@@ -11,8 +11,7 @@ namespace tactus::view {
 namespace {
 
 const ValueType* type_named(std::string_view name) {
-    for (const ValueType* type :
-         {&value::pose, &value::twist, &value::wrench, &value::number, &value::boolean, &value::signal})
+    for (const ValueType* type : value::plain_types())
         if (type->name == name) return type;
     return nullptr;
 }

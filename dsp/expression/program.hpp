@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A formula as a list of instructions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus::expression {
+
+enum class Operation : std::uint8_t {
+    negate,
+    add,
+    subtract,
+    multiply,
+    divide,
+    power,
+    modulo,
+    less,
+    less_equal,
+    greater,
+    greater_equal,
+    equal,
+    not_equal,
+    both,
+    either,
+    opposite,
+    minimum,
+    maximum,
+    absolute,
+    square_root,
+    exponential,
+    logarithm,
+    sine,
+    cosine,
+    tangent,
+    arc_sine,
+    arc_cosine,
+    arc_tangent,
+    arc_tangent_of_two,
+    hypotenuse,
+    floor,
+    ceiling,
+    sign,
+    clip,
+    choose,
+};
+
+/// registers[to] = operation(registers[a], registers[b], registers[c]).
+struct Instruction {
+    Operation operation;
+    std::uint8_t to = 0, a = 0, b = 0, c = 0;
+};
+
+/// The value of one operation. IEEE 754; comparisons give 1 or 0, and 0 counts as false.
+double apply(Operation operation, double a, double b, double c) noexcept;
+
+/// Instructions over registers: first the variables, then the constants, then what lies between.
+struct Program {
+    static constexpr std::size_t most_registers = 256;
+
+    std::size_t variables = 0;
+    std::vector<double> constants;
+    std::size_t registers = 0;  ///< of all kinds
+    std::vector<Instruction> instructions;
+    std::uint8_t result = 0;  ///< register
+
+    /// The formula names this variable.
+    bool uses(std::size_t variable) const noexcept;
+};
+
+/// A program with its registers. `prepare` allocates; the rest is real-time safe.
+class Machine {
+public:
+    static constexpr int block = 64;
+
+    Machine() = default;
+    explicit Machine(Program program);
+
+    /// Where the values of a variable are put before a run: one, or up to `block` of them.
+    double* variable(std::size_t index) noexcept { return registers_.data() + index * block; }
+    /// The value for the first value of each variable.
+    double run() noexcept;
+    /// The values for the first `count` ≤ block values of each variable.
+    std::span<const double> run(int count) noexcept;
+
+private:
+    Program program_;
+    std::vector<double> registers_;  ///< `block` values each
+};
+
+}  // namespace tactus::expression

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/node.hpp"
+#include "nodes/math/componentwise.hpp"
+
+namespace tactus::nodes {
+
+struct Minimum {
+    static constexpr auto about = "The smaller of two numbers, or of two signals sample by sample.";
+
+    AnyIn a{"the first value", kinds::number | kinds::signal};
+    AnyIn b{"the second value, of the same type", kinds::number | kinds::signal};
+    AnyOut out{"the smaller one"};
+
+    void process(const Tick& tick) noexcept {
+        for_each_component(a, b, out, tick, [](double x, double y) { return y < x ? y : x; });
+    }
+};
+
+TACTUS_NODE(Minimum, a, b, out)
+
+}  // namespace tactus::nodes
