@@ -13,6 +13,7 @@ namespace {
 constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
 constexpr double most_lag = 0.020;  // m
 constexpr double dry_friction = 0.3;
+constexpr double deepest_row = 5e-3;  // m behind the teeth: a long blade is guided near them
 constexpr int most_moves = 10;
 
 }  // namespace
@@ -22,7 +23,7 @@ BladeFaces::BladeFaces(const SawShape& shape, double stiffness) {
         const double x = shape.length * (static_cast<double>(n) / (row - 1) - 0.5);
         for (std::size_t side = 0; side < 2; ++side) {
             FacePoint& p = points_[n + side * row];
-            p.local = Vec3(x, -0.5 * shape.height, (side == 0 ? 0.5 : -0.5) * shape.thickness);
+            p.local = Vec3(x, -std::min(0.5 * shape.height, deepest_row), (side == 0 ? 0.5 : -0.5) * shape.thickness);
             const double blade = lateral_stiffness(shape, p.local);
             p.bending = blade / (blade + stiffness);
         }

@@ -19,7 +19,7 @@ struct FacePoint {
     bool seated = false;
 };
 
-/// 88 points in two rows at half height (thesis 6.2.2). Each is a god object (Zilles and Salisbury 1995): it follows the
+/// 88 points in two rows at half height (thesis 6.2.2), at most 5 mm behind the teeth. Each is a god object (Zilles and Salisbury 1995): it follows the
 /// blade and never crosses a surface, so that a thin wall stops it as a thick one does. It slides along walls, with
 /// Coulomb friction while the blade stands still, and only where that shortens its lag: the force is passive.
 class BladeFaces {

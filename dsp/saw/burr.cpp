@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 namespace tactus::saw {
 
@@ -55,9 +55,11 @@ Burr::Touch Burr::touch(const volume::BoneSnapshot& bone, const Vec3& lag, doubl
         const double d = bone.value(there);
         touch.clear = std::min(touch.clear, d + ahead);
         if (d > -0.5 * ahead) continue;
+        const double density = bone.density(there);
+        if (!(density >= 1.0)) continue;  // bone without density does not resist, as for the teeth of a saw
         touch.towards[touch.count++] = looks[n];
         const double weight = std::max(glm::dot(looks[n], lag), 0.0);
-        touch.density += weight * bone.density(there);
+        touch.density += weight * density;
         sum += weight;
     }
     touch.density = sum > 0.0 ? touch.density / sum : 0.0;
@@ -116,13 +118,9 @@ BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, bool 
     double distance = glm::length(lag);
     if (!(distance > 1e-12)) return contact;
     if (running && rate > 0.0 && density >= 1.0) {
-        const double scale = law.reference_density / density, speed = shape_.flutes * rate * dt;
-        double u = distance;
-        for (int n = 0; n < 5; ++n) {
-            const CuttingLaw::Depth cut = law.depth(stiffness_ * u * scale);
-            u = std::clamp(u + (distance - u - speed * cut.depth) / (1.0 + speed * cut.slope * scale * stiffness_), 0.0,
-                           distance);
-        }
+        const double scale = law.reference_density / density, stiff = stiffness_ * scale;
+        const double u = left_after_cut(law, distance, shape_.flutes * rate * dt,
+                                        [&](double stretch) { return std::pair{stiff * stretch, stiff}; });
         contact.feed = (distance - u) / dt;
         at_ += lag * ((distance - u) / distance);
         lag = target_ - at_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::saw {
 
@@ -53,6 +54,26 @@ struct CuttingLaw {
     /// Force along the tooth's path under `thrust` N; a tooth that rubs has the same ratio as one at `shallow`.
     double along(double thrust) const noexcept { return cutting * std::min(thrust / thrust_shallow, 1.0); }
 };
+
+/// Stretch that is left of a spring after a tick in which its end advanced by `passes`·depth(force after the tick): an
+/// implicit step, by Newton's method within a bracket. `force`: of a stretch in m, its value in N of the reference
+/// density and its slope in N/m; 0 at 0, rising. Between 0 and `lag` whatever the numbers, so that the step cannot give
+/// energy.
+template <class Force>
+double left_after_cut(const CuttingLaw& law, double lag, double passes, Force&& force) noexcept {
+    double low = 0.0, high = lag, left = lag;
+    for (int n = 0; n < 24; ++n) {
+        const auto [value, rise] = force(left);
+        const CuttingLaw::Depth cut = law.depth(value);
+        const double miss = lag - left - passes * cut.depth;
+        (miss > 0.0 ? low : high) = left;
+        double next = left + miss / (1.0 + passes * cut.slope * rise);
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (std::abs(next - left) < 1e-12) return next;
+        left = next;
+    }
+    return left;
+}
 
 /// How a row of teeth shares thrust. Teeth differ in height by more than the micrometres that they cut, so of the
 /// stroke/pitch teeth that pass a place in one half-stroke only the highest cuts there: one tooth per stroke length

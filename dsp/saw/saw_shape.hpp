@@ -5,6 +5,7 @@
 #include "dsp/core/types.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace tactus::saw {
@@ -14,7 +15,8 @@ inline constexpr double tooth_pitch = 25.4e-3 / 18.0;
 
 enum class SawKind : std::uint8_t {
     reciprocating,  ///< the blade strokes along its length, which is along the teeth; clamped at its −x end
-    sagittal,  ///< the end of the blade swings along the teeth; clamped `height` behind them
+    sagittal,  ///< the end of the blade swings about an axis `height` behind the middle of its teeth, where it is
+               ///< clamped; the teeth stand on an arc about that axis
 };
 
 /// Blade frame: origin in the middle of the tooth line, x along the teeth, y the cutting direction, towards the bone, z
@@ -27,6 +29,11 @@ struct SawShape {
     double kerf = 0.001;  ///< m, width of the cut: the teeth are set
     double pitch = tooth_pitch;  ///< m
     double stroke = 0.003;  ///< m peak to peak, along x
+
+    /// How far the teeth at `x` m stand behind those in the middle, m. The arc of a sagittal blade must hold them.
+    double behind(double x) const noexcept {
+        return kind == SawKind::sagittal ? height - std::sqrt(std::max(height * height - x * x, 0.0)) : 0.0;
+    }
 };
 
 /// Stiffness of a steel blade against a force across it, as a cantilever: 3·E·I/L³ at the distance L of `local` from

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tactus::saw {
 
@@ -43,6 +44,7 @@ ToothRow::ToothRow(const SawShape& shape, double stiffness)
     }
     squares_.resize(teeth_.size());
     cuts_.resize(teeth_.size());
+    cut_.resize(teeth_.size());
 }
 
 void ToothRow::forget() noexcept {
@@ -59,9 +61,12 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
     const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6});
     const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
     const double jump = std::max(fastest_hand * drive.dt, 0.001);
+    for (std::size_t n = 0; n < teeth_.size(); ++n)
+        cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0};
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
-        const Vec3 to = pose.position + axes_ * Vec3(first_ + pitch_ * static_cast<double>(n), -radius_, 0.0);
+        const double x = first_ + pitch_ * static_cast<double>(n);
+        const Vec3 to = pose.position + axes_ * Vec3(x, -shape_.behind(x) - radius_, 0.0);
         const bool jumped = glm::length(to - tooth.target) > jump;
         tooth.target = to;
         tooth.fresh = false;
@@ -70,7 +75,7 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         if (!tooth.seated || jumped) {
             seat(bone, tooth);
         } else {
-            pursue(walk, tooth);
+            pursue(walk, n);
         }
         tooth.lag = tooth.seated ? (tooth.target - tooth.at) * axes_ : Vec3(0.0);
     }
@@ -81,7 +86,8 @@ void ToothRow::seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexce
     tooth.seated = tooth.fresh = bone.value(tooth.target) >= radius_;
 }
 
-void ToothRow::pursue(const Walk& walk, Tooth& tooth) const noexcept {
+void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
+    Tooth& tooth = teeth_[n];
     const double distance = glm::length(tooth.target - tooth.at);
     if (distance < 1e-12) return;
     // Far from bone, or drawn back to where there is none.
@@ -91,13 +97,31 @@ void ToothRow::pursue(const Walk& walk, Tooth& tooth) const noexcept {
         return;
     }
     if (distance > most_lag) return seat(walk.bone, tooth);
-    plunge(walk, tooth);
+    plunge(walk, n);
     if (!tooth.seated) return;
-    slide(walk, tooth, 0);
-    slide(walk, tooth, 2);
+    slide(walk, n, 0);
+    slide(walk, n, 2);
 }
 
-void ToothRow::plunge(const Walk& walk, Tooth& tooth) const noexcept {
+/// How much deeper than `at`, near the place of tooth `n`, the row cut in the last tick, m; none where it cut nothing.
+/// The bone that the teeth read is some ticks older.
+std::optional<double> ToothRow::cut_below(const Vec3& at, std::size_t n) const noexcept {
+    const std::size_t first = n > 2 ? n - 2 : 0, last = std::min(n + 2, cut_.size() - 1);
+    for (std::size_t k = first; k < last; ++k) {
+        const Cut &a = cut_[k], &b = cut_[k + 1];
+        if (!a.bears || !b.bears) continue;
+        const Vec3 from = (a.at - at) * axes_, to = (b.at - at) * axes_;
+        const double span = to.x - from.x;
+        if (!(from.x <= 0.0 && to.x >= 0.0 && span > 0.5 * pitch_ && span < 2.0 * pitch_)) continue;
+        const Vec3 there = from + (to - from) * (-from.x / span);
+        if (std::abs(there.z) > 0.25 * radius_) return std::nullopt;
+        return there.y;
+    }
+    return std::nullopt;
+}
+
+void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
+    Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
     double way = glm::dot(tooth.target - tooth.at, y);
     const double level = -walk.front.ahead + 0.15 * walk.voxel;
@@ -111,6 +135,11 @@ void ToothRow::plunge(const Walk& walk, Tooth& tooth) const noexcept {
         }
         tooth.at = to;
         return;
+    }
+    if (const std::optional<double> below = cut_below(tooth.at, n); below && *below > 0.0) {
+        const double step = std::min(way, *below);
+        tooth.at += y * step;
+        way -= step;
     }
     // In contact the interpolated distance ripples: hysteresis between touching and free.
     const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
@@ -127,7 +156,8 @@ void ToothRow::plunge(const Walk& walk, Tooth& tooth) const noexcept {
 }
 
 /// Slides along the blade (axis 0) or across it (2), up slopes where that shortens the lag.
-void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
+void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
+    Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
     const Vec3 lag = (tooth.target - tooth.at) * axes_;
     const double sign = lag[axis] < 0.0 ? -1.0 : 1.0, weight = axis == 2 ? tooth.bending : 1.0;
@@ -156,13 +186,19 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
             tooth.density[static_cast<std::size_t>(axis)] = contact.density;
             return;
         }
-        const double step = std::min({side - held, contact.clear, 0.5 * walk.voxel});
+        // The round front is no wider than a ball of its radius: as far as that is free, and else by half a voxel.
+        const double clear = walk.bone.value(tooth.at) - radius_ - walk.front.ahead;
+        const double step = std::min({side - held, contact.clear, std::max(clear, 0.5 * walk.voxel)});
         const double before = walk.front.floor(walk.bone, tooth.at, y, z);
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
             double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
             if (short_by <= 0.0) break;
+            if (const std::optional<double> below = axis == 0 ? cut_below(to, n) : std::nullopt) {
+                if (*below >= -1e-9) break;
+                short_by = std::min(short_by, -*below);
+            }
             // Beside a wall the distance grows more slowly than the tooth rises.
             short_by = std::max(short_by, 0.02 * walk.voxel);
             climbed += short_by;
@@ -182,35 +218,28 @@ double ToothRow::squared_norm() noexcept {
     return squared_norm8(squares_);
 }
 
-/// How far a tooth advances along y in a tick: Δ = dt·speed(force after the step), solved by Newton's method; between 0
-/// and the lag whatever the iteration, so that the step cannot give energy. `speed`: m/s per m of depth of cut, times dt.
+/// How far a tooth advances along y in a tick. `passes`: cuts over a place in it.
 double ToothRow::advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm,
-                         double speed) const noexcept {
+                         double passes) const noexcept {
     const double rest = tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
     const double scale = law.reference_density / (tooth.density[1] * bearing());
-    double y = tooth.lag.y;
-    for (int n = 0; n < 5; ++n) {
-        const double square = y * y + rest, k = spring8(spring, square, norm);
-        const CuttingLaw::Depth cut = law.depth(k * y * scale);
-        const double miss = tooth.lag.y - y - speed * cut.depth;
-        const double slope = 1.0 + speed * cut.slope * scale * k * (1.0 + 6.0 * y * y / square);
-        const double next = std::clamp(y + miss / slope, 0.0, tooth.lag.y);
-        if (std::abs(next - y) < 1e-12) break;
-        y = next;
-    }
-    return tooth.lag.y - y;
+    const double left = left_after_cut(law, tooth.lag.y, passes, [&](double y) {
+        const double square = y * y + rest, k = spring8(spring, square, norm) * scale;
+        return std::pair{k * y, square > 0.0 ? k * (1.0 + 6.0 * y * y / square) : 0.0};
+    });
+    return tooth.lag.y - left;
 }
 
 double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept {
     if (!drive.running || !(drive.rate > 0.0)) return 0.0;
     double norm = squared_norm();
     if (!(norm > 0.0)) return 0.0;
-    const double speed = sharing_.cuts_per_cycle * drive.rate * drive.dt;  // tick's passes over a place
+    const double passes = sharing_.cuts_per_cycle * drive.rate * drive.dt;
     // Two rounds: the forces share one norm, which falls as the teeth advance.
     for (int round = 0; round < 2; ++round) {
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             const Tooth& tooth = teeth_[n];
-            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, speed) : 0.0;
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, passes) : 0.0;
             const double y = tooth.lag.y - cuts_[n];
             squares_[n] = y * y + tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
         }
@@ -227,7 +256,7 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
             const double force = k * (axis == 2 ? tooth.bending : 1.0) * std::abs(tooth.lag[axis]);
             const double depth = law.depth(force * law.reference_density / (density * bearing())).depth;
             step[axis] =
-                std::copysign(std::min(side_share * speed * depth, std::abs(tooth.lag[axis])), tooth.lag[axis]);
+                std::copysign(std::min(side_share * passes * depth, std::abs(tooth.lag[axis])), tooth.lag[axis]);
         }
         tooth.at += axes_ * step;
         tooth.lag -= step;

@@ -9,7 +9,9 @@
 #include "dsp/volume/bricks.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,18 +68,25 @@ public:
 
 private:
     struct Walk;
+    /// Where a tooth was at the end of the last tick, and whether it cut.
+    struct Cut {
+        Vec3 at{0.0, 0.0, 0.0};
+        bool bears = false;
+    };
 
     void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
-    void pursue(const Walk& walk, Tooth& tooth) const noexcept;
-    void plunge(const Walk& walk, Tooth& tooth) const noexcept;
-    void slide(const Walk& walk, Tooth& tooth, int axis) const noexcept;
-    double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double speed) const noexcept;
+    void pursue(const Walk& walk, std::size_t n) noexcept;
+    void plunge(const Walk& walk, std::size_t n) noexcept;
+    void slide(const Walk& walk, std::size_t n, int axis) noexcept;
+    std::optional<double> cut_below(const Vec3& at, std::size_t n) const noexcept;
+    double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes) const noexcept;
 
     SawShape shape_;
     ToothSharing sharing_;
     double pitch_ = 0.0, radius_ = 0.0, first_ = 0.0;
     std::vector<Tooth> teeth_;
     std::vector<double> squares_, cuts_;
+    std::vector<Cut> cut_;
     Mat3 axes_{1.0};
 };
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/site.hpp"
 
-#include "dsp/core/error.hpp"
-#include "dsp/volume/resample.hpp"
-
-#include <fmt/format.h>
+#include "dsp/volume/site_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace tactus::volume {
@@ -17,31 +13,10 @@ namespace {
 
 constexpr double near_enough = 30e-3;  // m from a point that somebody names to the bone
 constexpr double far = 1.0;  // m: distance outside of the grid, where there is no bone
-constexpr double deepest = 40e-3;         // m
 constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
 constexpr double hollow_density = 200.0;  // kg/m³: below it, filled air
 constexpr double longest_hollow = 3e-3;  // m: longest gap between two walls of one bone
 constexpr std::size_t most_candidates = 12'000;
-constexpr int directions = 8;
-
-/// Interpolated value; `outside` beyond the grid.
-double value_at(const Grid& grid, const Vec3& p, double outside) {
-    const Vec3 u = (p - grid.origin) / grid.spacing;
-    int cell[3];
-    double t[3];
-    for (int a = 0; a < 3; ++a) {
-        if (!(u[a] >= 0.0 && u[a] <= grid.size[static_cast<std::size_t>(a)] - 1)) return outside;
-        cell[a] = std::min(static_cast<int>(u[a]), grid.size[static_cast<std::size_t>(a)] - 2);
-        t[a] = u[a] - cell[a];
-    }
-    double sum = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-        const double weight = (dx ? t[0] : 1.0 - t[0]) * (dy ? t[1] : 1.0 - t[1]) * (dz ? t[2] : 1.0 - t[2]);
-        sum += weight * static_cast<double>(grid.at(cell[0] + dx, cell[1] + dy, cell[2] + dz));
-    }
-    return sum;
-}
 
 class Search {
 public:
@@ -79,8 +54,8 @@ public:
                                                       : Vec3(0.0, 0.0, -1.0);
         const double deep = std::max(thickness(*surface, feed), least_thickness);
         double best = HUGE_VAL;
-        for (int i = 0; i < directions; ++i) {
-            const Vec3 stroke = direction(feed, i);
+        for (int i = 0; i < site_directions; ++i) {
+            const Vec3 stroke = site_direction(feed, i);
             const double wide = width(*surface, feed, stroke, 0.5 * deep);
             // Narrow is good; other bone in the way is worse than any width.
             const double cost = (wide < 0.0 ? 1.0 : wide) + (body_is_free(*surface, feed, stroke) ? 0.0 : 1.0);
@@ -164,18 +139,6 @@ private:
         return std::nullopt;
     }
 
-    /// One of eight directions orthogonal to the feed.
-    static Vec3 direction(const Vec3& feed, int i) {
-        // The reference axis is the one most nearly orthogonal to the feed, so that it is never parallel.
-        const Vec3 size = glm::abs(feed);
-        const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
-                          : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
-                                                               : Vec3(0.0, 0.0, 1.0);
-        const Vec3 first = glm::normalize(axis - feed * glm::dot(axis, feed)), second = glm::cross(feed, first);
-        const double angle = std::numbers::pi * i / directions;
-        return first * std::cos(angle) + second * std::sin(angle);
-    }
-
     /// 1 well inside of the scan and outside of the bone's own hollow, less otherwise.
     double liking(const Vec3& p, const Vec3& feed) const {
         const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
@@ -209,7 +172,7 @@ private:
 
     double thickness(const Vec3& p, const Vec3& feed) const {
         double solid = 0.0, hollow = 0.0;
-        for (double t = step_; t < deepest; t += step_) {
+        for (double t = step_; t < deepest_site; t += step_) {
             const Vec3 at = p + feed * t;
             if (d(at) >= 0.0 && t > 2.0 * step_ + 0.5e-3) break;
             // A scan blurs the bone's own surface: half a millimetre may look soft.
@@ -287,7 +250,7 @@ private:
             liking(p, feed) * (deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep);
         if (depth_score <= best_score_) return;
 
-        for (int i = 0; i < directions; ++i) look_along(p, feed, direction(feed, i), deep, depth_score);
+        for (int i = 0; i < site_directions; ++i) look_along(p, feed, site_direction(feed, i), deep, depth_score);
     }
 
     void look_along(const Vec3& p, const Vec3& feed, const Vec3& stroke, double deep, double depth_score) {
@@ -323,43 +286,6 @@ std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, co
     for (const int n : distance.size)
         if (n < 2) return std::nullopt;
     return Search(distance, density, request).at(point, approach);
-}
-
-SiteVolume refine_at(const SawSite& site, const Grid& distance, const Grid& density, double spacing,
-                     const SiteRequest& request) {
-    const Vec3 across = glm::cross(site.stroke, site.feed);
-    const double along = 0.5 * request.blade_length + request.travel, beside = 10e-3;
-    const double above = request.blade_height + 5e-3, below = std::min(site.thickness + 8e-3, deepest);
-    Vec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p = site.point + site.stroke * (corner & 1 ? along : -along) +
-                       site.feed * (corner & 2 ? below : -above) + across * (corner & 4 ? beside : -beside);
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const Vec3 last = distance.position(distance.size[0] - 1, distance.size[1] - 1, distance.size[2] - 1);
-    low = glm::max(low, distance.origin);
-    high = glm::min(high, last);
-    SiteVolume made;
-    Grid& grid = made.distance;
-    grid.spacing = Vec3(spacing);
-    grid.origin = low;
-    double samples = 1.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-        const int axis = static_cast<int>(a);
-        grid.size[a] = std::max(2, static_cast<int>((high[axis] - low[axis]) / spacing) + 1);
-        samples *= grid.size[a];
-    }
-    if (samples > 40e6)
-        throw Error(
-            fmt::format("around the site {:.3g} million samples of {:.3g} mm would be needed; widen the kerf or "
-                        "import the bone with --crop and --spacing",
-                        samples * 1e-6, spacing * 1e3));
-    const Grid layout = grid;
-    made.distance = resampled(distance, layout);
-    made.density = resampled(density, layout);
-    for (float& value : made.density.values) value = std::max(value, 0.0f);
-    return made;
 }
 
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request) {

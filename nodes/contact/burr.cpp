@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/burr.hpp"
 #include "graph/node/node.hpp"
+#include "nodes/contact/tool_report.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -30,7 +31,7 @@ struct Burr {
 
     void prepare(const Setup&) {
         burr_.emplace(saw::BurrShape{0.5 * diameter, flutes}, stiffness);
-        ticks_ = touching_ = force_ = deepest_ = 0.0;
+        told_ = {};
         last_ = {};
     }
 
@@ -48,31 +49,16 @@ struct Burr {
         ++last_.version;
         last_.content_hash = carve::hash_of(last_);
         front = last_;
-        ++ticks_;
-        clearance_ = bone->value(last_.pose.position) - 0.5 * diameter;
-        if (!now.touches) return;
-        ++touching_;
-        force_ += now.load;
-        deepest_ = std::max(deepest_, now.lag);
+        told_.add(bone.get(), pose.get(), now.touches, now.load, now.lag, 0.5 * diameter);
     }
 
-    void report(Report& report) const {
-        const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
-        report.set("contact", "fraction", share(touching_, ticks_));
-        report.set("contact", "max_penetration_mm", deepest_ * 1e3);
-        report.set("force", "thrust_mean_N", share(force_, touching_));
-        if (touching_ == 0.0 && ticks_ > 0.0) {
-            const Vec3 at = last_.pose.position * 1e3;
-            report.set("contact", "blade_mm", std::vector<double>{at.x, at.y, at.z});
-            report.set("contact", "blade_clearance_mm", clearance_ * 1e3);
-        }
-    }
+    void report(Report& report) const { told_.tell(report); }
 
 private:
     std::optional<saw::Burr> burr_;
     saw::CuttingLaw law_;
     carve::CutFront last_;
-    double ticks_ = 0.0, touching_ = 0.0, force_ = 0.0, deepest_ = 0.0, clearance_ = 0.0;
+    ToolReport told_;
 };
 
 TACTUS_NODE(Burr, pose, bone, running, wrench, load, flute_force, feed, penetration, in_contact, front, stiffness,

@@ -18,6 +18,9 @@ struct KerfHeat {
 
     In<Pose> pose{"of the blade: x along the teeth, y into the bone, origin in the middle of the tooth line", "m"};
     Batch<double> load{"thrust against the cutting direction", "N"};
+    Batch<double> cutting{optional, "force of the teeth along the stroke; unconnected: the thrust over 'thrust_ratio'",
+                          "N"};
+    Batch<double> teeth{optional, "teeth that bear; with 'cutting', in place of 'contact'", "1"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
     In<bool> irrigated{optional, "water flows into the kerf; unconnected: 'irrigation'"};
@@ -28,7 +31,7 @@ struct KerfHeat {
     Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
     Param stroke{"3 mm", "0.5 mm", "20 mm", "of the teeth, peak to peak"};
     Param thrust_ratio{"1.6", "0.2", "10", "thrust over cutting force; 1.4 to 1.8 were measured on bone"};
-    Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts"};
+    Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts, unless 'teeth' says"};
     Flag irrigation{false, "water flows into the kerf, unless 'irrigated' is connected"};
     Param limit{"10 K", "1 K", "60 K", "rise above the body that counts as hot"};
     Param share{structural, "0.5", "0", "1", "of the heat that enters the bone; an assumption"};
@@ -46,13 +49,7 @@ struct KerfHeat {
 
     void process(const Tick& tick) noexcept {
         const Pose now = pose.get();
-        double thrust = 0.0, count = 0.0;
-        for (const double value : load.values()) {
-            if (!std::isfinite(value)) continue;
-            thrust += std::max(value, 0.0);
-            ++count;
-        }
-        if (count > 0.0) thrust /= count;
+        const double thrust = mean(load);
         const bool runs = !running.connected || running.get();
         const bool cuts = runs && thrust > 0.0 && is_valid(now);
         if (cuts && !is_in_cut(now)) {
@@ -60,11 +57,16 @@ struct KerfHeat {
             cut_ = Cut{now.position, axis(now, {0.0, 1.0, 0.0}), axis(now, {0.0, 0.0, 1.0})};
         }
         heat_->limit = limit;
-        const double speed =
-            2.0 * stroke * (strokes.connected ? std::max(strokes.get(), 0.0) : static_cast<double>(stroke_rate));
-        const double power = cuts ? thrust / thrust_ratio * speed : 0.0;
+        const double rate = strokes.connected ? std::max(strokes.get(), 0.0) : static_cast<double>(stroke_rate);
+        // W per metre of tooth line. Of the teeth that pass a place one bears, per length of the stroke.
+        double heat = 0.0;
+        if (cuts && cutting.connected && teeth.connected) {
+            if (const double bearing = mean(teeth); bearing > 0.0) heat = 2.0 * rate * mean(cutting) / bearing;
+        } else if (cuts) {
+            heat = 2.0 * rate * stroke * thrust / thrust_ratio / contact;
+        }
         if (cut_ && is_valid(now)) depth_ = glm::dot(now.position - cut_->origin, cut_->into);
-        heat_->advance(tick.elapsed_seconds(), cut_ ? depth_ : 0.0, power / contact,
+        heat_->advance(tick.elapsed_seconds(), cut_ ? depth_ : 0.0, heat,
                        irrigated.connected ? irrigated.get() : static_cast<bool>(irrigation));
         rise = heat_->hottest();
         peak = heat_->peak();
@@ -83,6 +85,16 @@ private:
         Vec3 origin, into, across;
     };
 
+    static double mean(const Batch<double>& batch) noexcept {
+        double sum = 0.0, count = 0.0;
+        for (const double value : batch.values()) {
+            if (!std::isfinite(value)) continue;
+            sum += std::max(value, 0.0);
+            ++count;
+        }
+        return count > 0.0 ? sum / count : 0.0;
+    }
+
     static Vec3 axis(const Pose& at, const Vec3& of) noexcept { return glm::normalize(at.orientation) * of; }
 
     /// Bone further away than heat reaches while one cuts is at rest.
@@ -100,7 +112,7 @@ private:
     double depth_ = 0.0;
 };
 
-TACTUS_NODE(KerfHeat, pose, load, running, strokes, irrigated, rise, peak, hot_time, hot_reach, stroke_rate, stroke,
-            thrust_ratio, contact, irrigation, limit, share, coolant, transfer)
+TACTUS_NODE(KerfHeat, pose, load, cutting, teeth, running, strokes, irrigated, rise, peak, hot_time, hot_reach,
+            stroke_rate, stroke, thrust_ratio, contact, irrigation, limit, share, coolant, transfer)
 
 }  // namespace tactus::nodes

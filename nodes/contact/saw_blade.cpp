@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/saw_blade.hpp"
 #include "graph/node/node.hpp"
+#include "nodes/contact/tool_report.hpp"
 
 #include <fmt/format.h>
 
@@ -32,7 +33,8 @@ struct SawBlade {
     Param sharpness{structural, "1", "0.1", "20",
                     "forces of the published teeth over those of these: the same thrust cuts that much more"};
     Flag sagittal{false,
-                  "the blade swings about an axis 'height' behind its teeth; otherwise it strokes along its length"};
+                  "the blade swings about an axis 'height' behind its teeth, which stand on an arc about it; otherwise "
+                  "it strokes along its length"};
     Param length{structural, "40 mm", "5 mm", "80 mm", "of the tooth line"};
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
     Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
@@ -60,9 +62,14 @@ struct SawBlade {
                                    carve::CutFront::most_nodes - 1));
         if (shape.kerf <= shape.thickness)
             setup.fail("the kerf is not wider than the blade, which would bind; widen 'kerf' or thin the blade");
+        if (shape.kind == saw::SawKind::sagittal && shape.height < 0.5 * (shape.length + shape.stroke) * 1.1)
+            setup.fail(fmt::format(
+                "a sagittal blade swings about an axis {:.3g} mm behind its teeth, too near for {:.3g} mm of "
+                "teeth and their stroke; lengthen 'height'",
+                shape.height * 1e3, shape.length * 1e3));
         law_ = saw::CuttingLaw{}.sharpened(sharpness);
         blade_.emplace(shape, stiffness);
-        ticks_ = touching_ = thrust_ = deepest_ = 0.0;
+        told_ = {};
         last_ = {};
     }
 
@@ -83,31 +90,16 @@ struct SawBlade {
         ++last_.version;
         last_.content_hash = carve::hash_of(last_);
         front = last_;
-        ++ticks_;
-        clearance_ = bone->value(last_.pose.position);
-        if (now.count == 0) return;
-        ++touching_;
-        thrust_ += now.thrust;
-        deepest_ = std::max(deepest_, now.lag);
+        told_.add(bone.get(), pose.get(), now.count > 0, now.thrust, now.lag, 0.0);
     }
 
-    void report(Report& report) const {
-        const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
-        report.set("contact", "fraction", share(touching_, ticks_));
-        report.set("contact", "max_penetration_mm", deepest_ * 1e3);
-        report.set("force", "thrust_mean_N", share(thrust_, touching_));
-        if (touching_ == 0.0 && ticks_ > 0.0) {
-            const Vec3 at = last_.pose.position * 1e3;
-            report.set("contact", "blade_mm", std::vector<double>{at.x, at.y, at.z});
-            report.set("contact", "blade_clearance_mm", clearance_ * 1e3);
-        }
-    }
+    void report(Report& report) const { told_.tell(report); }
 
 private:
     std::optional<saw::SawBlade> blade_;
     saw::CuttingLaw law_;
     carve::CutFront last_;
-    double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0, clearance_ = 0.0;
+    ToolReport told_;
 };
 
 TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, penetration, in_contact,

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The saw beside published measurements, and what its front costs beside a blade without one.
+#include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/contact/blade.hpp"
+#include "dsp/saw/kerf_heat.hpp"
 #include "dsp/saw/published.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/saw_figure.hpp"
+#include "tools/study/saw/bone_trial.hpp"
 #include "tools/study/saw/saw_trial.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +20,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace tactus::bench {
@@ -27,6 +31,7 @@ using file::Json;
 
 struct SawBenchChoice : BenchChoice {
     std::string figure;
+    std::vector<std::string> bones;
 };
 
 double cpu_seconds() {
@@ -43,6 +48,21 @@ struct Comparison {
     std::vector<Row> rows;
     picture::SawFigure figure;
 };
+
+/// Highest temperature rise of bone, K, at that distance from the middle of a cut at constant feed (mm/min), 6 mm below
+/// its start, in cortical bone. Each place is cut twice a cycle by one tooth per length of the stroke.
+double warming(double cycles_per_minute, double feed_mm_per_min, bool irrigated, double distance) {
+    const double rate = cycles_per_minute / 60.0, feed = feed_mm_per_min * 1e-3 / 60.0, step = 0.02;
+    const saw::CuttingLaw law;
+    const double heat = 2.0 * rate * law.along(law.thrust(feed / (2.0 * rate)));  // W/m
+    saw::KerfHeat bone;
+    double most = 0.0;
+    for (double depth = 0.0; depth < 12e-3; depth += feed * step) {
+        bone.advance(step, depth, heat, irrigated);
+        most = std::max(most, bone.at(6e-3, distance));
+    }
+    return most;
+}
 
 Comparison compare() {
     namespace j = saw::james_2013;
@@ -89,6 +109,16 @@ Comparison compare() {
     made.rows.push_back({"predicted: rate of least force at 0.67 mm/s, 120 to 285 Hz (Yu 2023)", "228 Hz",
                          fmt::format("{:.0f} Hz ({:.1f} N; {:.1f} N at 228 Hz)", least_at, least, at_yu),
                          fmt::format("{:+.0f} %, no minimum inside", 100.0 * (least_at / saw::yu_2023::rate - 1.0))});
+    for (const auto& [cycles, feed, wet] : {std::tuple{10e3, 30.0, false}, std::tuple{10e3, 10.0, false},
+                                            std::tuple{18e3, 30.0, false}, std::tuple{18e3, 20.0, true}})
+        made.rows.push_back({fmt::format("predicted: warming, sagittal, {:.0f} cpm, {:.0f} mm/min{}", cycles, feed,
+                                         wet ? ", irrigated" : ""),
+                             wet                              ? "hardly above 10 K"
+                             : cycles == 10e3 && feed == 30.0 ? "65 K, the least of 15"
+                                                              : "more than 65 K",
+                             fmt::format("{:.0f} K at 0.5 mm, {:.0f} K at 1 mm", warming(cycles, feed, wet, 0.5e-3),
+                                         warming(cycles, feed, wet, 1e-3)),
+                             "distance not known"});
     for (const double thrust : {3.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0})
         made.figure.feed.push_back({thrust, study::run_saw_trial({.thrust = thrust}).feed * 1e3});
     return made;
@@ -195,7 +225,33 @@ Json costs(int rounds) {
             {"carve_fronts_over_samples", fronts / samples}};
 }
 
+/// Feed and removed volume over thrust on bones that were imported.
+int bench_bones(const SawBenchChoice& choice) {
+    constexpr double thrusts[] = {2.0, 4.0, 7.5, 12.0, 20.0};  // N
+    Json all = Json::array();
+    for (const std::string& file : choice.bones) {
+        const study::BoneTrial trial = study::run_bone_trial(bone::load_bone(file), thrusts);
+        Json rows = Json::array();
+        if (!choice.json)
+            fmt::print("{}: {:.1f} mm thick, {:.1f} mm wide, voxels of {:.2f} mm\n", file, trial.site.thickness * 1e3,
+                       trial.site.width * 1e3, trial.voxel * 1e3);
+        for (const study::BoneTrialRow& row : trial.rows) {
+            rows.push_back({{"thrust_N", row.thrust},
+                            {"feed_mm_per_s", row.feed * 1e3},
+                            {"removed_mm3_per_s", row.removal * 1e9},
+                            {"seconds", row.seconds}});
+            if (!choice.json)
+                fmt::print("  {:4.1f} N: feed {:6.3f} mm/s, {:6.2f} mm³/s over {:.2f} s\n", row.thrust, row.feed * 1e3,
+                           row.removal * 1e9, row.seconds);
+        }
+        all.push_back({{"bone", file}, {"thickness_mm", trial.site.thickness * 1e3}, {"rows", rows}});
+    }
+    if (choice.json) fmt::print("{}\n", all.dump(2));
+    return done;
+}
+
 int bench_saw(const SawBenchChoice& choice) {
+    if (!choice.bones.empty()) return bench_bones(choice);
     const Comparison made = compare();
     const Json cost = costs(choice.rounds);
     if (!choice.figure.empty()) picture::write_figure(picture::draw_saw_law(made.figure), choice.figure);
@@ -228,6 +284,9 @@ Verb saw_verb() {
                     .shows_default()
                     .range(1, 100);
                 verb.add("--figure", choice->figure, "draw the law and the measurements to this .svg or .png");
+                verb.add("--bone", choice->bones,
+                         "instead: feed and removed volume over thrust on this imported bone; may be given again")
+                    .one_each();
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_saw(*choice); };
             }};

@@ -15,8 +15,10 @@ void add_override_options(VerbOptions& verb, session::PatchChoice& choice) {
 }
 
 void add_site_options(VerbOptions& verb, session::SiteText& text) {
-    const Option site = verb.add("--site", text.site,
-                                 "X,Y,Z in mm in the bone's frame: where the saw starts (default: a site is found)");
+    const Option site =
+        verb.add("--site", text.site,
+                 "X,Y,Z in mm, or with units as in \"12 mm, 3 mm, 4 mm\", in the bone's frame: where the saw "
+                 "starts (default: a site is found)");
     verb.add("--approach", text.approach,
              "X,Y,Z: direction of the saw into the bone (default: the surface's normal at --site)")
         .needs(site);

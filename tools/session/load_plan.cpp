@@ -3,6 +3,7 @@
 
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
+#include "tools/session/saw_fits.hpp"
 
 #include <fmt/format.h>
 
@@ -106,6 +107,7 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
     if (!problems.empty()) return std::nullopt;
     std::optional<compile::Plan> plan = compile::compile(std::move(patch), nodes::catalogue(), problems);
     if (plan && assets) assets->load(*plan, problems);
+    if (plan && problems.empty()) check_saw(*plan, problems);
     return plan;
 }
 

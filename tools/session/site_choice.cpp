@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/site_choice.hpp"
 
+#include "dsp/core/units.hpp"
 #include "tools/session/load_plan.hpp"
 
 #include <fmt/format.h>
@@ -14,15 +15,26 @@ namespace tactus::session {
 
 namespace {
 
-Vec3 three_numbers(const char* option, std::string_view text) {
+/// Three lengths with commas, in mm where no unit stands; in mm.
+Vec3 three_lengths(const char* option, std::string_view text) {
     Vec3 v(0.0);
-    const char *at = text.data(), *const end = at + text.size();
+    std::size_t begin = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto [stop, error] = std::from_chars(at, end, v[axis]);
-        const bool last = axis == 2;
-        if (error != std::errc() || !std::isfinite(v[axis]) || (last ? stop != end : stop == end || *stop != ','))
-            throw Error(fmt::format("{} {}: give three numbers with commas, as in 12.5,-3,40", option, text));
-        at = stop + 1;
+        const std::size_t comma = axis < 2 ? text.find(',', begin) : text.size();
+        std::string_view part = text.substr(begin, comma == std::string_view::npos ? comma : comma - begin);
+        while (part.starts_with(' ')) part.remove_prefix(1);
+        while (part.ends_with(' ')) part.remove_suffix(1);
+        const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), v[axis]);
+        try {
+            if (error != std::errc() || stop != part.data() + part.size()) v[axis] = parse_as(part, "mm") * 1e3;
+            if (comma == std::string_view::npos || !std::isfinite(v[axis])) throw Error("no length");
+        } catch (const Error&) {
+            throw Error(
+                fmt::format("{} {}: give three numbers with commas, as in 12.5,-3,40 (mm) or "
+                            "\"12.5 mm, -3 mm, 40 mm\"",
+                            option, text));
+        }
+        begin = comma + 1;
     }
     return v;
 }
@@ -32,8 +44,8 @@ Vec3 three_numbers(const char* option, std::string_view text) {
 void choose_site(PatchChoice& choice, const SiteText& text) {
     if (text.site.empty() && text.approach.empty()) return;
     if (text.site.empty()) throw Error("--approach needs --site: the point that the saw is to meet");
-    const Vec3 site = three_numbers("--site", text.site);
-    const Vec3 approach = text.approach.empty() ? Vec3(0.0) : three_numbers("--approach", text.approach);
+    const Vec3 site = three_lengths("--site", text.site);
+    const Vec3 approach = text.approach.empty() ? Vec3(0.0) : three_lengths("--approach", text.approach);
     if (!text.approach.empty() && !(glm::length(approach) > 1e-9)) throw Error("--approach 0,0,0 is no direction");
     patch::Problems problems;
     const patch::Patch patch = patch::load_patch(find_patch(choice.patch), problems);

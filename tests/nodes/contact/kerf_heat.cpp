@@ -73,3 +73,26 @@ TEST_CASE("a second cut elsewhere is in cool bone, and the hottest of both count
     CHECK(node.last<double>("rise") == Approx(second.last<double>("rise")).epsilon(0.02));
     CHECK(node.last<double>("peak") > 3.0 * node.last<double>("rise"));
 }
+
+TEST_CASE("heat follows the force along the teeth and the teeth that bear, and the stroke has no say") {
+    const auto peak = [](double cutting, double teeth, const char* stroke) {
+        NodeHarness node("kerf_heat", slow);
+        node.feed<Pose>("pose", advancing);
+        node.feed<double>("load", [](std::int64_t) { return 8.0; });
+        node.feed<double>("cutting", [cutting](std::int64_t) { return cutting; });
+        node.feed<double>("teeth", [teeth](std::int64_t) { return teeth; });
+        node.set("stroke", stroke);
+        node.disconnect("strokes").disconnect("irrigated").disconnect("running");
+        node.prepare();
+        node.run(600);
+        return node.last<double>("peak");
+    };
+    const double one = peak(5.0, 4.0, "3 mm");
+    saw::KerfHeat expected;
+    for (int k = 0; k < 600; ++k) expected.advance(1.0 / 60.0, 0.67e-3 * k / 60.0, 2.0 * 228.0 * 5.0 / 4.0, false);
+    CHECK(one == Approx(expected.peak()).epsilon(0.03));
+    CHECK(peak(5.0, 4.0, "6 mm") == one);
+    CHECK(peak(10.0, 8.0, "3 mm") == Approx(one).epsilon(1e-9));
+    CHECK(peak(5.0, 8.0, "3 mm") == Approx(0.5 * one).epsilon(1e-3));
+    CHECK(peak(5.0, 0.0, "3 mm") == 0.0);
+}

@@ -25,7 +25,34 @@ struct Setting {
     std::string_view name;
     double height;  ///< m, from which the hand is thrown at the surface
     std::string_view wires, nodes;
+    double kerf = 0.0;  ///< mm, of a tool on the library's jaw that is not powered; it starts as far from the bone
 };
+
+constexpr std::string_view bone_wires =
+    R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
+"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench", )";
+
+/// `@` is the kerf.
+constexpr std::string_view bone_nodes = R"(
+[assets]
+bone = "bones/mandible.vdb"
+[nodes.place]
+type = "workspace"
+rate = "1 kHz"
+bone = "bone"
+clearance = "@ mm"
+[nodes.still]
+type = "button"
+rate = "1 kHz"
+[nodes.felt]
+type = "device_wrench"
+rate = "1 kHz"
+[nodes.carve]
+type = "carve"
+rate = "60 Hz"
+source = "bone"
+kerf = "@ mm"
+)";
 
 constexpr std::string_view plate_and_tip = R"(
 [nodes.plate]
@@ -107,87 +134,30 @@ held = "1"
 stiffness = "% N/mm"
 )"},
     {"blade_contact", 3e-3,
-     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
-"place.pose -> carve.path as batch", "contact.load -> carve.load as batch", "still.pressed -> carve.running",
-"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench")",
+     R"("place.pose -> carve.path as batch", "contact.load -> carve.load as batch", "still.pressed -> carve.running")",
      R"(
-[assets]
-bone = "bones/mandible.vdb"
-[nodes.place]
-type = "workspace"
-rate = "1 kHz"
-bone = "bone"
-clearance = "1 mm"
-[nodes.still]
-type = "button"
-rate = "1 kHz"
-[nodes.felt]
-type = "device_wrench"
-rate = "1 kHz"
-[nodes.carve]
-type = "carve"
-rate = "60 Hz"
-source = "bone"
 [nodes.contact]
 type = "blade_contact"
 rate = "1 kHz"
 stiffness = "% N/mm"
-)"},
-    {"saw_blade", 3e-3,
-     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
-"contact.front -> carve.front as batch", "still.pressed -> contact.running",
-"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench")",
+)",
+     1.0},
+    {"saw_blade", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")",
      R"(
-[assets]
-bone = "bones/mandible.vdb"
-[nodes.place]
-type = "workspace"
-rate = "1 kHz"
-bone = "bone"
-clearance = "1 mm"
-[nodes.still]
-type = "button"
-rate = "1 kHz"
-[nodes.felt]
-type = "device_wrench"
-rate = "1 kHz"
-[nodes.carve]
-type = "carve"
-rate = "60 Hz"
-source = "bone"
 [nodes.contact]
 type = "saw_blade"
 rate = "1 kHz"
 stiffness = "% N/mm"
-)"},
-    {"burr", 3e-3,
-     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
-"contact.front -> carve.front as batch", "still.pressed -> contact.running",
-"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench")",
+)",
+     1.0},
+    {"burr", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")",
      R"(
-[assets]
-bone = "bones/mandible.vdb"
-[nodes.place]
-type = "workspace"
-rate = "1 kHz"
-bone = "bone"
-clearance = "4 mm"
-[nodes.still]
-type = "button"
-rate = "1 kHz"
-[nodes.felt]
-type = "device_wrench"
-rate = "1 kHz"
-[nodes.carve]
-type = "carve"
-rate = "60 Hz"
-source = "bone"
-kerf = "4 mm"
 [nodes.contact]
 type = "burr"
 rate = "1 kHz"
 stiffness = "% N/mm"
-)"},
+)",
+     4.0},
 };
 
 std::string patch_of(const Setting& setting, double stiffness, bool capped) {
@@ -200,6 +170,14 @@ std::string patch_of(const Setting& setting, double stiffness, bool capped) {
     if (has_scene && !has_tip) {
         const std::size_t tip = scene.find("[nodes.tip]"), end = scene.find("[nodes.scene]");
         scene.erase(tip, end - tip);
+    }
+    std::string wires(setting.wires);
+    if (setting.kerf > 0.0) {
+        wires.insert(0, bone_wires);
+        std::string bone(bone_nodes);
+        for (std::size_t n; (n = bone.find('@')) != std::string::npos;)
+            bone.replace(n, 1, fmt::format("{}", setting.kerf));
+        nodes.insert(0, bone);
     }
     return fmt::format(R"(wires = [{}]
 [devices.thrown]
@@ -214,7 +192,7 @@ max_force = "10 N"
 slew = "1 N/ms"
 energy_cap = {}
 {}{})",
-                       setting.wires, capped ? "true" : "false", scene, nodes);
+                       wires, capped ? "true" : "false", scene, nodes);
 }
 
 /// Kept by the driver, which the catalogue of devices owns.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library's saw on the library's jaw, as a hand feels it.
+#include "assets/table/number_table.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+using namespace tactus;
+
+namespace {
+
+/// Peak amplitude at `hz` of samples at 1 kHz, under a Hann window.
+double line(std::span<const double> samples, double hz) {
+    double mean = 0.0;
+    for (const double x : samples) mean += x / static_cast<double>(samples.size());
+    std::complex<double> sum = 0.0;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        const double share = static_cast<double>(n) / static_cast<double>(samples.size());
+        sum += (samples[n] - mean) * (1.0 - std::cos(2.0 * std::numbers::pi * share)) *
+               std::polar(1.0, -2.0 * std::numbers::pi * hz * static_cast<double>(n) / 1000.0);
+    }
+    return 2.0 * std::abs(sum) / static_cast<double>(samples.size());
+}
+
+}  // namespace
+
+TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw", "[slow]") {
+    const test::Folder folder;
+    const test::Outcome outcome = folder.tactus("render saw-training --seconds 8 -o " + (folder.path / "out").string());
+    REQUIRE(outcome.code == 0);
+    const std::vector<double> all = table::load_number_table(folder.path / "out" / "force.csv").numbers("fz_N");
+    REQUIRE(all.size() >= 8000);
+    for (const std::size_t begin : {1500, 3500, 5500}) {
+        const std::span<const double> part = std::span(all).subspan(begin, 2000);
+        double floor = 0.0;
+        for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0}) floor += line(part, hz) / 8.0;
+        CAPTURE(begin, floor, line(part, 60.0));
+        CHECK(line(part, 60.0) < floor + 0.01);
+    }
+}
+
+TEST_CASE("a hand that rocks the saw with 20 N cuts through the jaw and is not caught in its own cut", "[slow]") {
+    const test::Folder folder;
+    const test::Outcome outcome = folder.tactus("render saw-training --seconds 12 --set simulated.thrust='20 N' -o " +
+                                                (folder.path / "out").string());
+    REQUIRE(outcome.code == 0);
+    const auto summary = nlohmann::json::parse(test::slurp(folder.path / "out" / "summary.json"));
+    CHECK(summary["carve"]["severed"].get<double>() == 1.0);
+    CHECK(summary["contact"]["max_penetration_mm"].get<double>() < 3.0);
+}
