@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of a broken bone `plan assemble` puts together rightly, over cases with known truth.
+#include "assets/file/json.hpp"
 #include "tools/bench/assembly_cases.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/result_lines.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct AssemblyChoice {
     int first = 0, cases = 40;

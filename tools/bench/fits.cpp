@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which thresholds tell true fits from false ones: trials with known truth, one half to set them, the other to judge.
+#include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
@@ -7,7 +8,6 @@
 #include "tools/bench/result_lines.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace tactus::bench {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 struct FitsChoice {
     int first = 0, groups = 60;

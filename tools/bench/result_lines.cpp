@@ -24,8 +24,8 @@ ResultLines::ResultLines(std::filesystem::path file, std::string key) : file_(st
     for (std::string line; std::getline(in, line);) {
         ++number;
         read += line.size() + 1;
-        Json row = Json::parse(line, nullptr, false);
-        if (row.is_discarded() && in.peek() == std::ifstream::traits_type::eof()) break;
+        Json row = Json::parse_or_null(line);
+        if (row.is_null() && in.peek() == std::ifstream::traits_type::eof()) break;
         if (!row.is_object() || !row.contains(key_) || !row[key_].is_number_integer())
             throw Error(
                 fmt::format("{}:{}: is no result of this study; name another file with --out", file_.string(), number));

@@ -2,7 +2,7 @@
 // Results of a long study, kept in a file: a study that was stopped goes on where it was.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "assets/file/json.hpp"
 
 #include <filesystem>
 #include <set>
@@ -14,7 +14,7 @@ namespace tactus::bench {
 /// Rows of JSON, one per line. A part of the study is one number and all its rows.
 class ResultLines {
 public:
-    using Json = nlohmann::ordered_json;
+    using Json = file::Json;
 
     /// Reads what `file` holds; no name: nothing is kept. `key` is the name of the number in each row. Throws Error for a
     /// file with another content. A last line that was cut off is left out with its part.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan assemble: puts all shown fragments of a plan together as far as their fractures say how.
+#include "assets/file/json.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/match_reason.hpp"
@@ -7,7 +8,6 @@
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ namespace tactus::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 /// Adds a step for each fragment that is placed; the caller saves the plan.
 void add_steps(cases::CasePlan& plan, const study::PlanAssembly& made) {
