@@ -7,6 +7,8 @@
 #include <map>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace tactus::compile {
 
@@ -64,6 +66,9 @@ public:
         else check_param();
         return std::move(wire_);
     }
+
+    /// What is wrong is that nothing says which type the wire carries: another slip may be the reason.
+    bool is_undecided() const { return is_undecided_; }
 
     /// The input that the wire means, or null: a wire with a fault feeds it all the same, and one slip is said once.
     Input* meant_input() {
@@ -153,7 +158,8 @@ private:
     }
 
     void take_type(Input& port, const ValueType& type) {
-        if (&type == &value::undecided)
+        is_undecided_ = &type == &value::undecided;
+        if (is_undecided_)
             throw Error(fmt::format("the type of '{}.{}' is not known: feed an input of '{}' by a node of known type",
                                     source_.from_node, source_.from_port, source_.from_node));
         if (!(port.takes & kind_of(type)))
@@ -193,6 +199,7 @@ private:
     WireContext& context_;
     const patch::PatchWire& source_;
     PlanWire wire_;
+    bool is_undecided_ = false;
 };
 
 void check_unconnected(const PlanNode& node, patch::Problems& problems) {
@@ -219,15 +226,19 @@ void resolve_wires(Plan& plan, patch::Problems& problems) {
     WireContext context(plan, problems);
     plan.wires.reserve(plan.patch.wires.size());
     const std::size_t known = problems.list.size();
+    std::vector<std::pair<SourceLocation, std::string>> undecided;
     for (const patch::PatchWire& source : plan.patch.wires) {
         WireResolver resolver(plan, context, source);
         try {
             plan.wires.push_back(resolver.resolve());
         } catch (const Error& error) {
-            problems.add(source.where, error.message());
+            if (resolver.is_undecided()) undecided.emplace_back(source.where, error.message());
+            else problems.add(source.where, error.message());
             if (Input* meant = resolver.meant_input()) meant->connected = true;
         }
     }
+    if (problems.list.size() == known)
+        for (const auto& [where, message] : undecided) problems.add(where, message);
     const bool wires_are_sound = problems.list.size() == known;
     for (PlanNode& node : plan.nodes) {
         // A wire that is wrong leaves its input open: one slip, told once.

@@ -21,33 +21,54 @@ struct Feed {
     const Input* input = nullptr;
 };
 
-/// The node's outputs have the type from now on, and its inputs, those without a wire too.
-void decide(PlanNode& node, const ValueType& type) {
-    for (const PlanOutput& output : node.outputs)
-        if (output.port->type == &value::undecided) output.port->type = &type;
-    for (const PlanInput& input : node.inputs)
-        if (input.port->kind == InputKind::any) input.port->type = &type;
-}
+/// Carries types along the feeds, from node to node.
+class Carrier {
+public:
+    void add(const PlanNode& from, const Feed& feed) {
+        feeds_[&from].push_back(feed);
+        all_.push_back(feed);
+    }
 
-/// Carries types along the feeds as far as they reach. False: no node with a feed is open any more.
-bool carry_types(const std::vector<Feed>& feeds) {
-    bool some_are_open = true;
-    // Each round decides at least one node, or is the last.
-    for (bool has_decided = true; has_decided;) {
-        has_decided = some_are_open = false;
-        for (const Feed& feed : feeds) {
-            if (!is_open(*feed.to)) continue;
-            const ValueType& type = *feed.from->type;
-            if (&type == &value::undecided || !(feed.input->takes & kind_of(type))) {
-                some_are_open = true;
-                continue;
-            }
-            decide(*feed.to, type);
-            has_decided = true;
+    void carry() {
+        for (const Feed& feed : all_) take(feed);
+        follow();
+        // What is left is cycles that no type comes into. They carry numbers, so that they are refused as cycles.
+        for (const Feed& feed : all_) {
+            if (!is_open(*feed.to) || !(feed.input->takes & kinds::number)) continue;
+            decide(*feed.to, value::number);
+            follow();
         }
     }
-    return some_are_open;
-}
+
+private:
+    /// The node's outputs have the type from now on, and its inputs, those without a wire too.
+    void decide(PlanNode& node, const ValueType& type) {
+        for (const PlanOutput& output : node.outputs)
+            if (output.port->type == &value::undecided) output.port->type = &type;
+        for (const PlanInput& input : node.inputs)
+            if (input.port->kind == InputKind::any) input.port->type = &type;
+        decided_.push_back(&node);
+    }
+
+    void take(const Feed& feed) {
+        const ValueType& type = *feed.from->type;
+        if (&type == &value::undecided || !is_open(*feed.to) || !(feed.input->takes & kind_of(type))) return;
+        decide(*feed.to, type);
+    }
+
+    void follow() {
+        while (!decided_.empty()) {
+            const PlanNode* const node = decided_.back();
+            decided_.pop_back();
+            if (const auto found = feeds_.find(node); found != feeds_.end())
+                for (const Feed& feed : found->second) take(feed);
+        }
+    }
+
+    std::unordered_map<const PlanNode*, std::vector<Feed>> feeds_;  // by the node that they come from
+    std::vector<Feed> all_;
+    std::vector<const PlanNode*> decided_;  // whose feeds are to be followed
+};
 
 }  // namespace
 
@@ -59,22 +80,16 @@ void decide_types(Plan& plan) {
         some_are_open |= is_open(node);
     }
     if (!some_are_open) return;
-    std::vector<Feed> feeds;
+    Carrier carrier;
     for (const patch::PatchWire& wire : plan.patch.wires) {
         const auto from = nodes.find(wire.from_node), to = nodes.find(wire.to_node);
         if (from == nodes.end() || to == nodes.end() || !is_open(*to->second)) continue;
         const auto output = std::ranges::find(from->second->outputs, wire.from_port, &PlanOutput::name);
         const auto input = std::ranges::find(to->second->inputs, wire.to_port, &PlanInput::name);
         if (output == from->second->outputs.end() || input == to->second->inputs.end()) continue;
-        if (input->port->kind == InputKind::any) feeds.push_back({output->port, to->second, input->port});
+        if (input->port->kind == InputKind::any) carrier.add(*from->second, {output->port, to->second, input->port});
     }
-    while (carry_types(feeds)) {
-        // What is left is cycles that no type comes into. They carry numbers, so that they are refused as cycles.
-        const auto left = std::ranges::find_if(
-            feeds, [](const Feed& feed) { return is_open(*feed.to) && (feed.input->takes & kinds::number); });
-        if (left == feeds.end()) return;
-        decide(*left->to, value::number);
-    }
+    carrier.carry();
 }
 
 }  // namespace tactus::compile

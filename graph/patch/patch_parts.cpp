@@ -14,13 +14,19 @@ namespace tactus::patch {
 
 namespace {
 
+/// Whether a node has an output whose type its wires decide.
+struct OpenOutputs final : MemberVisitor {
+    void output(std::string_view, Output& port) override { found |= port.type == &value::undecided; }
+    bool found = false;
+};
+
 /// Finds a signal port of a node by name, and collects the names of all signal ports for the message.
 struct SignalPorts final : MemberVisitor {
-    explicit SignalPorts(std::string_view wanted_) : wanted(wanted_) {}
+    SignalPorts(std::string_view wanted_, bool passes_on_) : wanted(wanted_), passes_on(passes_on_) {}
 
-    // A port of several types counts: whether it carries a signal, the wires decide.
+    // A port of several types counts where the output has the type of the input: which one, the wires decide.
     void input(std::string_view name, Input& port) override {
-        const bool takes_signals = port.kind == InputKind::any && (port.takes & kinds::signal);
+        const bool takes_signals = passes_on && port.kind == InputKind::any && (port.takes & kinds::signal);
         look(name, port.type == &value::signal || takes_signals, port.unit, true);
     }
     void output(std::string_view name, Output& port) override {
@@ -28,6 +34,7 @@ struct SignalPorts final : MemberVisitor {
     }
 
     std::string_view wanted;
+    bool passes_on = false;
     std::vector<std::string> names;
     bool found = false, is_input = false;
     std::string unit;
@@ -65,7 +72,9 @@ SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_v
     const auto type = std::ranges::find(catalogue, node->type, [](const NodeType* t) { return t->name; });
     if (type == catalogue.end()) throw Error(where, fmt::format("node '{}' has an unknown type", name));
     const compile::NodeInstance instance((*type)->create(), (*type)->destroy);
-    SignalPorts ports(port);
+    OpenOutputs open;
+    (*type)->visit(instance.get(), open);
+    SignalPorts ports(port, open.found);
     (*type)->visit(instance.get(), ports);
     if (!ports.found) {
         std::string list;

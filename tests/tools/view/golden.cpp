@@ -63,7 +63,7 @@ scope actuator.signal spectrum
 goto 1.1
 scene
 select blade
-frames 8
+frames 60
 screenshot saw.png
 catalogue filter
 frames 4
@@ -78,7 +78,7 @@ close
     // Another page of one panel is seen.
     CHECK(difference(read_picture(folder.path / "saw.png"), read_picture(folder.path / "catalogue.png")) > 0.01);
     folder.write("script",
-                 "size 1700 1100\nscope hand_out.applied\ngoto 1.1\nscene\nselect blade\nframes 8\nscreenshot "
+                 "size 1700 1100\nscope hand_out.applied\ngoto 1.1\nscene\nselect blade\nframes 60\nscreenshot "
                  "large.png\nclose\n");
     REQUIRE(on(display, folder, "view take --view-script script --view-scale 1.5").code == 0);
     check_golden(folder.path / "large.png", "large");

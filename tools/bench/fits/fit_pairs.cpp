@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/fit_pairs.hpp"
+#include "tools/bench/fits/fit_pairs.hpp"
 
 #include "assets/cases/propose_paint.hpp"
 #include "assets/library/fibula.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/result_lines.hpp"
+#include "tools/bench/fits/result_lines.hpp"
 
 #include "dsp/core/error.hpp"
 

@@ -4,8 +4,8 @@
 #include "dsp/core/error.hpp"
 #include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/bench/fit_pairs.hpp"
-#include "tools/bench/result_lines.hpp"
+#include "tools/bench/fits/fit_pairs.hpp"
+#include "tools/bench/fits/result_lines.hpp"
 
 #include <fmt/format.h>
 

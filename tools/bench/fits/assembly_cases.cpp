@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/assembly_cases.hpp"
+#include "tools/bench/fits/assembly_cases.hpp"
 
 #include "assets/library/fibula.hpp"
 #include "assets/library/mandible.hpp"
