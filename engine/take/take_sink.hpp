@@ -43,7 +43,7 @@ private:
     const std::vector<TakeFile> files_;
     const Told told_;
     std::vector<std::unique_ptr<TakeStreamWriter>> writers_;  // of the files that are open
-    std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point updated_;  // long ago: a run that is killed soon has its first values
 };
 
 }  // namespace tactus::take
