@@ -6,6 +6,7 @@
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/spectrum_figure.hpp"
 #include "tools/study/vibration/level_reference.hpp"
+#include "tools/study/vibration/record.hpp"
 
 #include <fmt/format.h>
 
@@ -115,12 +116,8 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
                        counted(file.channels.empty() ? 0 : file.channels.front().report.psd.segments, "segment"),
                        file.psd.segment);
     if (!file.stretch.is_whole()) out += fmt::format("<p>Of the record: {}.</p>\n", file.stretch.text());
-    if (file.log)
-        out += fmt::format(
-            "<p>An uneven log of {} rows, steps {} to {}, resampled: limited to {}, reliable to "
-            "about {}.</p>\n",
-            file.log->rows, readable(file.log->shortest_step, "s"), readable(file.log->longest_step, "s"),
-            readable(0.5 * file.rate, "Hz", 4), readable(file.log->usable, "Hz"));
+    for (const std::string& line : study::understood(file.calibration, file.log, file.rate))
+        out += fmt::format("<p>{}.</p>\n", html::escaped(line));
     if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
     for (const study::AnalysedChannel& channel : file.channels) out += channel_section(channel, file);
     return out;

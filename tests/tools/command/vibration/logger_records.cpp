@@ -56,6 +56,9 @@ TEST_CASE("what was understood of a log is said in one line and in JSON, and its
     CHECK(option["channels"][0]["unit"] == "m/s^2");
     CHECK(option["channels"][0]["rms"] == Approx(std::numbers::sqrt2).epsilon(1e-3));
     CHECK_THAT(option["calibration"]["remark"].get<std::string>(), ContainsSubstring("the option counts"));
+    // The page of a report says it, too.
+    CHECK(folder.tactus("spectrum " + log + " --report " + (folder.path / "r.html").string()).code == 0);
+    CHECK_THAT(slurp(folder.path / "r.html"), ContainsSubstring("read as: semicolon-separated, decimal comma"));
     // exposure asks for nothing.
     CHECK(folder.tactus("exposure " + log).code == 0);
 }
