@@ -22,7 +22,7 @@ struct Function {
     std::string_view name;
     Operation operation;
     int arguments;
-    enum class Rule { alike, bare, angle, to_angle, root, sign, clip, choose } rule;
+    enum class Rule { alike, bare, angle, to_angle, root, sign, choose } rule;
 };
 
 using Rule = Function::Rule;
@@ -44,7 +44,7 @@ constexpr Function functions[] = {
     {"floor", Operation::floor, 1, Rule::bare},
     {"ceil", Operation::ceiling, 1, Rule::bare},
     {"sign", Operation::sign, 1, Rule::sign},
-    {"clip", Operation::clip, 3, Rule::clip},
+    {"clip", Operation::clip, 3, Rule::alike},
     {"if", Operation::choose, 3, Rule::choose},
 };
 
@@ -259,7 +259,6 @@ private:
         Measure measure;
         switch (function.rule) {
             case Rule::alike:
-            case Rule::clip:
                 for (const Operand& operand : given) need_alike(given.front(), operand, what);
                 measure = given.front().measure;
                 break;

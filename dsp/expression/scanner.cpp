@@ -78,7 +78,6 @@ void Scanner::read_number() {
     }
     if (!std::isfinite(token_.value)) fail("the number is out of range");
     at_ += static_cast<std::size_t>(unit.data() + unit.size() - (text_.data() + at_));
-    // "2 3" and "2 m 3" are no products.
 }
 
 std::string_view Scanner::unit_ahead() const {

@@ -16,7 +16,7 @@ struct SparedStructure {
     double margin = 0.0;    ///< m
     volume::Grid distance;  ///< signed distance to its surface, m, negative inside
 
-    /// Distance of a point, m. Outside of the grid: a value between the distance and twice the distance.
+    /// Distance from a point to the structure, m. Outside the grid it may be up to twice as large as it is.
     double at(const Vec3& point) const noexcept;
 };
 

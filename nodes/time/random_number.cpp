@@ -23,6 +23,7 @@ struct RandomNumber {
 
     void prepare(const Setup& setup) {
         random_ = Random{mix(setup.seed ^ mix(static_cast<std::uint64_t>(seed)))};
+        is_normal_ = distribution.is("normal");
         drawn_ = 0;
         was_ = false;
         unit_ = draw(0);
@@ -36,13 +37,13 @@ struct RandomNumber {
 
 private:
     double draw(std::uint64_t index) const noexcept {
-        return distribution.is("normal") ? random_.normal(index) : 2.0 * random_.uniform(index) - 1.0;
+        return is_normal_ ? random_.normal(index) : 2.0 * random_.uniform(index) - 1.0;
     }
 
     Random random_;
     std::uint64_t drawn_ = 0;
     double unit_ = 0.0;
-    bool was_ = false;
+    bool was_ = false, is_normal_ = false;
 };
 
 TACTUS_NODE(RandomNumber, trigger, out, distribution, centre, spread, seed)

@@ -104,7 +104,7 @@ AssemblyScore put_together(const AssemblyCase& one) {
     const auto same = [&](int a, int b) {
         return part[static_cast<std::size_t>(a)] == part[static_cast<std::size_t>(b)];
     };
-    // What hangs together in truth, and what of it was connected rightly.
+    // Which pieces are neighbours in truth, and how many of those pairs were connected correctly.
     std::vector<int> whole(static_cast<std::size_t>(count)), rightly(static_cast<std::size_t>(count));
     for (int n = 0; n < count; ++n) whole[static_cast<std::size_t>(n)] = rightly[static_cast<std::size_t>(n)] = n;
     const auto unite = [](std::vector<int>& all, int a, int b) {

@@ -48,7 +48,7 @@ force = "8 N"
 )");
 }
 
-/// A hand on rails: it feels nothing, and the bone gives way at once, so that the cut is where the blade was led.
+/// A hand that follows its path exactly: no force acts on it, and the bone is cut at once, so the cut is at the path.
 const std::string guided = R"(title = "guided"
 wires = [
   "hand.pose -> place.device",
