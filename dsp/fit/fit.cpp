@@ -146,6 +146,7 @@ void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
     settings.finest = std::max(settings.finest, 0.6 * h);
     settings.sigma = std::max(settings.sigma, 0.5 * h);
     settings.polish = std::max(settings.polish, 0.3 * h);
+    settings.intact = std::max(settings.intact, 0.3 * h);
     // A few dozen voxels of any two surfaces coincide somewhere.
     settings.least_overlap = std::max(settings.least_overlap, 60.0 * h * h);
 }
@@ -160,6 +161,7 @@ FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {
 Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,
              const FitSettings& settings) {
     FitEnergy energy(moving, fixed);
+    energy.law.kerf = settings.kerf;
     Fit fit;
     const Pose from = between_centres(moving, fixed, start);
     const double radius = moving.gyration;
@@ -191,8 +193,7 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     set_law(energy, settings.outline);
     fit.quality = energy.quality(best.pose, settings.sigma);
     fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
-    energy.law.scale = settings.finest;
-    energy.law.power = settings.power;
+    set_robust(energy, settings, 1.0);
     energy.look(best.pose);
     find_free(fit, energy(best.pose, contact::ContactParts::all).stiffness, radius, settings.least_hold);
     fit.pose = between_bodies(moving, fixed, best.pose);

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double outline_reach2 = 9e-6;  // m²: partners 3 mm apart count half
 constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline has constant force
+constexpr double chip_rim = 6.0;  // scales: how far the rounded rim of a chip reaches
+constexpr double least_intact = 0.2;  // of the weight
 
 struct Pull {
     double energy, force, stiffness;  // per weight: force = d energy / d d
@@ -22,6 +24,16 @@ Pull robust(const FitLaw& law, double d) noexcept {
     if (std::abs(d) > law.reach) return {};
     const double s2 = law.scale * law.scale, share = s2 / (s2 + d * d), k = law.strength * share * share;
     return {0.5 * law.strength * share * d * d, k * d, k};
+}
+
+Pull intact(const FitLaw& law, double d) noexcept {
+    return {0.5 * law.strength * d * d, law.strength * d, law.strength};
+}
+
+/// Weight of an intact point at distance d, in scales.
+double intact_weight(double d) noexcept {
+    if (d < 0.0) return 1.0 / std::max(1.0, -d);
+    return d < 1.0 ? (1.0 - d * d) * (1.0 - d * d) : 0.0;
 }
 
 Pull steady(const FitLaw& law, double d) noexcept {
@@ -69,6 +81,8 @@ void FitEnergy::reserve(std::size_t points, std::size_t outline) {
         side.weight.reserve(points);
         side.seen.reserve(points);
     }
+    kept_.reserve(points);
+    chips_.reserve(points);
     links_.reserve(outline);
     depths_.reserve(2 * (points + outline));
 }
@@ -95,8 +109,10 @@ void FitEnergy::read(Side& side, const Pose& into) const noexcept {
         return;
     const Mat3 rotation = glm::mat3_cast(into.orientation);
     const std::vector<Vec3>& points = side.points->position;
-    for (std::size_t i = 0; i < points.size(); i += law.stride)
+    for (std::size_t i = 0; i < points.size(); i += law.stride) {
         side.seen[i] = side.field->field.sample(into.position + rotation * points[i]);
+        side.seen[i].value -= law.kerf;
+    }
     side.seen_at = into;
     side.seen_stride = law.stride;
 }
@@ -114,6 +130,34 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
         if (law.gated && !field.is_painted_near(into.position + rotation * points.position[i])) continue;
         side.weight[i] = points.share[i] * static_cast<double>(law.stride) *
                          (law.power == 1.0 ? against : std::pow(against, law.power));
+    }
+    if (law.kernel == FitKernel::intact) leave_out_chips(side);
+}
+
+void FitEnergy::leave_out_chips(Side& side) noexcept {
+    const std::vector<Vec3>& points = side.points->position;
+    const double reach2 = chip_rim * chip_rim * law.scale * law.scale;
+    chips_.clear();
+    for (std::size_t i = 0; i < points.size(); i += law.stride)
+        if (side.seen[i].inside && side.seen[i].value > law.scale) chips_.push_back(points[i]);
+    kept_.assign(points.size(), 0.0);
+    double before = 0.0, after = 0.0;
+    for (std::size_t i = 0; i < points.size(); i += law.stride) {
+        if (!(side.weight[i] > 0.0)) continue;
+        before += side.weight[i];
+        const bool is_at_chip = std::ranges::any_of(chips_, [&](const Vec3& chip) {
+            const Vec3 apart = chip - points[i];
+            return glm::dot(apart, apart) < reach2;
+        });
+        if (!is_at_chip) after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
+    }
+    if (after >= least_intact * before) {
+        side.weight.swap(kept_);
+        return;
+    }
+    for (std::size_t i = 0; i < points.size(); i += law.stride) {
+        const double s2 = law.scale * law.scale, d = side.seen[i].value, share = s2 / (s2 + d * d);
+        side.weight[i] *= share * share;
     }
 }
 
@@ -157,7 +201,9 @@ void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, cons
         if (!(weight > 0.0) && !(law.contact > 0.0)) continue;
         const volume::Sample& here = side.seen[i];
         if (!here.inside) continue;
-        Pull pull = law.kernel == FitKernel::robust ? robust(law, here.value) : steady(law, here.value);
+        Pull pull = law.kernel == FitKernel::robust   ? robust(law, here.value)
+                    : law.kernel == FitKernel::intact ? intact(law, here.value)
+                                                      : steady(law, here.value);
         pull = {weight * pull.energy, weight * pull.force, weight * pull.stiffness};
         if (law.contact > 0.0 && here.value < 0.0) {
             pull.energy += 0.5 * law.contact * here.value * here.value;
@@ -229,13 +275,13 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
             if (!here.inside) continue;
             depths_[seen++] = here.value;
             const double against = std::clamp(-glm::dot(rotation * points.normal[i], here.gradient), 0.0, 1.0);
-            if (!(against > 0.0) || std::abs(here.value) > 5.0 * sigma || !sides_[s].field->is_painted_near(at))
-                continue;
+            const double off = here.value - law.kerf;
+            if (!(against > 0.0) || std::abs(off) > 5.0 * sigma || !sides_[s].field->is_painted_near(at)) continue;
             const double share = points.share[i] * static_cast<double>(law.stride);
-            q.score += 0.5 * share * against * std::exp(-0.5 * here.value * here.value / (sigma * sigma));
-            if (std::abs(here.value) > 2.0 * sigma || against < 0.7) continue;
+            q.score += 0.5 * share * against * std::exp(-0.5 * off * off / (sigma * sigma));
+            if (std::abs(off) > 2.0 * sigma || against < 0.7) continue;
             covered += share;
-            squares += share * here.value * here.value;
+            squares += share * off * off;
             signed_sum += share * here.value;
             area += 0.5 * share * points.area;
             if (s == 0) q.overlap += share * points.area;

@@ -6,6 +6,12 @@
 //
 //     robust       ½ K w s² d² / (s² + d²)       on both sides of the surface; points far beyond s have little force
 //     steady       F w · (d² / 2δ up to δ, then d − δ/2, up to `reach`)   for d > 0: a pull of constant size (thesis 6.1.2)
+//     intact       ½ K v d²                       only of what is not chipped, for the last steps
+//
+// Bone can be missing between two pieces, but none is added: `intact` leaves out all points within 6 s of one that is
+// more than s off the other bone, because the rims of chips are rounded and lie nearly on it. What remains has the
+// weight v = w (1 − d²/s²)² for d > 0 and w min(1, s / |d|) for d < 0; its middle has no pull into the chips. When
+// less than a fifth of the weight would remain, nothing is left out.
 //
 // with gradients of J = (g, r × g) and the stiffness of the touching parabola, as in pointshell_contact.hpp. The
 // points of the outline pull along ½(n_x + n_y) towards their nearest partner y, which is zero for two points of one
@@ -22,7 +28,7 @@
 
 namespace tactus::fit {
 
-enum class FitKernel : std::uint8_t { robust, steady };
+enum class FitKernel : std::uint8_t { robust, steady, intact };
 
 /// The halves of the energy that can be evaluated separately: the moving points in the fixed field with the outline,
 /// and the fixed points in the moving field.
@@ -31,7 +37,7 @@ enum class FitHalf : std::uint8_t { moving_points, fixed_points };
 struct FitLaw {
     FitKernel kernel = FitKernel::robust;
     double strength = 10e3;  ///< robust: K, N/m over all points of a side; steady: F, N
-    double scale = 0.5e-3;  ///< m, s of the robust kernel
+    double scale = 0.5e-3;  ///< m, s of the robust and the intact kernel
     double reach = 8e-3;  ///< m: maximum distance of a pull
     double soft = 0.3e-3;  ///< m, δ of the steady kernel
     double power = 1.0;  ///< exponent of the collinearity
@@ -40,6 +46,7 @@ struct FitLaw {
     double outline = 0.0;  ///< weight of the outline relative to the paint
     double contact = 0.0;  ///< N/m for each moving point that is inside of the fixed bone
     std::size_t stride = 1;  ///< uses every n-th painted point
+    double kerf = 0.0;  ///< m, width of the bone that was lost all along: d is the distance less this
 };
 
 /// How well two surfaces fit at a pose.
@@ -50,7 +57,7 @@ struct FitQuality {
     double overlap = 0.0;  ///< m² of the moving paint that is covered
     double share = 0.0;  ///< covered area of both, on average, as a share of the smaller paint; at most 1
     double penetration = 0.0;  ///< m, exceeded by 1 % of the points of paint and outline of both sides
-    double gap = 0.0;  ///< m, mean signed distance within the overlap: positive when bone is missing between
+    double gap = 0.0;  ///< m, mean signed distance within the overlap, kerf included: positive when bone is missing
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline
 };
 
@@ -77,7 +84,7 @@ public:
     contact::ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
 
-    /// `sigma`, m: distance at which a point counts 0.6. Ignores the law.
+    /// `sigma`, m: distance at which a point counts 0.6. Ignores the law but for `stride` and `kerf`.
     FitQuality quality(const Pose& pose, double sigma) noexcept;
 
 private:
@@ -96,6 +103,8 @@ private:
     /// Samples the field at all points, unless the last call had the same pose: most poses are evaluated twice.
     void read(Side& side, const Pose& into) const noexcept;
     void look(Side& side, const Pose& into) noexcept;
+    /// Takes the weight of all points away that chips reach, and weighs the others by their distance.
+    void leave_out_chips(Side& side) noexcept;
     void link(const Pose& pose) noexcept;
     void add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept;
     void add_outline(contact::ContactSum& sum, const Pose& pose) const noexcept;
@@ -103,7 +112,8 @@ private:
     const FitSurface *moving_ = nullptr, *fixed_ = nullptr;
     std::array<Side, 2> sides_{};
     std::vector<Link> links_;
-    std::vector<double> depths_;
+    std::vector<double> depths_, kept_;
+    std::vector<Vec3> chips_;
     std::size_t link_count_ = 0;
 };
 

@@ -13,6 +13,8 @@ namespace tactus::fit {
 
 namespace {
 
+constexpr int intact_steps = 24;
+
 /// One step of the solver from its pose, with the weights of that pose. Returns the length of the step, m.
 double step_once(FitEnergy& energy, coupling::QuasiStaticCoupling& solver, int& iterations) noexcept {
     const Pose before = solver.state().proxy;
@@ -33,7 +35,9 @@ coupling::QuasiStaticSettings free_solver(double gyration) noexcept {
 }
 
 void set_law(FitEnergy& energy, double outline, std::size_t points) noexcept {
+    const double kerf = energy.law.kerf;
     energy.law = {};
+    energy.law.kerf = kerf;
     energy.law.reach = 1.0;
     energy.law.outline = outline;
     const std::size_t all = std::min(energy.moving().position.size(), energy.fixed().position.size());
@@ -54,7 +58,18 @@ Pose anneal(FitEnergy& energy, const Pose& start, const Narrowing& narrowing, in
     return solver.state().proxy;
 }
 
+void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) noexcept {
+    energy.law.kernel = FitKernel::robust;
+    energy.law.scale = wider * settings.finest;
+    energy.law.power = settings.power;
+}
+
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept {
+    if (step > polish_steps - intact_steps) {
+        energy.law.kernel = FitKernel::intact;
+        energy.law.scale = settings.intact;
+        return;
+    }
     const double progress = std::min(1.0, static_cast<double>(step) / 5.0);
     energy.law.scale = settings.finest * std::pow(std::min(1.0, settings.polish / settings.finest), progress);
     energy.law.power = settings.power + progress * std::max(0.0, settings.polish_power - settings.power);
@@ -65,8 +80,7 @@ Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, i
     solver.settings = free_solver(energy.moving().gyration);
     solver.settings.step = 0.3e-3;
     solver.reset(start);
-    energy.law.scale = settings.finest;
-    energy.law.power = settings.power;
+    set_robust(energy, settings, 1.0);
     for (int n = 0; n < 30; ++n) {
         const int before = iterations;
         if (step_once(energy, solver, iterations) < 1e-7 || iterations == before) break;

@@ -21,18 +21,22 @@ struct Narrowing {
 /// Springs without force: the solver minimises the fit's energy alone. `gyration` of the moving paint, m.
 coupling::QuasiStaticSettings free_solver(double gyration) noexcept;
 
-/// Selects every point, or every n-th so that about `points` of each side take part (0: all).
+/// The robust law with every point, or every n-th so that about `points` of each side take part (0: all). Keeps the
+/// kerf.
 void set_law(FitEnergy& energy, double outline, std::size_t points = 0) noexcept;
 
 /// Solver steps while the scale narrows, with weights updated before each. Poses are those of the centres.
 Pose anneal(FitEnergy& energy, const Pose& start, const Narrowing& narrowing, int& iterations) noexcept;
 
-/// At the finest scale until the steps are done; then narrower, down to the resolution of the scans.
+/// The robust kernel at `finest` times `wider`.
+void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) noexcept;
+
+/// At the finest scale until the steps are done; then narrower, down to the resolution of the scans; then without chips.
 Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept;
 
 /// Factor on `finest` in step `step` of `polish_steps`: the bias that gaps of lost bone cause at a wide scale falls
-/// with its square.
-inline constexpr int polish_steps = 12;
+/// with its square. The last 24 steps are those of what is not chipped.
+inline constexpr int polish_steps = 36;
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept;
 
 /// The shortest rotation from direction `from` to `to`.

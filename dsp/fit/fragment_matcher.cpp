@@ -62,6 +62,8 @@ FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, con
             fmt::format("the fragments have {} painted faces and at most {} can be matched: paint less, or "
                         "leave out fragments",
                         faces_.size(), settings.most_faces));
+    if (settings.healthy.side)
+        for (const FragmentSurface& fragment : fragments) pulls_.emplace_back(fragment.points, settings.healthy);
     for (const Face& face : faces_) {
         most_face_points_ = std::max(most_face_points_, face.surface.position.size());
         most_outline_ = std::max(most_outline_, face.surface.outline.size());
@@ -100,6 +102,7 @@ Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<co
 FitEnergy FragmentMatcher::make_energy() const {
     FitEnergy made(faces_.front().surface, faces_.front().surface);
     made.reserve(most_face_points_, most_outline_);
+    made.law.kerf = settings.fit.kerf;
     return made;
 }
 

@@ -12,6 +12,7 @@
 #include "dsp/fit/arrangement.hpp"
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/fit_energy.hpp"
+#include "dsp/fit/healthy_pull.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -66,6 +67,7 @@ struct MatcherSettings {
     std::size_t most_pairs = 6;  ///< maximum number of face pairs per call, nearest first
     std::size_t most_joined = 16;  ///< maximum number of face pairs that are fitted together
     std::size_t most_points = 700;  ///< maximum number of points per face
+    HealthyPullSettings healthy;  ///< the healthy side, when it takes part in the fit
     std::size_t most_faces = 400;  ///< of all fragments; each takes some megabytes
 };
 
@@ -138,6 +140,7 @@ private:
     std::vector<double> paint_;  ///< m², painted area of each fragment
     std::size_t most_face_points_ = 0, most_outline_ = 0;
     std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs that are fitted together
+    std::vector<HealthyPull> pulls_;  ///< of each fragment; empty without a healthy side
     std::vector<Pair> pairs_;
     std::vector<Solved> solved_;
     std::vector<Pair> joined_;

@@ -14,6 +14,7 @@
 namespace tactus::fit {
 
 /// The contact of several face pairs of one moving fragment, as a single contact for the solver; pair n uses energy n.
+/// With a healthy side, its pull too.
 /// The handle is at `centre` of the fragment, for any origin of its file.
 class FragmentMatcher::Together {
 public:
@@ -26,6 +27,7 @@ public:
     void look(const Pose& at) noexcept {
         for (std::size_t n = 0; n < pairs_.size(); ++n)
             matcher_.energies_[n].look(matcher_.centres(pairs_[n], body(at), poses_));
+        if (HealthyPull* pull = this->pull()) pull->look(body(at));
     }
     contact::ContactSum operator()(const Pose& at, contact::ContactParts parts) noexcept {
         contact::ContactSum all;
@@ -40,11 +42,20 @@ public:
             for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
             for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];
         }
+        if (const HealthyPull* pull = this->pull()) {
+            const FitSurface& leading = matcher_.faces_[pairs_.front().moving].surface;
+            pull->add(all, body(at), at.position, leading.area * 1e4 * matcher_.energies_[0].law.strength);
+        }
         return all;
     }
     double clearance(const Pose&) const noexcept { return 0.0; }
 
 private:
+    HealthyPull* pull() const noexcept {
+        if (matcher_.pulls_.empty()) return nullptr;
+        return &matcher_.pulls_[static_cast<std::size_t>(matcher_.faces_[pairs_.front().moving].fragment)];
+    }
+
     FragmentMatcher& matcher_;
     std::span<const Pair> pairs_;
     std::span<const Pose> poses_;
@@ -81,11 +92,8 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     // All faces that fit there take part.
     join(best, at, poses, stands);
     for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
-    const auto at_scale = [&](double scale) {
-        for (std::size_t n = 0; n < joined_.size(); ++n) {
-            energies_[n].law.scale = scale;
-            energies_[n].law.power = fit.power;
-        }
+    const auto at_scale = [&](double wider) {
+        for (std::size_t n = 0; n < joined_.size(); ++n) set_robust(energies_[n], fit, wider);
     };
     Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
     coupling::QuasiStaticCoupling solver;
@@ -99,7 +107,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
         return solver.update(before, together).iterations;
     };
     for (int stage = 0; stage < 18; ++stage) {
-        at_scale(fit.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0));
+        at_scale(stage < 8 ? 3.0 - 0.25 * stage : 1.0);
         if (step() == 0 && stage > 8) break;
     }
     for (int n = 1; n <= polish_steps; ++n) {
@@ -108,7 +116,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     }
     at = together.body(solver.state().proxy);
     match_.pose = at;
-    at_scale(fit.finest);
+    at_scale(1.0);
     match_.quality = energies_[0].quality(centres(best.pair, at, poses), fit.sigma);
     match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
     free_.free.clear();

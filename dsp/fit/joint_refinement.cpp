@@ -30,6 +30,7 @@ public:
         for (const auto& [m, f] : pairs) {
             energies_.emplace_back(matcher.face(m), matcher.face(f));
             set_law(energies_.back(), 0.0);
+            energies_.back().law.kerf = matcher.settings.fit.kerf;
             sum += place_of(m);
         }
         if (!pairs.empty()) middle_ = sum / static_cast<double>(pairs.size());
@@ -176,10 +177,7 @@ int refine_jointly(const FragmentMatcher& matcher, std::span<const FacePair> pai
     const FitSettings& fit = matcher.settings.fit;
     int steps = 0;
     for (int n = 0; n < narrowing_steps; ++n) {
-        system.set([&](FitEnergy& e) {
-            e.law.scale = fit.finest * std::max(1.0, 3.0 - 0.25 * n);
-            e.law.power = fit.power;
-        });
+        system.set([&](FitEnergy& e) { set_robust(e, fit, std::max(1.0, 3.0 - 0.25 * n)); });
         ++steps;
         if (step(system) < 1e-7 && n > 8) break;
     }

@@ -129,7 +129,7 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
     return felt;
 }
 
-std::vector<std::string> unstated_laws(const compile::Plan& plan) {
+std::vector<bool> between_hand_and_force(const compile::Plan& plan) {
     std::vector<bool> is_between(plan.nodes.size(), false);
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
         if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
@@ -141,6 +141,11 @@ std::vector<std::string> unstated_laws(const compile::Plan& plan) {
                 if (from.age[n] != unreached && to_sink[n] != unreached) is_between[n] = true;
         }
     }
+    return is_between;
+}
+
+std::vector<std::string> unstated_laws(const compile::Plan& plan) {
+    const std::vector<bool> is_between = between_hand_and_force(plan);
     std::vector<std::string> names;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
         if (is_between[n] && plan.nodes[n].type->shapes_values) names.push_back(plan.nodes[n].name);

@@ -54,6 +54,9 @@ struct FeltSpring {
 /// All such parameters on all paths from a device_input to a device_output, in the order of nodes and names.
 std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
 
+/// Per node of the plan: whether it lies on a way from a hand's device to a hand's force.
+std::vector<bool> between_hand_and_force(const compile::Plan& plan);
+
 /// Names of the nodes between a hand's device and its force whose law no parameter states, in the order of the patch.
 std::vector<std::string> unstated_laws(const compile::Plan& plan);
 

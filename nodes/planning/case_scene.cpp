@@ -4,6 +4,7 @@
 #include "dsp/fit/step_tree.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/notice.hpp"
 #include "nodes/contact/body_parts.hpp"
 #include "nodes/planning/step_record.hpp"
 
@@ -57,6 +58,7 @@ struct CaseScene {
             setup.fail("plan '" + plan.name +
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
+        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_}) notice->attach(setup);
         parts_.clear();
         for (const bone::Bone& bone : plan->bones) parts_.push_back(body_of(bone));
         now_ = std::make_unique<fit::Arrangement>(cases::state_of(plan->plan).arrangement);
@@ -131,7 +133,9 @@ private:
     }
 
     void press(const Tick& tick) noexcept {
-        if (edge(settle, 0) && holding_ && has_fit() && moved.connected && is_valid(moved.get()) &&
+        const bool settles = edge(settle, 0) && holding_;
+        if (settles && !has_fit()) no_fit_.tell();
+        if (settles && has_fit() && moved.connected && is_valid(moved.get()) &&
             now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
             now_->fit(last_, partner_place());
             settled_ = true;
@@ -160,7 +164,9 @@ private:
         }
         if (edge(show, 7)) show_all(tick);
         const bool back = edge(undo, 4), on = edge(redo, 5);
-        if (!holding_ && back != on && (back ? tree_->undo(*now_) : tree_->redo(*now_))) {
+        if ((back || on) && holding_) held_back_.tell();
+        else if (back != on) {
+            if (!(back ? tree_->undo(*now_) : tree_->redo(*now_))) return (back ? no_earlier_ : no_later_).tell();
             *kept_ = *now_;
             arrange_scene();
             cases::StepRow row = next(static_cast<double>(cases::row_goes_to));
@@ -322,6 +328,10 @@ private:
     Vec3 let_at_{0.0};  // middle of a body in the hand's pose when it was settled
     bool holding_ = false, settled_ = false, is_changed_ = false, not_kept_ = false;
     bool was_[8] = {};
+    Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
+    Notice no_earlier_{"there is no step to undo"};
+    Notice no_later_{"there is no step to redo"};
+    Notice no_fit_{"not settled: the held fragment has no fit where it is"};
 };
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,

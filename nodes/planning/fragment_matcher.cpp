@@ -6,6 +6,7 @@
 #include "dsp/fit/overlap.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/notice.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -56,6 +57,7 @@ struct FragmentMatcher {
             setup.fail("plan '" + plan.name + "': " + error.message());
         }
         name_ = setup.name;
+        lonely_notice_.attach(setup);
         nothing();
     }
 
@@ -66,6 +68,7 @@ struct FragmentMatcher {
             scene->count != plan->bones.size()) {
             if (was_ >= 0) matcher_->begin_search();
             was_ = -1;
+            is_lonely_ = false;
             nothing();
             return;
         }
@@ -78,13 +81,15 @@ struct FragmentMatcher {
         report.set(name_, "fits", fits_);
         if (lonely_ > 0.0) {
             report.set(name_, "looks_without_partner", lonely_);
-            report.set(name_, "hint",
-                       std::string("nothing was locked or fitted, so there was nothing to fit to: lock a fragment "
-                                   "('tactus plan lock', or 'tactus trigger lock'), or set partners = \"all\""));
+            report.set(name_, "hint", std::string(nothing_stands));
         }
     }
 
 private:
+    static constexpr const char* nothing_stands =
+        "nothing is locked or fitted, so there is nothing to fit to: lock a fragment ('tactus plan lock', or 'tactus "
+        "trigger lock'), or set partners = \"all\"";
+
     void look(int place) noexcept {
         const std::size_t count = scene->count;
         const coupling::SceneObject& mine = scene->objects[static_cast<std::size_t>(place)];
@@ -106,7 +111,11 @@ private:
         }
         was_ = place;
         ++looks_;
-        lonely_ += partners.index == 0 && std::ranges::find(stands, 1) == stands.end();
+        const bool is_lonely = partners.index == 0 && std::ranges::find(stands, 1) == stands.end();
+        lonely_ += is_lonely;
+        // Once, when a fragment is taken or what it could fit is gone.
+        if (is_lonely && !is_lonely_) lonely_notice_.tell();
+        is_lonely_ = is_lonely;
         fits_ += match.verdict == fit::FitVerdict::fit;
         const bool is_fit = match.verdict == fit::FitVerdict::fit;
         target = is_fit ? match.pose * mine.body.home : mine.pose;
@@ -181,7 +190,9 @@ private:
     std::array<char, tactus::coupling::Scene::most_objects> stands_{};
     std::string name_;
     double looks_ = 0.0, fits_ = 0.0, lonely_ = 0.0;
+    Notice lonely_notice_{nothing_stands};
     int was_ = -1;
+    bool is_lonely_ = false;
 };
 
 TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, gap,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/run_session.hpp"
 
+#include "graph/node/notice.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/results.hpp"
 #include "tools/session/summary.hpp"
@@ -103,6 +104,8 @@ void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
     live.stop = &stop;
     if (choice_.edits) control_ = std::make_unique<LiveControl>(*engine_, choice_, assets_, hooks.say);
     live.watch = [&] {
+        for (const std::string& line : take_notices(engine_->host()))
+            if (hooks.say) hooks.say(line);
         if (control_) control_->tend();
         if (hooks.tend) hooks.tend();
     };

@@ -5,16 +5,19 @@
 
 namespace tactus::study {
 
-std::vector<NodeContactLaw> contact_laws(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
+std::vector<NodeContactLaw> contact_laws(const run::Engine& engine) {
+    const std::vector<bool> is_between = analyse::between_hand_and_force(engine.plan());
     std::vector<NodeContactLaw> laws;
-    for (const auto& node : nodes) {
+    for (std::size_t n = 0; n < engine.nodes().size(); ++n) {
+        const auto& node = engine.nodes()[n];
         const auto area = node->params.find("area_stiffness"), point = node->params.find("point_stiffness");
         if (area == node->params.end() || point == node->params.end()) continue;
         NodeContactLaw law;
         law.node = node->name;
         law.by_point = point->second->value > 0.0;
         law.stiffness = (law.by_point ? point : area)->second->value;
-        if (const auto spring = node->params.find("stiffness"); spring != node->params.end())
+        law.is_felt = is_between[n];
+        if (const auto spring = node->params.find("stiffness"); law.is_felt && spring != node->params.end())
             law.felt = spring->second->value;
         laws.push_back(std::move(law));
     }

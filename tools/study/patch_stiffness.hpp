@@ -17,10 +17,11 @@ struct NodeContactLaw {
     std::string node;
     bool by_point = false;
     double stiffness = 0.0;  ///< N/m per point, or N/m per m² of surface
+    bool is_felt = true;  ///< it lies between a hand and a force on a hand
     std::optional<double> felt;  ///< N/m that a hand feels at most: the node's spring; none: all of it
 };
 
-std::vector<NodeContactLaw> contact_laws(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
+std::vector<NodeContactLaw> contact_laws(const run::Engine& engine);
 
 /// A loop through a hand with a device of a known class in place of the patch's own.
 struct ClassVerdict {

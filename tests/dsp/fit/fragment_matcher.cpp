@@ -2,6 +2,7 @@
 #include "dsp/fit/fragment_matcher.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/fit/joint_refinement.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
 
@@ -154,4 +155,76 @@ TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") 
     CHECK(matcher.settings.fit.finest == Approx(alone.finest));
     CHECK(matcher.settings.fit.sigma == Approx(alone.sigma));
     CHECK(matcher.settings.fit.polish == Approx(0.5 * alone.polish));
+}
+
+TEST_CASE("dsp: chips off one side neither tilt a fit nor close it") {
+    // Wedges of up to 1.6 mm off a fifth of the face, all with the same slope.
+    const Half chipped = bar_half(-1.0, relief(), {.chipped = 0.2});
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(chipped), surface_of(right())};
+    fit::FragmentMatcher matcher(surfaces);
+    for (const std::uint64_t seed : {7u, 8u, 9u}) {
+        CAPTURE(seed);
+        const std::vector<Pose> poses{beside(3 * mm, 8 * degree, seed), {}};
+        const fit::FragmentMatch match = matcher.near(0, poses, std::vector<char>{0, 1});
+        REQUIRE(match.verdict == fit::FitVerdict::fit);
+        CHECK(glm::length(rotation_between(Quat(1.0, 0.0, 0.0, 0.0), match.pose.orientation)) < 0.025 * degree);
+        CHECK(error_of(chipped, match.pose) < 0.015 * mm);
+    }
+}
+
+TEST_CASE("dsp: a kerf that is told stays open, from nearby and from anywhere") {
+    const Half near_side = bar_half(-1.0, relief(), {.gap = 0.8 * mm});
+    const Half far_side = bar_half(1.0, relief(), {.gap = 0.8 * mm});
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(near_side), surface_of(far_side)};
+    const std::vector<Pose> poses{beside(2 * mm, 6 * degree, 7), {}};
+    const std::vector<char> stands{0, 1};
+    fit::MatcherSettings settings;
+    fit::FragmentMatcher closing(surfaces, settings);
+    const fit::FragmentMatch closed = closing.near(0, poses, stands);
+    REQUIRE(closed.verdict == fit::FitVerdict::fit);
+    CHECK(closed.pose.position.x > 0.5 * mm);
+    settings.fit.kerf = 0.7 * mm;  // 0.8 mm along the bar, less across the slopes of the relief
+    fit::FragmentMatcher matcher(surfaces, settings);
+    const fit::FragmentMatch open = matcher.near(0, poses, stands);
+    REQUIRE(open.verdict == fit::FitVerdict::fit);
+    CHECK(error_of(near_side, open.pose) < 0.12 * mm);
+    CHECK(std::abs(open.quality.gap - 0.7 * mm) < 0.05 * mm);
+    CHECK(error_of(near_side, searched(matcher, poses, stands).pose) < 0.12 * mm);
+    // And when all faces are fitted together.
+    std::vector<Pose> both{beside(0.2 * mm, 0.5 * degree, 3), {}};
+    const std::vector<int> body{0, 1};
+    const auto pairs = fit::mated_faces(matcher, both, body);
+    REQUIRE_FALSE(pairs.empty());
+    fit::refine_jointly(matcher, pairs, body, std::vector<char>{0, 1}, both);
+    CHECK(error_of(near_side, both[0]) < 0.12 * mm);
+}
+
+TEST_CASE("dsp: faces that slide on each other fit with the healthy side in the same fit") {
+    // A straight cut: nothing of the faces says where across it the half belongs.
+    const Relief flat = [](double, double) { return 0.0; };
+    const Half near_side = bar_half(-1.0, flat), far_side = bar_half(1.0, flat);
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(near_side), surface_of(far_side)};
+    const std::vector<Pose> poses{beside(2 * mm, 4 * degree, 7), {}};
+    const std::vector<char> stands{0, 1};
+    fit::MatcherSettings settings;
+    fit::FragmentMatcher alone(surfaces, settings);
+    CHECK(alone.near(0, poses, stands).verdict != fit::FitVerdict::fit);
+    // The unbroken bar, 0.2 mm thinner all round, as the other side of a body may be.
+    std::vector<contact::SurfacePoint> whole;
+    for (const Half* half : {&near_side, &far_side})
+        for (contact::SurfacePoint p : half->points) {
+            if (p.label == contact::surface_label::fracture || std::abs(p.position.x) > 17.0 * mm) continue;
+            p.position -= 0.2 * mm * p.normal;
+            whole.push_back(p);
+        }
+    const fit::RegistrationTarget side(whole);
+    settings.healthy.side = &side;
+    fit::FragmentMatcher matcher(surfaces, settings);
+    const fit::FragmentMatch match = matcher.near(0, poses, stands);
+    CHECK(match.verdict == fit::FitVerdict::fit);
+    CHECK(error_of(near_side, match.pose) < 0.15 * mm);
+    // The faces still decide where they do say something.
+    const std::vector<fit::FragmentSurface> rough{surface_of(left()), surface_of(right())};
+    fit::FragmentMatcher both(rough, settings);
+    CHECK(error_of(left(), both.near(0, poses, stands).pose) < 0.1 * mm);
 }

@@ -3,11 +3,13 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/assets.hpp"
+#include "graph/node/notice.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <memory>
 #include <string>
+#include <vector>
 
 using namespace tactus;
 using test::NodeHarness;
@@ -53,7 +55,13 @@ TEST_CASE("a matcher that has nothing to fit to says so, with what to do") {
         matcher.asset("plan", plan);
         matcher.feed("scene", now).feed<double>("held", 1.0).feed<bool>("engaged", true);
         matcher.prepare();
-        matcher.run(3);
+        matcher.run(1);
+        // Said at once, and once.
+        const std::vector<std::string> told_now = take_notices(matcher.host);
+        REQUIRE(told_now.size() == (locked ? 0 : 1));
+        if (!locked) CHECK(told_now[0].starts_with("node: nothing is locked or fitted"));
+        matcher.run(2);
+        CHECK(take_notices(matcher.host).empty());
         const Report report = matcher.report();
         const auto& told = report.sections.at("node");
         CHECK(std::get<double>(told.at("looks")) == 3.0);

@@ -2,6 +2,7 @@
 // The case node of a planning session: settling, undoing, joining, hiding.
 #include "assets/cases/step_row.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "graph/node/notice.hpp"
 #include "tests/nodes/planning/broken_case.hpp"
 #include "tests/support/catch.hpp"
 
@@ -232,4 +233,22 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
     CHECK(plan.steps[3].before == 2);
     CHECK(plan.steps[3].fragments == std::vector<int>{2});
     CHECK(plan.steps[4].before == 3);
+}
+
+TEST_CASE("undo while a fragment is held does nothing and says why, and so does undo without a step") {
+    Session session;
+    session.undo = 20;
+    session.run(40);
+    REQUIRE(off(session.file_pose(1), beside) < 1e-9);
+    const auto told = take_notices(session.node.host);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("while a fragment is held: let it go first") != std::string::npos);
+
+    Session empty;
+    empty.release = 0;
+    empty.redo = 20;
+    empty.run(40);
+    const auto nothing = take_notices(empty.node.host);
+    REQUIRE(nothing.size() == 1);
+    CHECK(nothing[0].find("no step to redo") != std::string::npos);
 }

@@ -8,6 +8,12 @@ void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
     verb.flag("--json", choice.json, "as JSON");
 }
 
+void add_kerf(VerbOptions& verb, PlanChoice& choice) {
+    verb.add("--kerf", choice.kerf, "mm of bone that a blade took away along the faces; the fit leaves it open")
+        .shows_default()
+        .range(0.0, 4.0);
+}
+
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
     return verb.add("fragments", choice.names, about).required();
 }

@@ -16,10 +16,13 @@ struct PlanChoice {
     std::filesystem::path plan;
     std::vector<std::string> names;  ///< names of fragments
     bool json = false;
+    double kerf = 0.0;  ///< mm of bone lost along the faces
 };
 
 /// The plan and --json.
 void add_plan_options(VerbOptions& verb, PlanChoice& choice);
+/// --kerf, for the verbs that fit.
+void add_kerf(VerbOptions& verb, PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
 
 /// Prints the plan as text or JSON on standard output.

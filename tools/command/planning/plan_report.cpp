@@ -4,6 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/report/plan_page.hpp"
+#include "tools/study/planning/plan_matching.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,10 @@ std::filesystem::path page_of(const std::filesystem::path& plan) {
 int report(const ReportChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const std::filesystem::path out = choice.out.empty() ? page_of(choice.plan) : choice.out;
-    file::write_whole_file(out, picture::plan_page(plan, study::load_fragments(plan, choice.plan.parent_path())));
+    const std::filesystem::path folder = choice.plan.parent_path();
+    std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
+    std::vector<std::optional<double>> residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
+    file::write_whole_file(out, picture::plan_page(plan, std::move(fragments), std::move(residuals)));
     if (choice.json) fmt::print("{}\n", file::Json{{"report", out.string()}}.dump(2));
     else fmt::print("{}\n", out.string());
     return done;

@@ -80,7 +80,7 @@ int check(const CheckChoice& choice) {
                                               stated_by(engine.host(), &DeviceInfo::max_stiffness));
             add_process_delay(loops, engine.plan());
             json["paths"] = paths_json(engine.plan(), loops);
-            json["contact"] = contact_json(study::contact_laws(engine.nodes()));
+            json["contact"] = contact_json(study::contact_laws(engine));
             json["device_classes"] = classes_json(study::class_verdicts(loops));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;

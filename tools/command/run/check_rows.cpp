@@ -131,6 +131,7 @@ Json contact_json(const std::vector<study::NodeContactLaw>& laws) {
         Json row{{"node", law.node}, {"law", law.by_point ? "point" : "area"}};
         if (law.by_point) row["stiffness_N_per_mm_per_point"] = law.stiffness * 1e-3;
         else row["stiffness_N_per_mm_per_mm2"] = law.stiffness * 1e-9;
+        row["is_felt"] = law.is_felt;
         row["felt_at_most_N_per_mm"] = law.felt ? Json(*law.felt * 1e-3) : Json();
         rows.push_back(std::move(row));
     }

@@ -50,8 +50,9 @@ void print_contact(const Json& laws) {
                 : fmt::format("per area: {:.4g} N/mm for each mm^2", row["stiffness_N_per_mm_per_mm2"].get<double>());
         const Json& felt = row["felt_at_most_N_per_mm"];
         fmt::print("{:<20} {:<36} {}\n", row["node"].get<std::string>(), law,
-                   felt.is_null() ? std::string("all of it, unless a node after it takes less")
-                                  : fmt::format("{:.4g} N/mm, its spring", felt.get<double>()));
+                   !row["is_felt"].get<bool>() ? std::string("nothing: no device gets its force")
+                   : felt.is_null()            ? std::string("all of it, unless a node after it takes less")
+                                               : fmt::format("{:.4g} N/mm, its spring", felt.get<double>()));
     }
 }
 

@@ -3,11 +3,13 @@
 
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/fit/fragment_matcher.hpp"
 #include "dsp/fit/gap.hpp"
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/overlap.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 #include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
+#include "tools/picture/report/plan_picture.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_words.hpp"
@@ -25,8 +27,6 @@ namespace tactus::picture {
 
 namespace {
 
-constexpr int width = 720, height = 540;
-
 display::PictureMesh placed(const mesh::Mesh& mesh, const Pose& pose, const Vec3& colour) {
     display::PictureMesh picture;
     for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
@@ -42,29 +42,6 @@ display::PictureMesh placed(const mesh::Mesh& mesh, const Pose& pose, const Vec3
     return picture;
 }
 
-struct Box {
-    Vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-
-    void take(const display::PictureMesh& mesh) {
-        for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
-            const Vec3 p(mesh.positions[n], mesh.positions[n + 1], mesh.positions[n + 2]);
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-    }
-};
-
-std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
-                       const std::string& caption) {
-    Box box;
-    for (const display::PictureMesh& mesh : meshes) box.take(mesh);
-    if (!(box.low.x <= box.high.x)) return "<p>All fragments are hidden.</p>\n";
-    display::View view =
-        display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
-    view.eye = view.target + (view.eye - view.target) * 0.85;
-    return html::picture(display::render_picture(meshes, view, width, height), caption);
-}
-
 /// Colour map of the gap: blue for overlap, white for contact, red for a gap of 1 mm, grey for no neighbour.
 Vec3 gap_colour(double distance) {
     if (!std::isfinite(distance)) return Vec3(0.62);
@@ -78,6 +55,7 @@ struct Case {
     cases::PlanState state{fit::Arrangement(0), {}, {}, std::nullopt};
     std::vector<study::CaseFragment> fragments;
     std::vector<mesh::Mesh> meshes;
+    std::vector<std::optional<double>> to_healthy;
 
     const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
     Pose pose(std::size_t n) const { return state.arrangement.pose(static_cast<int>(n)); }
@@ -93,14 +71,32 @@ std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState
     return meshes;
 }
 
+Vec3 middle_of(const Case& c, std::size_t n) {
+    Vec3 middle(0.0);
+    const auto& points = c.fragments[n].bone.points;
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return middle;
+}
+
+std::vector<PictureLabel> labels_of(const Case& c, const cases::PlanState& state) {
+    std::vector<PictureLabel> labels;
+    for (std::size_t n = 0; n < c.meshes.size(); ++n)
+        if (c.is_shown(n))
+            labels.push_back({c.name(n), state.arrangement.pose(static_cast<int>(n)).apply(middle_of(c, n)),
+                              c.plan.fragments[n].colour});
+    return labels;
+}
+
 std::string pictures(const Case& c) {
-    const std::vector<display::PictureMesh> scanned = scene_of(c, cases::state_of(c.plan, -1)),
-                                            planned = scene_of(c, c.state);
-    return "<h2>Pictures</h2>\n<div class=\"two\">\n" +
-           picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
-           picture_of(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front") +
-           picture_of(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind") +
-           picture_of(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above") + "</div>\n";
+    const cases::PlanState before = cases::state_of(c.plan, -1);
+    const std::vector<display::PictureMesh> scanned = scene_of(c, before), planned = scene_of(c, c.state);
+    const std::vector<PictureLabel> there = labels_of(c, before), here = labels_of(c, c.state);
+    return "<h2>Pictures</h2>\n<p class=\"small\">R, L, A, P, S, I: towards the right, left, front, back, head and "
+           "feet of the patient. The scale holds at the middle of the scene.</p>\n<div class=\"two\">\n" +
+           plan_picture(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front", there) +
+           plan_picture(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front", here) +
+           plan_picture(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind", here) +
+           plan_picture(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above", here) + "</div>\n";
 }
 
 /// Legend of the colour maps.
@@ -134,11 +130,9 @@ std::string fragments_table(const Case& c) {
     std::string out =
         "<h2>Fragments</h2>\n<table><tr><th>fragment</th><th class=\"n\">moved, mm</th><th class=\"n\">turned, °</th>"
         "<th>fitted to</th><th>verdict</th><th class=\"n\">score</th><th class=\"n\">margin</th><th class=\"n\">rms, mm"
-        "</th><th class=\"n\">fitted area, mm²</th><th>marks</th></tr>\n";
+        "</th><th class=\"n\">fitted area, mm²</th><th class=\"n\">from the healthy side, mm</th><th>marks</th></tr>\n";
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
-        Vec3 middle(0.0);
-        const auto& points = c.fragments[n].bone.points;
-        for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        const Vec3 middle = middle_of(c, n);
         const Vec3& colour = c.plan.fragments[n].colour;
         out += fmt::format(
             "<tr><td><span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> {}</td><td class=\"n\">{:.2f}"
@@ -157,6 +151,7 @@ std::string fragments_table(const Case& c) {
                 // Plans of earlier versions do not contain it.
                 fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
+        out += "<td class=\"n\">" + (c.to_healthy[n] ? fmt::format("{:.2f}", *c.to_healthy[n] * 1e3) : "–") + "</td>";
         const int number = static_cast<int>(n);
         std::string marks;
         for (int g = c.state.arrangement.group_of(number); g != fit::Arrangement::none;
@@ -169,13 +164,41 @@ std::string fragments_table(const Case& c) {
     return out + "</table>\n";
 }
 
+/// Distances of the vertices of a fragment from the other one, each by its own normal: the two sides of thin bone do
+/// not mix. A vertex unlike most of those around it takes their middle value.
+std::vector<float> vertex_gaps(const Case& c, std::size_t i, std::size_t j) {
+    const mesh::Mesh& mesh = c.meshes[i];
+    std::vector<contact::SurfacePoint> vertices(mesh.vertices.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+        vertices[v].position = mesh.vertices[v], vertices[v].normal = mesh.normals[v];
+    std::vector<float> gaps = fit::gap_between(vertices, c.pose(i), c.fragments[j].map, c.pose(j)).distance;
+    std::vector<std::vector<std::size_t>> around(gaps.size());
+    for (const auto& triangle : mesh.triangles)
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            around[static_cast<std::size_t>(triangle[corner])].push_back(
+                static_cast<std::size_t>(triangle[(corner + 1) % 3]));
+    std::vector<float> near;
+    for (int pass = 0; pass < 3; ++pass) {
+        const std::vector<float> before = gaps;
+        for (std::size_t v = 0; v < gaps.size(); ++v) {
+            if (around[v].size() < 3) continue;
+            near.clear();
+            for (const std::size_t n : around[v]) near.push_back(before[n]);
+            std::ranges::sort(near);
+            const float middle = near[near.size() / 2];
+            if (std::isfinite(middle) != std::isfinite(before[v])) gaps[v] = middle;
+        }
+    }
+    return gaps;
+}
+
 /// A fragment coloured by the distance to the other one, seen from the other one.
 std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::SurfaceGap& gap) {
     const auto& points = c.fragments[i].bone.points;
-    const fit::RegistrationTarget nearest(points);
     display::PictureMesh mesh = placed(c.meshes[i], c.pose(i), Vec3(0.0));
-    for (std::size_t v = 0; v < c.meshes[i].vertices.size(); ++v) {
-        const Vec3 colour = gap_colour(static_cast<double>(gap.distance[nearest.nearest(c.meshes[i].vertices[v])]));
+    const std::vector<float> gaps = vertex_gaps(c, i, j);
+    for (std::size_t v = 0; v < gaps.size(); ++v) {
+        const Vec3 colour = gap_colour(static_cast<double>(gaps[v]));
         for (int axis = 0; axis < 3; ++axis)
             mesh.colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
     }
@@ -185,31 +208,50 @@ std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::Surf
     if (!(glm::length(towards) > 0.0)) return "";
     const Vec3 direction = -glm::normalize(towards);
     const Vec3 tilted = std::abs(direction.z) > 0.95 ? glm::normalize(direction + Vec3(0.3, 0.0, 0.0)) : direction;
-    return picture_of({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
+    return plan_picture({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
 }
 
-std::string gaps(const Case& c) {
+struct Gaps {
+    std::string html;
+    std::vector<std::string> warnings;  ///< of fragments that lie in each other
+};
+
+Gaps gaps(const Case& c) {
+    constexpr double much = 5e-9;  // m³
+    Gaps found;
     std::string rows, maps;
     for (std::size_t i = 0; i < c.fragments.size(); ++i)
         for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
             if (!c.is_shown(i) || !c.is_shown(j)) continue;
             const fit::SurfaceGap gap =
                 fit::gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
+            const double overlap =
+                fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j));
+            if (overlap > much &&
+                fit::lie_in_each_other({c.fragments[i].bone.points, &c.fragments[i].map, c.pose(i), c.pose(i)},
+                                       {c.fragments[j].bone.points, &c.fragments[j].map, c.pose(j), c.pose(j)},
+                                       fit::MatcherSettings{}.fit.most_penetration))
+                found.warnings.push_back(fmt::format("'{}' and '{}' lie in each other with {:.0f} mm³", c.name(i),
+                                                     c.name(j), overlap * 1e9));
             if (!(gap.facing_area > 5e-6)) continue;
             rows += fmt::format(
                 "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{:.0f}</td><td "
                 "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
-                fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
+                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3, overlap * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
-    if (rows.empty()) return "<h2>Gaps and overlaps</h2>\n<p>No two fragments face each other within 3 mm.</p>\n";
-    return "<h2>Gaps and overlaps</h2>\n<table><tr><th>fragment</th><th>and</th><th class=\"n\">facing, mm²</th><th "
-           "class=\"n\">touching, mm²</th><th class=\"n\">median gap, mm</th><th class=\"n\">95 %, mm</th><th "
-           "class=\"n\">deepest, mm</th><th class=\"n\">overlap, mm³</th></tr>\n" +
-           rows + "</table>\n" + gap_legend() + "<div class=\"two\">\n" + maps + "</div>\n";
+    if (rows.empty()) {
+        found.html = "<h2>Gaps and overlaps</h2>\n<p>No two fragments face each other within 3 mm.</p>\n";
+        return found;
+    }
+    found.html =
+        "<h2>Gaps and overlaps</h2>\n<table><tr><th>fragment</th><th>and</th><th class=\"n\">facing, mm²</th><th "
+        "class=\"n\">touching, mm²</th><th class=\"n\">median gap, mm</th><th class=\"n\">95 %, mm</th><th "
+        "class=\"n\">deepest, mm</th><th class=\"n\">overlap, mm³</th></tr>\n" +
+        rows + "</table>\n" + gap_legend() + "<div class=\"two\">\n" + maps + "</div>\n";
+    return found;
 }
 
 std::string steps(const Case& c) {
@@ -240,15 +282,28 @@ std::string alternatives(const cases::CasePlan& plan) {
     return out + "</ul>\n";
 }
 
-/// What hangs together, and first of all that something does not.
-std::string connections(const Case& c) {
-    std::string out;
-    if (!study::is_in_one_part(c.state))
-        out += "<p class=\"fail\">Warning: the fragments are not all connected by fits that hold.</p>\n";
-    out += "<ul>\n";
-    for (const std::string& line : study::connection_words(c.plan, c.state))
-        out += "<li>" + html::escaped(line) + "</li>\n";
+std::string list_of(const std::vector<std::string>& lines) {
+    std::string out = "<ul>\n";
+    for (const std::string& line : lines) out += "<li>" + html::escaped(line) + "</li>\n";
     return out + "</ul>\n";
+}
+
+/// What a reader must know before anything else.
+std::string warnings(const Case& c, const std::vector<std::string>& overlaps) {
+    std::vector<std::string> all;
+    if (!study::is_in_one_part(c.state)) all.emplace_back("The fragments are not all connected by fits that hold.");
+    for (std::size_t n = 0; n < c.fragments.size(); ++n)
+        if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
+            all.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
+    all.insert(all.end(), overlaps.begin(), overlaps.end());
+    if (all.empty()) return "";
+    return "<div class=\"fail\"><h2>Warnings</h2>\n" + list_of(all) + "</div>\n";
+}
+
+/// What hangs together.
+std::string connections(const Case& c) {
+    const std::vector<std::string> lines = study::connection_words(c.plan, c.state);
+    return lines.empty() ? "" : "<h2>Connections</h2>\n" + list_of(lines);
 }
 
 std::string mirror(const Case& c) {
@@ -261,16 +316,22 @@ std::string mirror(const Case& c) {
 
 }  // namespace
 
-std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments) {
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                      std::vector<std::optional<double>> to_healthy) {
     Case c;
     c.plan = plan;
     c.state = cases::state_of(c.plan);
     c.fragments = std::move(fragments);
+    c.to_healthy = std::move(to_healthy);
+    c.to_healthy.resize(c.fragments.size());
     for (const study::CaseFragment& fragment : c.fragments)
         c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
     std::string pages;
+    std::vector<std::string> overlaps;
     try {
-        pages = pictures(c) + gaps(c);
+        Gaps found = gaps(c);
+        pages = pictures(c) + found.html;
+        overlaps = std::move(found.warnings);
     } catch (const Error& error) {
         throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
@@ -278,7 +339,8 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
         fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     counted(c.fragments.size(), "fragment")) +
-        connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
+        warnings(c, overlaps) + connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) +
+        alternatives(c.plan);
     return html::page(c.plan.title, body);
 }
 

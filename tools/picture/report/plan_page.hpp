@@ -4,12 +4,15 @@
 
 #include "tools/study/planning/plan_case.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::picture {
 
-/// `fragments`: of the plan, in its order. Throws Error when pictures cannot be made.
-std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments);
+/// `fragments`: of the plan, in its order; `to_healthy`: m, the median distance of each from the healthy side where it is
+/// planned, as far as there is one. Throws Error when pictures cannot be made.
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                      std::vector<std::optional<double>> to_healthy = {});
 
 }  // namespace tactus::picture

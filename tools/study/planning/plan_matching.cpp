@@ -34,13 +34,14 @@ std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
 
 }  // namespace
 
-PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder)
-    : PlanMatching(load_fragments(plan, folder, cases::Paint::or_proposed)) {}
+PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, double kerf)
+    : PlanMatching(load_fragments(plan, folder, cases::Paint::or_proposed), kerf) {}
 
-PlanMatching::PlanMatching(std::vector<CaseFragment> fragments) : loaded_(std::move(fragments)) {
+PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, double kerf) : loaded_(std::move(fragments)) {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
     fit::MatcherSettings settings;
     settings.most_points = 2000;
+    settings.fit.kerf = kerf;
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
 
@@ -147,6 +148,16 @@ std::optional<TargetDistances> target_distances(const cases::PlanState& state, c
     const fit::RegistrationTarget target(laid_target(*state.mirror, folder));
     return TargetDistances{fit::median_distance(fragment.bone.points, target, from),
                            fit::median_distance(fragment.bone.points, target, there)};
+}
+
+std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& state, const std::filesystem::path& folder,
+                                                     const std::vector<CaseFragment>& fragments) {
+    std::vector<std::optional<double>> all(fragments.size());
+    if (!state.mirror) return all;
+    const fit::RegistrationTarget target(laid_target(*state.mirror, folder));
+    for (std::size_t n = 0; n < fragments.size(); ++n)
+        all[n] = fit::median_distance(fragments[n].bone.points, target, state.arrangement.pose(static_cast<int>(n)));
+    return all;
 }
 
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,

@@ -34,9 +34,10 @@ enum class Partners : std::uint8_t { standing_first, all };
 /// The fragments of a plan and a matcher for them. Does not change the plan.
 class PlanMatching {
 public:
-    /// Throws Error for a file that is missing or has changed.
-    PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder);
-    explicit PlanMatching(std::vector<CaseFragment> fragments);
+    /// `kerf`: m, width of the bone that was lost along the faces, which fits leave open. Throws Error for a file that
+    /// is missing or has changed.
+    PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, double kerf = 0.0);
+    explicit PlanMatching(std::vector<CaseFragment> fragments, double kerf = 0.0);
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
@@ -74,6 +75,10 @@ struct TargetDistances {
 };
 std::optional<TargetDistances> target_distances(const cases::PlanState& state, const std::filesystem::path& folder,
                                                 const CaseFragment& fragment, const Pose& from, const Pose& there);
+
+/// Of each fragment where it is planned, m; none for all when the plan has no healthy side. Throws Error.
+std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& state, const std::filesystem::path& folder,
+                                                     const std::vector<CaseFragment>& fragments);
 
 /// Gap between two placed fragments.
 struct PlanGap {

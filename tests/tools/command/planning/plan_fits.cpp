@@ -103,7 +103,15 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     CHECK(apart.code == 1);
     CHECK(says(apart.out, "in 2 parts that no fit connects"));
     REQUIRE(row.run("report").code == 0);
-    CHECK(says(slurp(row.folder.path / "case.html"), "not all connected"));
+    const std::string page = slurp(row.folder.path / "case.html");
+    CHECK(says(page, "not all connected"));
+    // Warnings come first; pictures have the sides of the patient, a scale and the names.
+    CHECK(page.find("<h2>Warnings") < page.find("<h2>Connections"));
+    CHECK(page.find("<h2>Connections") < page.find("<h2>Fragments"));
+    for (const char* written : {">R</text>", ">L</text>", ">S</text>", ">I</text>", " mm</text>", ">d</text>"}) {
+        CAPTURE(written);
+        CHECK(says(page, written));
+    }
     row.fit("c", "b", "-2,0,0,1,0,0,0");
     // It moved from the one that was fitted to it: that fit is void, and d hangs on nothing.
     CHECK(row.state()["assemblies"] == json::array({{"a", "b", "c"}, {"d"}}));
@@ -113,6 +121,7 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     CHECK(json::parse(row.run("check", "--json").out)["ok"] == true);
     REQUIRE(row.run("report").code == 0);
     CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "not all connected"));
+    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "<h2>Warnings"));
     REQUIRE(row.run("undo").code == 0);
     CHECK(row.run("check").code == 1);
     REQUIRE(row.run("hide", "d").code == 0);

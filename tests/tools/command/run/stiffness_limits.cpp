@@ -138,21 +138,28 @@ TEST_CASE("check names the law of contact: per area unless the patch gives a sti
             "rate = \"1 kHz\"\n[nodes.coupling]\ntype = \"quasi_static_coupling\"\nrate = \"1 kHz\"\n"
             "stiffness = \"3 N/mm\"\n" +
             std::string(by_point ? "point_stiffness = \"7 N/mm\"\n" : "");
-        const std::string patch =
-            folder
-                .write("touch.toml", touch("", "30 N s/m", more,
-                                           "  \"ball2.body -> scene.a\",\n  \"scene.scene -> coupling.scene\",\n"
-                                           "  \"hand.pose -> coupling.device\",\n"))
-                .string();
-        const Outcome asked = folder.tactus("check --json " + patch);
-        CAPTURE(asked.out, asked.err);
-        const json law = json::parse(asked.out)["contact"][0];
-        CHECK(law["node"] == "coupling");
-        CHECK(law["law"] == (by_point ? "point" : "area"));
-        if (by_point) CHECK(law["stiffness_N_per_mm_per_point"] == Approx(7.0));
-        else CHECK(law["stiffness_N_per_mm_per_mm2"] == Approx(40.0));
-        CHECK(law["felt_at_most_N_per_mm"] == Approx(3.0));
-        CHECK_THAT(folder.tactus("check " + patch).out,
-                   ContainsSubstring(by_point ? "per point: 7 N/mm for each" : "per area: 40 N/mm for each mm^2"));
+        const std::string unwired = touch("", "30 N s/m", more,
+                                          "  \"ball2.body -> scene.a\",\n  \"scene.scene -> coupling.scene\",\n"
+                                          "  \"hand.pose -> coupling.device\",\n");
+        std::string wired = unwired;
+        const std::string wire = "ball.wrench -> out.wrench";
+        wired.replace(wired.find(wire), wire.size(), "coupling.wrench -> out.wrench");
+        for (const bool is_felt : {true, false}) {
+            const std::string patch = folder.write("touch.toml", is_felt ? wired : unwired).string();
+            const Outcome asked = folder.tactus("check --json " + patch);
+            CAPTURE(asked.out, asked.err, is_felt);
+            const json law = json::parse(asked.out)["contact"][0];
+            CHECK(law["node"] == "coupling");
+            CHECK(law["law"] == (by_point ? "point" : "area"));
+            if (by_point) CHECK(law["stiffness_N_per_mm_per_point"] == Approx(7.0));
+            else CHECK(law["stiffness_N_per_mm_per_mm2"] == Approx(40.0));
+            // A hand feels nothing of a spring whose force goes to no device.
+            CHECK(law["is_felt"] == is_felt);
+            if (is_felt) CHECK(law["felt_at_most_N_per_mm"] == Approx(3.0));
+            else CHECK(law["felt_at_most_N_per_mm"].is_null());
+            const std::string text = folder.tactus("check " + patch).out;
+            CHECK_THAT(text, ContainsSubstring(by_point ? "per point: 7 N/mm for each" : "per area: 40 N/mm for each"));
+            CHECK_THAT(text, ContainsSubstring(is_felt ? "3 N/mm, its spring" : "nothing: no device gets its force"));
+        }
     }
 }

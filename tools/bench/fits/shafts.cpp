@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// How straight the two halves of a long bone are put together: a small error of the face is a large one at the far end.
+#include "assets/cases/case_bones.hpp"
+#include "assets/file/json.hpp"
+#include "assets/library/fibula.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/core/rotation.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/study/bones/fracture.hpp"
+#include "tools/study/planning/plan_matching.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+namespace tactus::bench {
+
+namespace {
+
+using file::Json;
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double far_from_face = 0.15;  // m
+constexpr double goal_angle = 0.25, goal_error = 0.5e-3;  // degrees, m
+
+struct ShaftsChoice {
+    int first = 0, count = 20;
+    double chips = 0.2, kerf = 0.0;  // share, mm
+    bool told = false, json = false;
+    std::filesystem::path bone;
+};
+
+struct Shaft {
+    int number = 0;
+    std::string verdict;
+    double area = 0.0, angle = 0.0, error = 0.0;  ///< m², degrees, m at most within 150 mm of the face
+    double open = 0.0;  ///< m, how far apart the faces stay that a blade has parted
+};
+
+/// The middle of a fragment's paint and its area.
+std::pair<Vec3, double> middle_of_paint(const study::CaseFragment& fragment) {
+    Vec3 sum(0.0);
+    double area = 0.0;
+    for (const contact::SurfacePoint& p : fragment.bone.points)
+        if (p.label == contact::surface_label::fracture) sum += p.area * p.position, area += p.area;
+    return {area > 0.0 ? sum / area : Vec3(0.0), area};
+}
+
+Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) {
+    study::FractureSettings settings;
+    settings.seed = 7001 + static_cast<std::uint64_t>(number);
+    settings.chips = choice.chips;
+    settings.kerf = choice.kerf * 1e-3;
+    std::vector<study::CaseFragment> fragments;
+    std::vector<Pose> place;
+    study::break_and_scan(bone, settings, [&](study::ScannedFragment one) {
+        study::CaseFragment loaded;
+        loaded.bone = std::move(one.bone);
+        loaded.was_painted = true;
+        loaded.map = contact::make_voxmap(loaded.bone.distance);
+        fragments.push_back(std::move(loaded));
+        place.push_back(one.place);
+    });
+    study::PlanMatching matching(std::move(fragments), choice.told ? settings.kerf : 0.0);
+    const study::CaseFragment& moving = matching.fragment(1);
+    const auto [face, area] = middle_of_paint(moving);
+    const Pose truth = place[0].inverse() * place[1];
+    const Random random{settings.seed + 999};
+    const auto way = [&](std::uint64_t n) {
+        return glm::normalize(Vec3(random.normal(n), random.normal(n + 1), random.normal(n + 2)));
+    };
+    const Quat turned = glm::normalize(rotation_by(8.0 * degree * way(0)) * truth.orientation);
+    fit::Arrangement arrangement(2);
+    arrangement.move(1, {truth.apply(face) + 3e-3 * way(3) - turned * face, turned});
+    study::PlanMatch found = matching.near(arrangement, 1, study::Partners::all);
+    if (found.match.verdict == fit::FitVerdict::fit) {
+        arrangement.move(1, found.match.pose);
+        found = matching.near(arrangement, 1, study::Partners::all);
+    }
+    const Pose& pose = found.match.pose;
+    Shaft shaft{number, std::string(fit::name_of(found.match.verdict)), area, 0.0, 0.0, found.match.quality.gap};
+    shaft.angle = glm::length(rotation_between(truth.orientation, pose.orientation)) / degree;
+    for (const contact::SurfacePoint& p : moving.bone.points)
+        if (glm::length(p.position - face) < far_from_face)
+            shaft.error = std::max(shaft.error, glm::length(pose.apply(p.position) - truth.apply(p.position)));
+    return shaft;
+}
+
+double part_of(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    return values.empty() ? 0.0
+                          : values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+int bench_shafts(const ShaftsChoice& choice) {
+    const bone::Bone bone = choice.bone.empty() ? library::make_fibula() : cases::bone_from_file(choice.bone);
+    std::vector<double> angles, errors;
+    int fits = 0, good = 0;
+    Json rows = Json::array();
+    for (int n = choice.first; n < choice.first + choice.count; ++n) {
+        const Shaft shaft = fit_shaft(bone, choice, n);
+        fits += shaft.verdict == "fit";
+        good += shaft.verdict == "fit" && shaft.angle <= goal_angle && shaft.error <= goal_error;
+        if (shaft.verdict == "fit") {
+            angles.push_back(shaft.angle);
+            errors.push_back(shaft.error * 1e3);
+        }
+        rows.push_back({{"shaft", n},
+                        {"verdict", shaft.verdict},
+                        {"face_mm2", shaft.area * 1e6},
+                        {"angle_deg", shaft.angle},
+                        {"error_mm", shaft.error * 1e3},
+                        {"gap_mm", shaft.open * 1e3}});
+        if (choice.json) continue;
+        fmt::print("shaft {}: {}, face {:.0f} mm²: {:.3f}°, {:.3f} mm within 150 mm, gap {:.3f} mm\n", n, shaft.verdict,
+                   shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3);
+        std::fflush(stdout);
+    }
+    const Json total{{"shafts", choice.count},
+                     {"fits", fits},
+                     {"within_goal", good},
+                     {"angle_median_deg", part_of(angles, 0.5)},
+                     {"angle_p90_deg", part_of(angles, 0.9)},
+                     {"angle_max_deg", part_of(angles, 1.0)},
+                     {"error_median_mm", part_of(errors, 0.5)},
+                     {"error_p90_mm", part_of(errors, 0.9)},
+                     {"error_max_mm", part_of(errors, 1.0)}};
+    if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"total", total}, {"rows", rows}}.dump(2));
+    else
+        fmt::print(
+            "{} of {} fit, {} within 0.25° and 0.5 mm; median {:.3f}° and {:.3f} mm, 90 % {:.3f}° and {:.3f} mm, all "
+            "{:.3f}° and {:.3f} mm\n",
+            fits, choice.count, good, part_of(angles, 0.5), part_of(errors, 0.5), part_of(angles, 0.9),
+            part_of(errors, 0.9), part_of(angles, 1.0), part_of(errors, 1.0));
+    return done;
+}
+
+}  // namespace
+
+Verb shafts_verb() {
+    return {
+        "shafts", "how straight two halves of a long bone are put together, chipped and sawn",
+        [](VerbOptions& verb) -> Action {
+            const auto choice = std::make_shared<ShaftsChoice>();
+            verb.add("--first", choice->first, "number of the first shaft").shows_default().range(0, 1'000'000);
+            verb.add("--count", choice->count, "number of shafts").shows_default().range(1, 10'000);
+            verb.add("--chips", choice->chips, "share of the faces that is chipped").shows_default().range(0.0, 0.9);
+            verb.add("--kerf", choice->kerf, "mm of bone lost along the faces").shows_default().range(0.0, 4.0);
+            verb.flag("--told", choice->told, "the fit knows the kerf");
+            verb.add("--bone", choice->bone, "file of the long bone (default: the library's fibula)");
+            verb.flag("--json", choice->json, "as JSON");
+            return [choice] { return bench_shafts(*choice); };
+        }};
+}
+
+}  // namespace tactus::bench

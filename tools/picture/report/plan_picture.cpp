@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/report/plan_picture.hpp"
+
+#include "devices/display/png.hpp"
+#include "tools/picture/report/html_report.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tactus::picture {
+
+namespace {
+
+constexpr int width = 720, height = 540;
+constexpr double line = 17.0;  // pixels between two names
+
+/// The camera's axes and scale, for what is written over a picture.
+class Camera {
+public:
+    explicit Camera(const display::View& view)
+        : eye_(view.eye),
+          ahead_(glm::normalize(view.target - view.eye)),
+          right_(glm::normalize(glm::cross(ahead_, view.up))),
+          up_(glm::cross(right_, ahead_)),
+          pixels_(0.5 * height / std::tan(0.5 * view.vertical_field_of_view_rad)),
+          away_(glm::length(view.target - view.eye)) {}
+
+    const Vec3& right() const { return right_; }
+    const Vec3& up() const { return up_; }
+    /// Pixels of a metre at the distance of what is looked at.
+    double pixels_per_metre() const { return pixels_ / away_; }
+    std::array<double, 2> pixel(const Vec3& place) const {
+        const Vec3 from = place - eye_;
+        const double scale = pixels_ / std::max(glm::dot(from, ahead_), 1e-6);
+        return {0.5 * width + scale * glm::dot(from, right_), 0.5 * height - scale * glm::dot(from, up_)};
+    }
+
+private:
+    Vec3 eye_, ahead_, right_, up_;
+    double pixels_, away_;
+};
+
+std::string text(double x, double y, const char* anchor, const std::string& what) {
+    return fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
+                       html::escaped(what));
+}
+
+std::string sides(const Camera& camera) {
+    return "<g font-size=\"20\" font-weight=\"bold\">\n" +
+           text(10, 0.5 * height + 7, "start", sides_along(-camera.right())) +
+           text(width - 10, 0.5 * height + 7, "end", sides_along(camera.right())) +
+           text(0.5 * width, 24, "middle", sides_along(camera.up())) +
+           text(0.5 * width, height - 12, "middle", sides_along(-camera.up())) + "</g>\n";
+}
+
+/// A bar of 1, 2 or 5 times a power of ten mm, at most a fifth of the picture.
+std::string scale_bar(const Camera& camera) {
+    const double most = 0.2 * width / camera.pixels_per_metre() * 1e3;
+    const double ten = std::pow(10.0, std::floor(std::log10(most)));
+    const double mm = ten * (most >= 5.0 * ten ? 5.0 : most >= 2.0 * ten ? 2.0 : 1.0);
+    const double length = mm * 1e-3 * camera.pixels_per_metre(), x = width - 14.0 - length, y = height - 14.0;
+    return fmt::format("<path d=\"M{0:.1f} {1} v8 h{2:.1f} v-8\" fill=\"none\" stroke=\"#000\" stroke-width=\"2\"/>\n",
+                       x, y - 8.0, length) +
+           text(x + 0.5 * length, y - 12.0, "middle", fmt::format("{:g} mm", mm));
+}
+
+std::string names(const Camera& camera, std::span<const PictureLabel> labels) {
+    std::vector<std::pair<std::array<double, 2>, const PictureLabel*>> placed;
+    for (const PictureLabel& label : labels) placed.emplace_back(camera.pixel(label.at), &label);
+    std::ranges::sort(placed, [](const auto& a, const auto& b) { return a.first[1] < b.first[1]; });
+    std::string out, lines;
+    double last = -line;
+    for (const auto& [at, label] : placed) {
+        // Below each other at the left: a name over a bone hides it, and two names hide each other.
+        const double y = std::clamp(std::max(at[1], last + line), line, height - 34.0);
+        last = y;
+        const Vec3 c = 255.0 * label->colour;
+        lines += fmt::format("<path d=\"M{:.0f} {:.0f} L{:.0f} {:.0f}\" stroke=\"#555\" stroke-width=\"0.8\"/>\n", 54.0,
+                             y - 5.0, at[0], at[1]);
+        out += fmt::format(
+                   "<rect x=\"42\" y=\"{:.0f}\" width=\"10\" height=\"10\" stroke=\"#333\" "
+                   "fill=\"rgb({:.0f},{:.0f},{:.0f})\"/>\n",
+                   y - 10.0, c.x, c.y, c.z) +
+               text(56, y, "start", label->text);
+    }
+    return lines + out;
+}
+
+}  // namespace
+
+std::string sides_along(const Vec3& direction) {
+    constexpr double least = 0.38;  // of the unit vector: 22 degrees
+    constexpr const char* towards[3][2] = {{"R", "L"}, {"A", "P"}, {"I", "S"}};
+    const Vec3 d = glm::normalize(direction);
+    std::array<int, 3> axes{0, 1, 2};
+    std::ranges::stable_sort(axes, [&](int a, int b) { return std::abs(d[a]) > std::abs(d[b]); });
+    std::string all;
+    for (const int axis : {axes[0], axes[1]})
+        if (all.empty() || std::abs(d[axis]) > least) all += towards[axis][d[axis] > 0.0 ? 1 : 0];
+    return all;
+}
+
+std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
+                         const std::string& caption, std::span<const PictureLabel> labels) {
+    Vec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+    for (const display::PictureMesh& mesh : meshes)
+        for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
+            const Vec3 p(mesh.positions[n], mesh.positions[n + 1], mesh.positions[n + 2]);
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+    if (!(low.x <= high.x)) return "<p>All fragments are hidden.</p>\n";
+    display::View view =
+        display::fit_view(low, high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
+    view.eye = view.target + (view.eye - view.target) * 0.85;
+    const Camera camera(view);
+    return fmt::format(
+        "<figure><div style=\"position:relative;max-width:{0}px\"><img alt=\"{2}\" width=\"{0}\" "
+        "style=\"display:block;width:100%\" src=\"data:image/png;base64,{3}\"><svg viewBox=\"0 0 {0} {1}\" "
+        "style=\"position:absolute;left:0;top:0;width:100%\" font-family=\"sans-serif\" font-size=\"13\" "
+        "paint-order=\"stroke\" stroke-linejoin=\"round\"><style>text{{stroke:#fff;stroke-width:3px;"
+        "paint-order:stroke;fill:#000}}</style>\n{4}{5}{6}</svg></div><figcaption class=\"small\">{2}</figcaption>"
+        "</figure>\n",
+        width, height, html::escaped(caption),
+        display::base64(display::png_bytes(display::render_picture(meshes, view, width, height))),
+        names(camera, labels), sides(camera), scale_bar(camera));
+}
+
+}  // namespace tactus::picture
