@@ -112,7 +112,7 @@ int assemble(const PlanChoice& choice) {
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const cases::PlanState before = cases::state_of(plan);
-    study::PlanMatching matching(plan, choice.plan.parent_path(), choice.kerf * 1e-3);
+    study::PlanMatching matching(plan, choice.plan.parent_path(), fit_way(choice));
     const study::PlanAssembly made = study::assemble(matching, before.arrangement, before.fits);
     add_steps(plan, made);
     const cases::PlanState state = cases::state_of(plan);
@@ -128,7 +128,7 @@ int assemble(const PlanChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<PlanChoice>();
     add_plan_options(verb, *choice);
-    add_kerf(verb, *choice);
+    add_fit_options(verb, *choice);
     return [choice] { return assemble(*choice); };
 }
 

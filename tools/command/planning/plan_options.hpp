@@ -4,6 +4,7 @@
 
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/planning/plan_matching.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -17,12 +18,14 @@ struct PlanChoice {
     std::vector<std::string> names;  ///< names of fragments
     bool json = false;
     double kerf = 0.0;  ///< mm of bone lost along the faces
+    bool with_healthy = false;  ///< the plan's healthy side takes part in fits
 };
 
 /// The plan and --json.
 void add_plan_options(VerbOptions& verb, PlanChoice& choice);
-/// --kerf, for the verbs that fit.
-void add_kerf(VerbOptions& verb, PlanChoice& choice);
+/// --kerf and --healthy, for the verbs that fit.
+void add_fit_options(VerbOptions& verb, PlanChoice& choice);
+study::FitWay fit_way(const PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
 
 /// Prints the plan as text or JSON on standard output.

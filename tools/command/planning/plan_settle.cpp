@@ -43,7 +43,7 @@ int settle(const SettleChoice& choice) {
     cases::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
     const std::vector<int> held = held_fragments(cases::state_of(plan));
-    study::PlanMatching matching(plan, choice.plan.parent_path(), choice.kerf * 1e-3);
+    study::PlanMatching matching(plan, choice.plan.parent_path(), fit_way(choice));
     file::Json rows = file::Json::array();
     bool all_fit = true;
     const auto settle_one = [&](int n) {
@@ -78,7 +78,7 @@ Action add(VerbOptions& verb) {
     add_plan_options(verb, *choice);
     verb.add("fragments", choice->names, "fragments to settle (default: all fitted ones)");
     verb.add("--passes", choice->passes, "how often").range(1, 20);
-    add_kerf(verb, *choice);
+    add_fit_options(verb, *choice);
     return [choice] { return settle(*choice); };
 }
 

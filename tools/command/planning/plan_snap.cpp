@@ -27,7 +27,7 @@ int snap_fragment(const SnapChoice& choice) {
     if (only != fit::Arrangement::none && a.move_together(moving, only))
         throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
     if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
-    study::PlanMatching matching(plan, folder, choice.kerf * 1e-3);
+    study::PlanMatching matching(plan, folder, fit_way(choice));
     if (matching.faces_of(moving) == 0)
         throw Error(
             fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
@@ -68,7 +68,7 @@ Action add(VerbOptions& verb) {
     verb.add("--mode", choice->mode, "extended: from the current pose; global: from any pose")
         .one_of({"extended", "global"})
         .shows_default();
-    add_kerf(verb, *choice);
+    add_fit_options(verb, *choice);
     return [choice] { return snap_fragment(*choice); };
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_matching.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/fit/as_scanned.hpp"
 #include "dsp/fit/assemblies.hpp"
 #include "dsp/fit/overlap.hpp"
@@ -34,14 +35,26 @@ std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
 
 }  // namespace
 
-PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, double kerf)
-    : PlanMatching(load_fragments(plan, folder, cases::Paint::or_proposed), kerf) {}
+PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, const FitWay& way)
+    : loaded_(load_fragments(plan, folder, cases::Paint::or_proposed)) {
+    if (way.with_healthy) {
+        const auto mirror = cases::state_of(plan).mirror;
+        if (!mirror) throw Error("the plan has no healthy side: lay it on a fragment with 'tactus plan mirror'");
+        healthy_.emplace(laid_target(*mirror, folder));
+    }
+    make_matcher(way);
+}
 
-PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, double kerf) : loaded_(std::move(fragments)) {
+PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, const FitWay& way) : loaded_(std::move(fragments)) {
+    make_matcher(way);
+}
+
+void PlanMatching::make_matcher(const FitWay& way) {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
     fit::MatcherSettings settings;
     settings.most_points = 2000;
-    settings.fit.kerf = kerf;
+    settings.fit.kerf = way.kerf;
+    if (healthy_) settings.healthy.side = &*healthy_;
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
 

@@ -31,13 +31,19 @@ struct PlanMatch {
 /// visible fragments; or all visible ones at once.
 enum class Partners : std::uint8_t { standing_first, all };
 
+/// What fits take into account beside the faces.
+struct FitWay {
+    double kerf = 0.0;  ///< m, width of the bone that was lost along the faces, which fits leave open
+    bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/healthy_pull.hpp
+};
+
 /// The fragments of a plan and a matcher for them. Does not change the plan.
 class PlanMatching {
 public:
-    /// `kerf`: m, width of the bone that was lost along the faces, which fits leave open. Throws Error for a file that
-    /// is missing or has changed.
-    PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, double kerf = 0.0);
-    explicit PlanMatching(std::vector<CaseFragment> fragments, double kerf = 0.0);
+    /// Throws Error for a file that is missing or has changed, and when a healthy side is asked for that the plan does
+    /// not have.
+    PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, const FitWay& way = {});
+    explicit PlanMatching(std::vector<CaseFragment> fragments, const FitWay& way = {});
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
@@ -61,7 +67,10 @@ public:
 private:
     void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement, const std::vector<char>& counts) const;
 
+    void make_matcher(const FitWay& way);
+
     std::vector<CaseFragment> loaded_;
+    std::optional<fit::RegistrationTarget> healthy_;
     std::vector<fit::FragmentSurface> surfaces_;
     std::unique_ptr<fit::FragmentMatcher> matcher_;
 };

@@ -128,6 +128,17 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     CHECK(row.run("check").code == 0);
 }
 
+TEST_CASE("a fit to the healthy side is refused where the plan has none") {
+    const Row row;
+    for (const char* verb : {"snap", "settle", "assemble"}) {
+        CAPTURE(verb);
+        row.fit("b", "a", "-1,0,0,1,0,0,0");
+        const Outcome refused = row.run(verb, std::string(verb) == "snap" ? "b a --healthy" : "--healthy");
+        CHECK(refused.code == 2);
+        CHECK(says(refused.err, "the plan has no healthy side: lay it on a fragment with 'tactus plan mirror'"));
+    }
+}
+
 TEST_CASE("a gap between fragments that do not face each other is not told as a number", "[slow]") {
     const Row row;
     REQUIRE(row.run("move", "b --pose 0,0,90,1,0,0,0").code == 0);
