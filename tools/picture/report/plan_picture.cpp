@@ -71,26 +71,25 @@ std::string scale_bar(const Camera& camera) {
            text(x + 0.5 * length, y - 12.0, "middle", fmt::format("{:g} mm", mm));
 }
 
+/// Each name at the middle of its fragment; one that would hide another goes below it.
 std::string names(const Camera& camera, std::span<const PictureLabel> labels) {
+    constexpr double wide = 100.0;  // pixels
     std::vector<std::pair<std::array<double, 2>, const PictureLabel*>> placed;
     for (const PictureLabel& label : labels) placed.emplace_back(camera.pixel(label.at), &label);
     std::ranges::sort(placed, [](const auto& a, const auto& b) { return a.first[1] < b.first[1]; });
-    std::string out, lines;
-    double last = -line;
-    for (const auto& [at, label] : placed) {
-        // Below each other at the left: a name over a bone hides it, and two names hide each other.
-        const double y = std::clamp(std::max(at[1], last + line), line, height - 34.0);
-        last = y;
-        const Vec3 c = 255.0 * label->colour;
-        lines += fmt::format("<path d=\"M{:.0f} {:.0f} L{:.0f} {:.0f}\" stroke=\"#555\" stroke-width=\"0.8\"/>\n", 54.0,
-                             y - 5.0, at[0], at[1]);
+    std::string out;
+    for (std::size_t n = 0; n < placed.size(); ++n) {
+        auto& [x, y] = placed[n].first;
+        for (std::size_t k = 0; k < n; ++k)
+            if (std::abs(placed[k].first[0] - x) < wide) y = std::max(y, placed[k].first[1] + line);
+        const Vec3 c = 255.0 * placed[n].second->colour;
         out += fmt::format(
-                   "<rect x=\"42\" y=\"{:.0f}\" width=\"10\" height=\"10\" stroke=\"#333\" "
+                   "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"10\" height=\"10\" stroke=\"#333\" "
                    "fill=\"rgb({:.0f},{:.0f},{:.0f})\"/>\n",
-                   y - 10.0, c.x, c.y, c.z) +
-               text(56, y, "start", label->text);
+                   x - 7.0, y - 10.0, c.x, c.y, c.z) +
+               text(x + 7.0, y, "start", placed[n].second->text);
     }
-    return lines + out;
+    return out;
 }
 
 }  // namespace
