@@ -149,6 +149,27 @@ std::vector<Stroke> strokes_in(const std::vector<std::uint32_t>& core, const Vox
     return strokes;
 }
 
+std::vector<ProposedFragment> fragments_of(const VoxelGraph& graph, const volume::Grid& values,
+                                           const std::vector<std::int32_t>& depth, const Cores& cores,
+                                           const ProposeSeeds& how, double least) {
+    const std::vector<std::int32_t> into = join_strongly_joined(graph, cores, how.weakest);
+    std::vector<std::vector<std::uint32_t>> core(cores.nodes.size());
+    std::vector<std::size_t> nodes(cores.nodes.size(), 0);
+    for (std::size_t c = 0; c < cores.nodes.size(); ++c) {
+        auto& all = core[static_cast<std::size_t>(into[c])];
+        all.insert(all.end(), cores.nodes[c].begin(), cores.nodes[c].end());
+    }
+    for (const std::int32_t c : cores.nearest)
+        if (c >= 0) ++nodes[static_cast<std::size_t>(into[static_cast<std::size_t>(c)])];
+    std::vector<ProposedFragment> fragments;
+    for (std::size_t c = 0; c < core.size(); ++c)
+        if (static_cast<double>(nodes[c]) > least)
+            fragments.push_back({strokes_in(core[c], graph, values, depth, how.strokes), nodes[c]});
+    std::stable_sort(fragments.begin(), fragments.end(),
+                     [](const ProposedFragment& a, const ProposedFragment& b) { return a.nodes > b.nodes; });
+    return fragments;
+}
+
 }  // namespace
 
 std::vector<ProposedFragment> propose_seeds(const VoxelGraph& graph, const volume::Grid& values, const GapLaw& law,
@@ -168,24 +189,16 @@ std::vector<ProposedFragment> propose_seeds(const VoxelGraph& graph, const volum
     const std::vector<std::int32_t> depth = depths(graph, around, bright);
 
     const double h = std::min({values.spacing.x, values.spacing.y, values.spacing.z});
-    const Cores cores = cores_at(graph, around, depth, std::max(1, static_cast<std::int32_t>(how.depth / h)));
-    const std::vector<std::int32_t> into = join_strongly_joined(graph, cores, how.weakest);
-    std::vector<std::vector<std::uint32_t>> core(cores.nodes.size());
-    std::vector<std::size_t> nodes(cores.nodes.size(), 0);
-    for (std::size_t c = 0; c < cores.nodes.size(); ++c) {
-        auto& all = core[static_cast<std::size_t>(into[c])];
-        all.insert(all.end(), cores.nodes[c].begin(), cores.nodes[c].end());
-    }
-    for (const std::int32_t c : cores.nearest)
-        if (c >= 0) ++nodes[static_cast<std::size_t>(into[static_cast<std::size_t>(c)])];
     const double least = how.least_share * static_cast<double>(graph.nodes());
-    std::vector<ProposedFragment> fragments;
-    for (std::size_t c = 0; c < core.size(); ++c)
-        if (static_cast<double>(nodes[c]) > least)
-            fragments.push_back({strokes_in(core[c], graph, values, depth, how.strokes), nodes[c]});
-    std::stable_sort(fragments.begin(), fragments.end(),
-                     [](const ProposedFragment& a, const ProposedFragment& b) { return a.nodes > b.nodes; });
-    return fragments;
+    // Thin bone has no deep cores.
+    for (auto level = std::max(1, static_cast<std::int32_t>(how.depth / h)); level > 0; --level) {
+        const Cores cores = cores_at(graph, around, depth, level);
+        const auto without = std::count(cores.nearest.begin(), cores.nearest.end(), none);
+        if (static_cast<double>(without) > how.most_without_core * static_cast<double>(graph.nodes())) continue;
+        std::vector<ProposedFragment> fragments = fragments_of(graph, values, depth, cores, how, least);
+        if (fragments.size() > 1 || level == 1) return fragments;
+    }
+    return {};
 }
 
 }  // namespace tactus::segment

@@ -13,8 +13,9 @@
 namespace tactus::segment {
 
 struct ProposeSeeds {
-    double depth = 3e-3;        ///< m: how far the bone is eroded to find its cores
+    double depth = 3e-3;        ///< m: how far the bone is eroded to find its cores, less where it is thin
     double weakest = 0.25;      ///< regions joined by more than this are one fragment; see propose_seeds
+    double most_without_core = 0.05;  ///< share of the nodes; with more, or one fragment, the bone is eroded less
     double least_share = 0.01;  ///< of all nodes: a smaller fragment gets no proposal
     std::size_t strokes = 8;    ///< at most, per fragment
 };

@@ -64,15 +64,13 @@ double share_below(std::vector<float> values, double share) {
     return static_cast<double>(*at);
 }
 
-/// Voxels beside the bone that take the label of the nearest bone: all that are not 0 in a masked scan, else marrow.
+/// Voxels beside the bone that take the label of the nearest bone: marrow, and in a masked scan all that are not 0.
 std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::LabelMap& map, double marrow) {
-    if (scan.hu == volume::HuKind::masked) {
-        std::vector<std::uint8_t> open(map.label.size());
-        for (std::size_t v = 0; v < open.size(); ++v) open[v] = scan.scan.values[v] != 0.0f;
-        return open;
-    }
-    if (marrow > 0.0) return segment::marrow_of(map, scan.scan.spacing, marrow);
-    return std::vector<std::uint8_t>(map.label.size(), 0);
+    std::vector<std::uint8_t> open(map.label.size(), 0);
+    if (marrow > 0.0) open = segment::marrow_of(map, scan.scan.spacing, marrow);
+    if (scan.hu == volume::HuKind::masked)
+        for (std::size_t v = 0; v < open.size(); ++v) open[v] |= scan.scan.values[v] != 0.0f;
+    return open;
 }
 
 }  // namespace
