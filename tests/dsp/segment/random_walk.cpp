@@ -272,3 +272,35 @@ TEST_CASE("dsp: the multigrid cycle is linear and symmetric and positive") {
     CHECK(dot(v, mv) > 0.0);
     CHECK(std::abs(dot(v, mu) - dot(u, mv)) < 1e-4 * scale);
 }
+
+TEST_CASE("dsp: seeds in the dark do not keep the solver busy and the residual says what was reached") {
+    Phantom p = noisy_cube(24);
+    for (const auto& at : {std::array<int, 3>{3, 3, 3}, std::array<int, 3>{20, 20, 20}})
+        for (int k = -1; k <= 1; ++k)
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) p.grid.at(at[0] + i, at[1] + j, at[2] + k) = -5000.0f;
+    const VoxelGraph graph = segment::make_voxel_graph(p.grid, p.inside, {700.0, 40.0, 1e-4});
+    const auto seed = seeds_at(graph, {{{3, 3, 3}, 1}, {{20, 20, 20}, 2}});
+    const Walks walks = segment::random_walks(graph, seed, 2, {1e-12, 200});
+    CHECK(walks.iterations < 100);
+    CHECK(walks.residual < 0.2);
+    CHECK(walks.residual > 1e-9);
+    check_probabilities(walks);
+}
+
+TEST_CASE("dsp: a label whose seeds are shut in is nowhere else, also from an earlier solve") {
+    Phantom p;
+    p.grid = {{9, 1, 1}, Vec3(0.0), Vec3(1e-3), std::vector<float>(9, 500.0f)};
+    p.inside = {1, 1, 1, 0, 1, 1, 1, 1, 1};
+    const VoxelGraph graph = p.graph();
+    const Walks before = segment::random_walks(
+        graph, seeds_at(graph, {{{1, 0, 0}, 1}, {{4, 0, 0}, 1}, {{8, 0, 0}, 2}, {{6, 0, 0}, 3}}), 3);
+    const auto seed = seeds_at(graph, {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 1}, {{4, 0, 0}, 3}, {{8, 0, 0}, 2}});
+    const Walks walks = segment::random_walks(graph, seed, 3, {}, &before);
+    CHECK(walks.iterations < 50);
+    CHECK(segment::labels_of(walks) == segment::labels_of(segment::random_walks(graph, seed, 3)));
+    CHECK(walks.probability[3 * 5] == 0.0f);
+    // All voxels are seeds.
+    const std::vector<std::uint8_t> all{1, 2, 1, 2, 1, 2, 1, 2};
+    CHECK(segment::labels_of(segment::random_walks(graph, all, 2)) == all);
+}

@@ -21,7 +21,7 @@ using file::Json;
 
 struct SegmentChoice {
     std::filesystem::path data;
-    int seedings = 20, dabs = 6, peers = 20;
+    int seedings = 20, dabs = 6, peers = 3;
     bool no_costs = false, json = false;
 };
 
