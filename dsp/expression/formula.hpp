@@ -16,6 +16,7 @@ namespace tactus::expression {
 struct Variable {
     std::string name;
     Measure measure;
+    std::string unit{};  ///< as written
 };
 
 /// A constant: "k" of "0.8 N/mm".

@@ -59,6 +59,7 @@ std::vector<Variable> parse_variables(std::string_view text) {
         Variable variable;
         variable.name = take_name(entry);
         need_new(variables, variable.name);
+        variable.unit = entry;
         variable.measure = parse_measured_unit(entry).measure;
         variables.push_back(std::move(variable));
     });

@@ -113,6 +113,7 @@ void GroupRuntime::publish(int frames) noexcept {
     for (Link* link : program_->outputs) {
         if (decisions_->drops(*link, next_, frames)) {
             telemetry.dropped.fetch_add(frames, std::memory_order_relaxed);
+            telemetry.lost_events.fetch_add(link->drop(frames), std::memory_order_relaxed);
             continue;
         }
         link->publish(next_, frames);
@@ -150,6 +151,7 @@ int GroupRuntime::finish_call() noexcept {
         RealtimeScope scope;
         publish(n);
         hold_outputs(n);
+        clear_events(n);
     }
     committing_ = n;
     for (build::DeviceSlot* slot : program_->driven) {

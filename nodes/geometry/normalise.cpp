@@ -7,6 +7,7 @@ namespace tactus::nodes {
 
 struct Normalise {
     static constexpr auto about = "Direction and length of a vector.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Vec3> in{"the vector"};
     Out<Vec3> direction{"the vector divided by its length; the last direction where the length is 0"};

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 
 struct Gain {
     static constexpr auto about = "Multiplies a signal, number, vector, twist or wrench by a factor.";
+    static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::addable};

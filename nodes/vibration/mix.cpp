@@ -8,6 +8,7 @@ namespace tactus::nodes {
 
 struct Mix {
     static constexpr auto about = "Weighted sum of up to eight values of one type.";
+    static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
     AnyIn in1{optional, "a value", kinds::addable}, in2{optional, "a signal"}, in3{optional, "a signal"};
