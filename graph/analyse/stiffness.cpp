@@ -3,10 +3,16 @@
 
 #include "dsp/core/units.hpp"
 #include "graph/analyse/latency.hpp"
+#include "graph/compile/units.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
 #include <tuple>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace tactus::analyse {
 
@@ -41,6 +47,80 @@ std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const comp
         if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value, driven.contains(param)};
     }
     return found;
+}
+
+/// What is known of the law of a node that shapes values.
+struct KnownLaw {
+    std::optional<double> newton_per_metre;  ///< of a force over positions
+};
+
+/// Slopes over the inputs of a node, by what they mean. Nothing when one that a hand reaches is not known: no slope, a
+/// wire drives a parameter, or a gain above 1 on the way.
+class Laws {
+public:
+    Laws(const compile::Plan& plan, const DrivenParams& driven)
+        : plan_(plan), driven_(driven), units_(compile::find_units(plan)), wires_into_(plan.nodes.size()) {
+        for (const compile::PlanWire& wire : plan.wires)
+            if (wire.from_node >= 0) wires_into_[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
+    }
+
+    /// `reaches` says whether a node carries what a hand does.
+    template <class Reaches>
+    std::optional<KnownLaw> of(std::size_t n, Reaches&& reaches) const {
+        const compile::PlanNode& node = plan_.nodes[n];
+        if (!node.type->slopes || node.outputs.size() != 1) return std::nullopt;
+        for (const auto& [name, param] : node.params)
+            if (driven_.contains(param)) return std::nullopt;
+        std::vector<PortSlope> slopes;
+        try {
+            slopes = node.type->slopes(node.instance.get());
+        } catch (const Error&) {
+            return std::nullopt;  // `prepare` says what is wrong
+        }
+        KnownLaw law;
+        double squares = 0.0;
+        bool has_positions = false;
+        for (const compile::PlanWire* wire : wires_into_[n]) {
+            if (wire->to_input < 0 || !reaches(static_cast<std::size_t>(wire->from_node))) continue;
+            const auto input = static_cast<std::size_t>(wire->to_input);
+            const auto slope = std::ranges::find(slopes, node.inputs[input].name, &PortSlope::input);
+            if (slope == slopes.end() || !std::isfinite(slope->largest)) return std::nullopt;
+            const auto& in = units_.inputs[n][input];
+            const auto& out = units_.outputs[n][0];
+            if (is(in, "m") && is(out, "N")) {
+                has_positions = true;
+                squares += slope->largest * slope->largest;
+            } else if (!(is(in, "m/s") && is(out, "N"))) {
+                const bool keeps_unit =
+                    node.type->units == UnitRule::same || (in && out && in->measure == out->measure);
+                if (!keeps_unit || slope->largest > 1.0) return std::nullopt;
+            }
+        }
+        if (has_positions) law.newton_per_metre = std::sqrt(squares);
+        return law;
+    }
+
+private:
+    static bool is(const std::optional<compile::WireUnit>& unit, std::string_view text) {
+        return unit && unit->measure == expression::parse_measured_unit(text).measure;
+    }
+
+    const compile::Plan& plan_;
+    const DrivenParams& driven_;
+    compile::PlanUnits units_;
+    std::vector<std::vector<const compile::PlanWire*>> wires_into_;
+};
+
+/// Which nodes carry what some hand does.
+std::vector<bool> reached_by_hands(const compile::Plan& plan) {
+    std::vector<bool> reached(plan.nodes.size(), false);
+    for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
+        const Ages from = ages_from(plan, static_cast<int>(source));
+        for (std::size_t n = 0; n < plan.nodes.size(); ++n)
+            if (from.age[n] != unreached) reached[n] = true;
+    }
+    return reached;
 }
 
 /// The scale from the device to the scene on the quickest path from a source: the product of its workspaces.
@@ -141,9 +221,14 @@ std::vector<std::string> unstated_laws(const compile::Plan& plan) {
                 if (from.age[n] != unreached && to_sink[n] != unreached) is_between[n] = true;
         }
     }
+    const DrivenParams driven = driven_params(plan);
+    const Laws laws(plan, driven);
+    const std::vector<bool> reached = reached_by_hands(plan);
     std::vector<std::string> names;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
-        if (is_between[n] && plan.nodes[n].type->shapes_values) names.push_back(plan.nodes[n].name);
+        if (is_between[n] && plan.nodes[n].type->shapes_values &&
+            !laws.of(n, [&](std::size_t k) { return reached[k]; }))
+            names.push_back(plan.nodes[n].name);
     return names;
 }
 
@@ -152,9 +237,16 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::functio
     const DrivenParams driven = driven_params(plan);
     std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;
     std::vector<std::pair<std::size_t, std::vector<Flicks>>> sinks;  // with the way from each node to it
+    const Laws laws(plan, driven);
+    const std::vector<bool> reached = reached_by_hands(plan);
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
-        if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
         if (plan.nodes[n].type->role == NodeRole::hand_sink) sinks.emplace_back(n, ages_to(plan, static_cast<int>(n)));
+        if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
+        if (!plan.nodes[n].type->shapes_values) continue;
+        const auto law = laws.of(n, [&](std::size_t k) { return reached[k]; });
+        if (law && law->newton_per_metre)
+            springs.emplace_back(n,
+                                 DeclaredStiffness{plan.nodes[n].name + " (its slope)", *law->newton_per_metre, false});
     }
 
     std::vector<ForceLoop> loops;

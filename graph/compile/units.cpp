@@ -179,12 +179,12 @@ private:
     }
 
     void check_wire(const PlanWire& wire) {
-        const auto& given = finder_.units.outputs[static_cast<std::size_t>(wire.from_node)]
-                                                 [static_cast<std::size_t>(wire.from_output)];
+        const auto& given =
+            finder_.units.outputs[static_cast<std::size_t>(wire.from_node)][static_cast<std::size_t>(wire.from_output)];
         const std::optional<WireUnit> taken =
-            wire.to_input < 0 ? stated_unit(wire.param->unit)
-                              : finder_.units.inputs[static_cast<std::size_t>(wire.to_node)]
-                                                    [static_cast<std::size_t>(wire.to_input)];
+            wire.to_input < 0
+                ? stated_unit(wire.param->unit)
+                : finder_.units.inputs[static_cast<std::size_t>(wire.to_node)][static_cast<std::size_t>(wire.to_input)];
         if (!given || !taken || given->agrees_with(*taken)) return;
         problems_.add(wire.where, fmt::format("'{}' gives {}, but '{}' takes {}{}", name_of(wire, true), given->text,
                                               name_of(wire, false), taken->text, hint(*given, *taken)));

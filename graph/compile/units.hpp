@@ -20,7 +20,7 @@ struct WireUnit {
 
     expression::Measure measure;
     Sense sense = Sense::any;  ///< `any` when it follows from others
-    std::string text;          ///< "N/m"
+    std::string text;  ///< "N/m"
 
     /// One may feed the other.
     bool agrees_with(const WireUnit& other) const {
@@ -33,7 +33,7 @@ std::optional<WireUnit> stated_unit(std::string_view text);
 
 /// Of each node, in the order of its ports; nothing where none is known. Numbers, signals and vectors only.
 struct PlanUnits {
-    std::vector<std::vector<std::optional<WireUnit>>> inputs;   ///< stated by the port, or brought by its wire
+    std::vector<std::vector<std::optional<WireUnit>>> inputs;  ///< stated by the port, or brought by its wire
     std::vector<std::vector<std::optional<WireUnit>>> outputs;  ///< stated, or following from the inputs
 };
 

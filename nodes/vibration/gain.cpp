@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace tactus::nodes {
 
@@ -13,6 +15,8 @@ struct Gain {
     AnyIn in{"the value", kinds::addable};
     AnyOut out{"factor × in"};
     Param factor{"1", "-1000", "1000", "gain"};
+
+    std::vector<PortSlope> slopes() const { return {{"in", std::abs(factor)}}; }
 
     void prepare(const Setup&) {
         is_signal_ = in.type == &value::signal;

@@ -131,7 +131,7 @@ Outcome render(const PatchText& text, double length = 0.2, int block = 0, bool r
 const std::vector<Seen>& seen(const std::string& node) { return seen_by[event_source(node)]; }
 
 PatchText::Node witness(const std::string& name, const std::string& rate) {
-    return {name, "witness", rate, {{"keep", "\"yes\""}}};
+    return {name, "witness", rate, {{"keep", "yes"}}};
 }
 
 /// Numbers from 1 on without a gap, of one producer.
@@ -148,14 +148,14 @@ PatchText around() {
              {"b", "burst", "150 Hz", {{"count", "2"}}},
              {"c", "burst", "48 kHz", {{"every", "501"}}},
              {"d", "burst", "60 Hz", {{"count", "20"}}},
-             {"o", "oscillator", "48 kHz", {{"frequency", "\"90 Hz\""}}},
-             {"n", "onset", "48 kHz", {{"gap", "\"5 ms\""}}},
+             {"o", "oscillator", "48 kHz", {{"frequency", "90 Hz"}}},
+             {"n", "onset", "48 kHz", {{"gap", "5 ms"}}},
              {"wa", "witness", "48 kHz", {}},
              {"wb", "witness", "1 kHz", {}},
              {"wc", "witness", "60 Hz", {}},
              {"wd", "witness", "150 Hz", {}},
-             {"later", "event_delay", "1 kHz", {{"delay", "\"7.3 ms\""}}},
-             {"back", "event_filter", "48 kHz", {{"on", "\"begin\""}}},
+             {"later", "event_delay", "1 kHz", {{"delay", "7.3 ms"}}},
+             {"back", "event_filter", "48 kHz", {{"on", "begin"}}},
              {"trigger", "event_trigger", "48 kHz", {}},
              {"tone", "event_value", "48 kHz", {}}},
             {"a.events -> wa.in",
@@ -459,8 +459,8 @@ TEST_CASE("a live run with events is repeated bit by bit, also when groups stand
         text.nodes.push_back({name,
                               "planted",
                               rate,
-                              {{"fault", "\"stall\""},
-                               {"stall", "\"250 ms\""},
+                              {{"fault", "stall"},
+                               {"stall", "250 ms"},
                                {"at", std::string(name) == "quick"    ? "150"
                                       : std::string(name) == "loudly" ? "30000"
                                                                       : "40"}}});
