@@ -116,7 +116,8 @@ void GroupRuntime::publish(int frames) noexcept {
             telemetry.lost_events.fetch_add(link->drop(frames), std::memory_order_relaxed);
             continue;
         }
-        link->publish(next_, frames);
+        if (const std::int64_t lost = link->publish(next_, frames); lost > 0)
+            telemetry.lost_events.fetch_add(lost, std::memory_order_relaxed);
         ++took;
     }
     for (const build::PublishedSnapshot& snapshot : program_->snapshots)

@@ -53,16 +53,18 @@ void LinkWire::point(Input& input, Flicks producer_period) const {
     input.period = producer_period;
 }
 
-void Link::publish(std::int64_t first, int count) noexcept {
+std::int64_t Link::publish(std::int64_t first, int count) noexcept {
+    std::int64_t lost = 0;
     for (LinkWire& wire : wires) {
         if (wire.brings_events()) {
-            publish_events(wire, first, count);
+            lost += publish_events(wire, first, count);
             continue;
         }
         for (int i = 0; i < count; ++i)
             std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
     }
     for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
+    return lost;
 }
 
 namespace {
@@ -73,7 +75,8 @@ const Events& events_at(const Output& output, int activation) noexcept {
 
 }  // namespace
 
-void Link::publish_events(LinkWire& wire, std::int64_t first, int count) noexcept {
+std::int64_t Link::publish_events(LinkWire& wire, std::int64_t first, int count) noexcept {
+    std::int64_t lost = 0;
     for (int i = 0; i < count; ++i) {
         const Events& given = events_at(*wire.source, i);
         Events& slot = *reinterpret_cast<Events*>(wire.slot(first + i, depth_));
@@ -81,25 +84,28 @@ void Link::publish_events(LinkWire& wire, std::int64_t first, int count) noexcep
             copy_events(given, slot);
             continue;
         }
+        const std::int64_t known = std::int64_t{wire.carried->lost} + given.lost;
         wire.carried->add_all(given);
+        lost += wire.carried->lost - known;
         copy_events(*wire.carried, slot);
         wire.carried->clear();
     }
+    return lost;
 }
 
 std::int64_t Link::drop(int count) noexcept {
     std::int64_t lost = 0;
     for (LinkWire& wire : wires) {
         if (!wire.brings_events()) continue;
-        const std::int64_t before = wire.carried->lost;
         for (int i = 0; i < count; ++i) {
             const Events& given = events_at(*wire.source, i);
             wire.carried->lose(given.lost);
+            const std::int64_t known = wire.carried->lost;
             for (const Event& event : given.all())
                 if (event.kind == EventKind::end) wire.carried->add(event);
                 else wire.carried->lose(1);
+            lost += wire.carried->lost - known;
         }
-        lost += wire.carried->lost - before;
     }
     return lost;
 }

@@ -95,8 +95,9 @@ public:
                 return false;
         return true;
     }
-    /// Copies the outputs' values into the slots. The group's progress word publishes them. Wait-free.
-    void publish(std::int64_t first, int count) noexcept;
+    /// Copies the outputs' values into the slots. The group's progress word publishes them. Returns how many events are
+    /// lost. Wait-free.
+    std::int64_t publish(std::int64_t first, int count) noexcept;
     /// Instead of `publish`: nothing is published, but the ends of events are kept for the next time. Returns how many
     /// events are lost. Wait-free.
     std::int64_t drop(int count) noexcept;
@@ -147,7 +148,7 @@ private:
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
     void take_values(std::int64_t index) noexcept;
-    void publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
+    std::int64_t publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
     void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
     /// Lists what lies between the used index and `newest`, in order.
     void list_held(std::int64_t newest) noexcept;

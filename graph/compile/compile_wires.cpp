@@ -198,6 +198,10 @@ private:
         const PlanNode& from = node(wire_.from_node);
         const PlanGroup& group = plan_.groups[static_cast<std::size_t>(from.group)];
         const std::int64_t waiting = crosses() ? wire_latency(group, wire_) / group.period : wire_.delay;
+        const Flicks reading = plan_.groups[static_cast<std::size_t>(node(wire_.to_node).group)].period;
+        if (reading / group.period > most_at_once)
+            throw Error(fmt::format("'{}' runs once in {} ticks of '{}', and {} is the most for events",
+                                    source_.to_node, reading / group.period, source_.from_node, most_at_once));
         if (waiting > most_waiting)
             throw Error(
                 fmt::format("events would wait for {} ticks on this wire, and {} is the most; event_delay "
@@ -223,7 +227,7 @@ private:
                                     source_.to_node));
     }
 
-    static constexpr std::int64_t most_waiting = 10'000;  // a tick's events take 776 bytes
+    static constexpr std::int64_t most_waiting = 10'000, most_at_once = 50'000;  // a tick's events take 776 bytes
 
     Plan& plan_;
     WireContext& context_;

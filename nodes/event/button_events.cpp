@@ -19,8 +19,10 @@ struct ButtonEvents {
         port_ = in.connected ? nullptr : &setup.host->device(device.value, DeviceUse::read, setup.where);
     }
     void process(const Tick& tick) noexcept {
-        if (port_ && !port_->sample.valid) return;
-        const bool is = port_ ? (port_->sample.buttons >> static_cast<unsigned>(number)) & 1u : in.get();
+        // An edit may give a running node a wire, or take it away.
+        const bool reads_device = port_ && !in.connected;
+        if (reads_device && !port_->sample.valid) return;
+        const bool is = reads_device ? (port_->sample.buttons >> static_cast<unsigned>(number)) & 1u : in.get();
         if (is != was_) emit_(events, tick, 0, is ? EventKind::begin : EventKind::end, {});
         was_ = is;
     }

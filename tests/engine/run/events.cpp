@@ -47,7 +47,8 @@ struct Burst {
         const auto n = static_cast<int>(count);
         for (int i = 0; i < n; ++i)
             events.get().add(make_event(tick.index * tick.period, source_,
-                                        i == n - 1 ? EventKind::end : EventKind::begin, {++number_, std::sqrt(-number_)}));
+                                        i == n - 1 ? EventKind::end : EventKind::begin,
+                                        {++number_, std::sqrt(-number_)}));
         given = number_;
     }
     std::uint32_t source_ = 0;
@@ -215,7 +216,7 @@ TEST_CASE("an event becomes visible at its time plus the latency, at the exact t
             }
             const auto ticks = static_cast<Flicks>(0.2 * flicks_per_second);
             const Flicks last = all.back().event.time;
-            CHECK(last + given + latency > floor_div(ticks - 1, taken) * taken);
+            CHECK(last + every * given + latency > floor_div(ticks - 1, taken) * taken);
         }
 }
 
@@ -380,6 +381,7 @@ TEST_CASE("a wire of events is refused with what is wrong with it") {
         patch::Problems problems;
         PatchText text{{{"p", "burst", "1 kHz", {}},
                         {"w", "witness", "60 Hz", {}},
+                        {"seldom", "witness", "0.01 Hz", {}},
                         {"c", "counter", "1 kHz", {}},
                         {"g", "gate", "1 kHz", {}}},
                        {"p.events -> w.in", wire},
@@ -393,6 +395,7 @@ TEST_CASE("a wire of events is refused with what is wrong with it") {
     CHECK_THAT(said("p.events -> w.in as hold"), ContainsSubstring("never held or interpolated; leave 'as hold' out"));
     CHECK_THAT(said("p.events -> w.in as linear"), ContainsSubstring("leave 'as linear' out"));
     CHECK_THAT(said("p.events -> w.in as delay 20000"), ContainsSubstring("10000 is the most"));
+    CHECK_THAT(said("p.events -> seldom.in"), ContainsSubstring("'seldom' runs once in 100000 ticks of 'p'"));
     CHECK_THAT(said("p.events -> c.in"), ContainsSubstring("'p.events' gives an event, but 'c.in' takes a bool"));
     CHECK_THAT(said("p.given -> w.in"), ContainsSubstring("gives a number, but 'w.in' takes an event"));
     CHECK_THAT(said("p.events -> g.in"), ContainsSubstring("gives an event, but 'g.in' takes a number, bool"));
