@@ -43,6 +43,7 @@ public:
     }
 
     void find() {
+        stops.resize(plan_.nodes.size());
         for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
             const PlanNode& node = plan_.nodes[n];
             for (std::size_t k = 0; k < node.inputs.size(); ++k)
@@ -61,6 +62,7 @@ public:
     }
 
     PlanUnits units;
+    std::vector<bool> stops;  ///< nodes whose inputs disagree: nothing follows from them
 
 private:
     static std::optional<WireUnit> stated(const PlanNode& node, const std::string& port, const char* unit) {
@@ -86,7 +88,7 @@ private:
     /// Units of the outputs of a node, once those of its inputs suffice.
     void pass_on(std::size_t n) {
         const PlanNode& node = plan_.nodes[n];
-        if (node.type->units == UnitRule::none) return;
+        if (node.type->units == UnitRule::none || stops[n]) return;
         const std::optional<WireUnit> unit = result(n);
         if (!unit) return;
         bool is_new = false;
@@ -156,18 +158,37 @@ std::string hint(const WireUnit& a, const WireUnit& b) {
 
 class Checker {
 public:
-    Checker(const Plan& plan, patch::Problems& problems) : plan_(plan), problems_(problems), finder_(plan) {
-        finder_.find();
-    }
+    Checker(const Plan& plan, patch::Problems& problems)
+        : plan_(plan), problems_(problems), stops_(plan.nodes.size(), false) {}
 
     void check() {
+        // What follows from inputs that disagree would be told again and again on its way.
+        constexpr int most = 100;
+        for (int told = 0; told < most; ++told) {
+            find();
+            if (!tell_conflict()) break;
+        }
         for (const PlanWire& wire : plan_.wires)
             if (wire.from_node >= 0) check_wire(wire);
-        for (std::size_t n = 0; n < plan_.nodes.size(); ++n)
-            if (plan_.nodes[n].type->units == UnitRule::same) check_inputs(n);
     }
 
 private:
+    void find() {
+        Finder finder(plan_);
+        finder.stops = stops_;
+        finder.find();
+        units_ = std::move(finder.units);
+    }
+
+    bool tell_conflict() {
+        for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
+            if (plan_.nodes[n].type->units != UnitRule::same || stops_[n] || agree(n)) continue;
+            stops_[n] = true;
+            return true;
+        }
+        return false;
+    }
+
     std::string name_of(const PlanWire& wire, bool source) const {
         const PlanNode& from = plan_.nodes[static_cast<std::size_t>(wire.from_node)];
         const PlanNode& to = plan_.nodes[static_cast<std::size_t>(wire.to_node)];
@@ -180,39 +201,42 @@ private:
 
     void check_wire(const PlanWire& wire) {
         const auto& given =
-            finder_.units.outputs[static_cast<std::size_t>(wire.from_node)][static_cast<std::size_t>(wire.from_output)];
+            units_.outputs[static_cast<std::size_t>(wire.from_node)][static_cast<std::size_t>(wire.from_output)];
         const std::optional<WireUnit> taken =
             wire.to_input < 0
                 ? stated_unit(wire.param->unit)
-                : finder_.units.inputs[static_cast<std::size_t>(wire.to_node)][static_cast<std::size_t>(wire.to_input)];
+                : units_.inputs[static_cast<std::size_t>(wire.to_node)][static_cast<std::size_t>(wire.to_input)];
         if (!given || !taken || given->agrees_with(*taken)) return;
         problems_.add(wire.where, fmt::format("'{}' gives {}, but '{}' takes {}{}", name_of(wire, true), given->text,
                                               name_of(wire, false), taken->text, hint(*given, *taken)));
     }
 
-    /// Those of a sum, a choice and the like have one unit.
-    void check_inputs(std::size_t n) {
+    /// The inputs of a sum, a choice and the like have one unit; otherwise the first that differs is a problem.
+    bool agree(std::size_t n) {
         const PlanNode& node = plan_.nodes[n];
         std::size_t first = node.inputs.size();
         for (std::size_t k = 0; k < node.inputs.size(); ++k) {
-            const auto& unit = finder_.units.inputs[n][k];
+            const auto& unit = units_.inputs[n][k];
             if (!unit || !Finder::takes_part(*node.inputs[k].port)) continue;
             if (first == node.inputs.size()) {
                 first = k;
                 continue;
             }
-            const WireUnit& other = *finder_.units.inputs[n][first];
-            if (!unit->agrees_with(other))
-                problems_.add(node.inputs[k].where,
-                              fmt::format("'{}.{}' gets {}, but '{}.{}' gets {}: '{}' takes one unit{}", node.name,
-                                          node.inputs[k].name, unit->text, node.name, node.inputs[first].name,
-                                          other.text, node.name, hint(*unit, other)));
+            const WireUnit& other = *units_.inputs[n][first];
+            if (unit->agrees_with(other)) continue;
+            problems_.add(node.inputs[k].where,
+                          fmt::format("'{}.{}' gets {}, but '{}.{}' gets {}: '{}' takes one unit{}", node.name,
+                                      node.inputs[k].name, unit->text, node.name, node.inputs[first].name, other.text,
+                                      node.name, hint(*unit, other)));
+            return false;
         }
+        return true;
     }
 
     const Plan& plan_;
     patch::Problems& problems_;
-    Finder finder_;
+    std::vector<bool> stops_;
+    PlanUnits units_;
 };
 
 }  // namespace

@@ -198,10 +198,13 @@ TEST_CASE("an event becomes visible at its time plus the latency, at the exact t
                                    {"1 kHz", "60 Hz"}})
         for (const int block : {1, 7, 48, 480}) {
             INFO(from << " to " << to << ", blocks of " << block);
-            const PatchText text{
-                {{"p", "burst", from, {{"count", "2"}}}, witness("w", to), {"quick", "oscillator", "48 kHz", {}}},
-                {"p.events -> w.in"},
-                ""};
+            // More than 1024 events between two ticks of the reader would not all arrive.
+            const int every = std::string(from) == "48 kHz" ? 5 : 1;
+            const PatchText text{{{"p", "burst", from, {{"count", "2"}, {"every", std::to_string(every)}}},
+                                  witness("w", to),
+                                  {"quick", "oscillator", "48 kHz", {}}},
+                                 {"p.events -> w.in"},
+                                 ""};
             render(text, 0.2, block);
             const auto& all = seen("w");
             const Flicks given = patch::parse_rate(from), taken = patch::parse_rate(to);

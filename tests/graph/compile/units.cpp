@@ -120,7 +120,7 @@ TEST_CASE("units pass through nodes that say how") {
     CHECK_FALSE(said_of("\"p.metres -> x.a\", \"p.newtons -> x.b\", \"x.out -> t.newtons\"", nodes).empty());
     CHECK(said_of("\"p.metres -> x.a\", \"p.unknown -> x.b\", \"x.out -> t.newtons\"", nodes).empty());
     CHECK(said_of("\"p.newtons -> q.a\", \"p.metres -> q.b\", \"q.out -> t.newtons\"", nodes) ==
-          "p.toml:1:51: 'q.out' gives N/m, but 't.newtons' takes N\n");
+          "p.toml:1:50: 'q.out' gives N/m, but 't.newtons' takes N\n");
     CHECK(said_of("\"p.metres -> d.a\", \"d.out -> t.speed\"", nodes).empty());
     CHECK_FALSE(said_of("\"p.metres -> d.a\", \"d.out -> t.metres\"", nodes).empty());
     CHECK(said_of("\"p.speed -> i.a\", \"i.out -> t.metres\"", nodes).empty());
@@ -133,7 +133,7 @@ TEST_CASE("the inputs of a sum have one unit, also in a ring of nodes and whatev
     CHECK(said_of("\"s.out -> u.a\", \"u.out -> s.b as delay 1\", \"p.metres -> s.a\", \"u.out -> t.metres\"", two)
               .empty());
     CHECK(said_of("\"s.out -> u.a\", \"u.out -> s.b as delay 1\", \"p.metres -> s.a\", \"p.newtons -> u.b\"", two) ==
-          "p.toml:1:76: 'u.b' gets N, but 'u.a' gets m: 'u' takes one unit\n");
+          "p.toml:1:27: 's.b' gets N, but 's.a' gets m: 's' takes one unit\n");
 }
 
 TEST_CASE("a text of the node states the unit of its ports") {
