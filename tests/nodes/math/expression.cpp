@@ -7,6 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
@@ -139,7 +143,8 @@ TEST_CASE("an input with a range is clamped to it, so that the slope beyond is n
     NodeHarness node("expression", {.period = ms});
     node.disconnect_optional().set("formula", "x^2").set("inputs", "x from -1 to 2");
     node.feed<double>("in1", [](std::int64_t k) {
-        return std::vector{0.5, 3.0, -7.0, std::nan(""), INFINITY}[static_cast<std::size_t>(k)];
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        return std::vector<double>{0.5, 3.0, -7.0, std::nan(""), infinite}[static_cast<std::size_t>(k)];
     });
     node.prepare();
     node.run(5);
