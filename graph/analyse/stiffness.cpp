@@ -3,7 +3,7 @@
 
 #include "dsp/core/units.hpp"
 #include "graph/analyse/latency.hpp"
-#include "graph/compile/units.hpp"
+#include "graph/analyse/slopes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,6 @@ std::string setting_of(const compile::Plan& plan, std::size_t node, std::string_
         if (given.name == name) return given.text;
     return {};
 }
-
-using DrivenParams = std::unordered_set<const Param*>;
 
 DrivenParams driven_params(const compile::Plan& plan) {
     DrivenParams driven;
@@ -48,68 +46,6 @@ std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const comp
     }
     return found;
 }
-
-/// What is known of the law of a node that shapes values.
-struct KnownLaw {
-    std::optional<double> newton_per_metre;  ///< of a force over positions
-};
-
-/// Slopes over the inputs of a node, by what they mean. Nothing when one that a hand reaches is not known: no slope, a
-/// wire drives a parameter, or a gain above 1 on the way.
-class Laws {
-public:
-    Laws(const compile::Plan& plan, const DrivenParams& driven)
-        : plan_(plan), driven_(driven), units_(compile::find_units(plan)), wires_into_(plan.nodes.size()) {
-        for (const compile::PlanWire& wire : plan.wires)
-            if (wire.from_node >= 0) wires_into_[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
-    }
-
-    /// `reaches` says whether a node carries what a hand does.
-    template <class Reaches>
-    std::optional<KnownLaw> of(std::size_t n, Reaches&& reaches) const {
-        const compile::PlanNode& node = plan_.nodes[n];
-        if (!node.type->slopes || node.outputs.size() != 1) return std::nullopt;
-        for (const auto& [name, param] : node.params)
-            if (driven_.contains(param)) return std::nullopt;
-        std::vector<PortSlope> slopes;
-        try {
-            slopes = node.type->slopes(node.instance.get());
-        } catch (const Error&) {
-            return std::nullopt;  // `prepare` says what is wrong
-        }
-        KnownLaw law;
-        double squares = 0.0;
-        bool has_positions = false;
-        for (const compile::PlanWire* wire : wires_into_[n]) {
-            if (wire->to_input < 0 || !reaches(static_cast<std::size_t>(wire->from_node))) continue;
-            const auto input = static_cast<std::size_t>(wire->to_input);
-            const auto slope = std::ranges::find(slopes, node.inputs[input].name, &PortSlope::input);
-            if (slope == slopes.end() || !std::isfinite(slope->largest)) return std::nullopt;
-            const auto& in = units_.inputs[n][input];
-            const auto& out = units_.outputs[n][0];
-            if (is(in, "m") && is(out, "N")) {
-                has_positions = true;
-                squares += slope->largest * slope->largest;
-            } else if (!(is(in, "m/s") && is(out, "N"))) {
-                const bool keeps_unit =
-                    node.type->units == UnitRule::same || (in && out && in->measure == out->measure);
-                if (!keeps_unit || slope->largest > 1.0) return std::nullopt;
-            }
-        }
-        if (has_positions) law.newton_per_metre = std::sqrt(squares);
-        return law;
-    }
-
-private:
-    static bool is(const std::optional<compile::WireUnit>& unit, std::string_view text) {
-        return unit && unit->measure == expression::parse_measured_unit(text).measure;
-    }
-
-    const compile::Plan& plan_;
-    const DrivenParams& driven_;
-    compile::PlanUnits units_;
-    std::vector<std::vector<const compile::PlanWire*>> wires_into_;
-};
 
 /// Which nodes carry what some hand does.
 std::vector<bool> reached_by_hands(const compile::Plan& plan) {
@@ -226,8 +162,7 @@ std::vector<std::string> unstated_laws(const compile::Plan& plan) {
     const std::vector<bool> reached = reached_by_hands(plan);
     std::vector<std::string> names;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
-        if (is_between[n] && plan.nodes[n].type->shapes_values &&
-            !laws.of(n, [&](std::size_t k) { return reached[k]; }))
+        if (is_between[n] && plan.nodes[n].type->shapes_values && !laws.of(n, reached))
             names.push_back(plan.nodes[n].name);
     return names;
 }
@@ -243,7 +178,7 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::functio
         if (plan.nodes[n].type->role == NodeRole::hand_sink) sinks.emplace_back(n, ages_to(plan, static_cast<int>(n)));
         if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
         if (!plan.nodes[n].type->shapes_values) continue;
-        const auto law = laws.of(n, [&](std::size_t k) { return reached[k]; });
+        const auto law = laws.of(n, reached);
         if (law && law->newton_per_metre)
             springs.emplace_back(n,
                                  DeclaredStiffness{plan.nodes[n].name + " (its slope)", *law->newton_per_metre, false});

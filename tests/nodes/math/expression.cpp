@@ -139,6 +139,26 @@ TEST_CASE("the slope of a formula on the way to the hand is a stiffness that che
     CHECK(loops_of(within)[0].declared->newton_per_metre == Approx(6.0));
 }
 
+TEST_CASE("the slope of a curve is judged by what its force goes to") {
+    compile::Plan plan = felt("inputs = \"z m\", formula = \"z * (1 N/m)\"");
+    CHECK(loops_of(plan)[0].declared->newton_per_metre == Approx(1.0));
+    const std::string curve =
+        "wires = [\"hand.pose -> place.in\", \"place.position -> where.in\", \"where.z -> law.in\",\n"
+        "\"law.out -> up.z\", \"up.out -> push.force\", \"push.out -> out.wrench\"]\n"
+        "[nodes]\nhand = { type = \"device_input\", rate = \"1 kHz\" }\n"
+        "place = { type = \"split_pose\", rate = \"1 kHz\" }\n"
+        "where = { type = \"split_vector\", rate = \"1 kHz\" }\n"
+        "up = { type = \"join_vector\", rate = \"1 kHz\" }\n"
+        "push = { type = \"join_wrench\", rate = \"1 kHz\" }\n"
+        "out = { type = \"device_output\", rate = \"1 kHz\" }\n"
+        "law = { type = \"curve\", rate = \"1 kHz\", points = \"-1 0, 0 0, 1e-3 3, 2e-3 2\" }\n";
+    patch::Problems problems;
+    const auto made = compile::compile(patch::read_patch(curve, "p.toml", problems), nodes::catalogue(), problems);
+    REQUIRE(made);
+    CHECK(analyse::unstated_laws(*made).empty());
+    CHECK(loops_of(*made)[0].declared->newton_per_metre == Approx(3000.0));
+}
+
 TEST_CASE("an input with a range is clamped to it, so that the slope beyond is not felt") {
     NodeHarness node("expression", {.period = ms});
     node.disconnect_optional().set("formula", "x^2").set("inputs", "x from -1 to 2");
