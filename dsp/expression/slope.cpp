@@ -67,17 +67,22 @@ struct Jet {
 
 class Evaluator {
 public:
-    explicit Evaluator(std::size_t variables) : variables_(variables) {}
+    explicit Evaluator(std::size_t variables) : may_fail(variables, false), variables_(variables) {}
+
+    /// Variables at some value of which a part of the formula is not finite. Nothing is known of the result there: NaN
+    /// passes through sums, is dropped by comparisons, and gives 0 in the end.
+    std::vector<bool> may_fail;
 
     Jet constant(const Interval& value) const { return {value, std::vector<Interval>(variables_, nothing)}; }
 
-    Jet apply(Operation operation, const Jet& a, const Jet& b, const Jet& c) const {
+    Jet apply(Operation operation, const Jet& a, const Jet& b, const Jet& c) {
         switch (operation) {
             case Operation::negate: return chain(-a.value, a, {-1.0, -1.0});
             case Operation::add: return sum(a, b, a.value + b.value, {1.0, 1.0}, {1.0, 1.0});
             case Operation::subtract: return sum(a, b, a.value + -b.value, {1.0, 1.0}, {-1.0, -1.0});
             case Operation::multiply: return sum(a, b, a.value * b.value, b.value, a.value);
             case Operation::divide: {
+                if (b.value.low <= 0.0 && b.value.high >= 0.0) fail_with(a), fail_with(b);
                 const Interval per = reciprocal(b.value);
                 return sum(a, b, a.value * per, per, -(a.value * per * per));
             }
@@ -90,14 +95,14 @@ public:
                 if (a.value.high <= 0.0) return chain(-a.value, a, {-1.0, -1.0});
                 return chain({0.0, std::max(-a.value.low, a.value.high)}, a, unit);
             case Operation::square_root:
-                if (a.value.low < 0.0) return jump(a, everything);
+                if (a.value.low < 0.0) return failed(a);
                 return chain(power(a.value, 0.5), a, Interval{0.5, 0.5} * power(a.value, -0.5));
             case Operation::exponential: {
                 const Interval value = rising(a.value, [](double x) { return std::exp(x); });
                 return chain(value, a, value);
             }
             case Operation::logarithm:
-                if (!(a.value.low > 0.0)) return jump(a, everything);
+                if (!(a.value.low > 0.0)) return failed(a);
                 return chain(rising(a.value, [](double x) { return std::log(x); }), a, reciprocal(a.value));
             case Operation::sine:
             case Operation::cosine: return chain(unit, a, unit);
@@ -109,7 +114,7 @@ public:
             }
             case Operation::arc_sine:
             case Operation::arc_cosine: {
-                if (!(a.value.low >= -1.0 && a.value.high <= 1.0)) return jump(a, everything);
+                if (!(a.value.low >= -1.0 && a.value.high <= 1.0)) return failed(a);
                 const Interval slope = power(Interval{1.0, 1.0} + -power(a.value, 2.0), -0.5);
                 if (operation == Operation::arc_sine)
                     return chain(rising(a.value, [](double x) { return std::asin(x); }), a, slope);
@@ -133,7 +138,7 @@ public:
             case Operation::sign: return jump(a, unit);
             case Operation::floor: return jump(a, rising(a.value, [](double x) { return std::floor(x); }));
             case Operation::ceiling: return jump(a, rising(a.value, [](double x) { return std::ceil(x); }));
-            case Operation::modulo:
+            case Operation::modulo: fail_with(a), fail_with(b); return jump_of(a, b, everything);
             case Operation::arc_tangent_of_two: return jump_of(a, b, everything);
         }
         return jump_of(a, b, everything);
@@ -182,10 +187,23 @@ private:
                          largest ? Interval{std::max(u.low, v.low), std::max(u.high, v.high)}
                                  : Interval{std::min(u.low, v.low), std::min(u.high, v.high)});
     }
-    Jet raised(const Jet& a, const Jet& b) const {
-        if (!b.value.is_point() || !b.is_fixed()) return jump_of(a, b, everything);
+    void fail_with(const Jet& a) {
+        for (std::size_t i = 0; i < a.slopes.size(); ++i)
+            if (!(a.slopes[i] == nothing)) may_fail[i] = true;
+    }
+    Jet failed(const Jet& a) {
+        fail_with(a);
+        return jump(a, everything);
+    }
+    Jet raised(const Jet& a, const Jet& b) {
+        if (!b.value.is_point() || !b.is_fixed()) {
+            fail_with(a);
+            fail_with(b);
+            return jump_of(a, b, everything);
+        }
         const double p = b.value.low;
-        if (a.value.low < 0.0 && p != std::floor(p)) return jump(a, everything);
+        if (a.value.low < 0.0 && p != std::floor(p)) return failed(a);
+        if (a.value.low <= 0.0 && a.value.high >= 0.0 && p < 0.0) return failed(a);
         return chain(power(a.value, p), a, Interval{p, p} * power(a.value, p - 1.0));
     }
     Jet choice(const Jet& condition, const Jet& a, const Jet& b) const {
@@ -216,7 +234,7 @@ private:
 }  // namespace
 
 std::vector<double> slope_bounds(const Program& program, std::span<const Interval> ranges) {
-    const Evaluator evaluator(program.variables);
+    Evaluator evaluator(program.variables);
     std::vector<Jet> registers(std::max<std::size_t>(program.registers, 1), evaluator.constant(nothing));
     for (std::size_t i = 0; i < program.variables; ++i) {
         registers[i].value = i < ranges.size() ? ranges[i] : Interval{};
@@ -229,7 +247,7 @@ std::vector<double> slope_bounds(const Program& program, std::span<const Interva
     std::vector<double> bounds;
     for (const Interval& slope : registers[program.result].slopes) {
         const double most = std::max(std::abs(slope.low), std::abs(slope.high));
-        bounds.push_back(std::isnan(most) ? infinite : most);
+        bounds.push_back(std::isnan(most) || evaluator.may_fail[bounds.size()] ? infinite : most);
     }
     return bounds;
 }
