@@ -188,7 +188,8 @@ PatchText around() {
 
 }  // namespace
 
-TEST_CASE("an event becomes visible at its time plus the latency, at the exact tick, whatever the rates and blocks") {
+TEST_CASE("an event becomes visible at its time plus the latency, at the exact tick, whatever the rates and blocks",
+          "[slow]") {
     for (const auto& [from, to] : {std::pair{"1 kHz", "48 kHz"},
                                    {"150 Hz", "48 kHz"},
                                    {"48 kHz", "1 kHz"},
@@ -299,7 +300,7 @@ TEST_CASE("a slow reader gets a thousand and twenty-four events at once, and all
     CHECK(std::ranges::count(all, EventKind::end, [](const Seen& s) { return s.event.kind; }) == 3 * 100);
 }
 
-TEST_CASE("threads and blocks change no bit of what events lead to") {
+TEST_CASE("threads and blocks change no bit of what events lead to", "[slow]") {
     const Outcome reference = render(around(), 0.5, 1);
     for (const int threads : {1, 2, 4})
         for (const int block : {0, 7, 48, 480})
