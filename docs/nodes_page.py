@@ -62,7 +62,8 @@ def main():
 All node types by family. `tactus nodes` lists them, `tactus nodes TYPE` prints one, `--json` prints them for programs.
 
 A wire ends at an input, or at a parameter that has a range. *Live*: `tactus set` or saving the patch changes the
-parameter without making the node anew. No unit: a bare number.
+parameter without making the node anew. No unit: any, or a
+bare number; an input or output of several types has the unit that its wires bring.
 """)
     for family, types in sorted(families.items()):
         print(f"- **{family}**: " + ", ".join(f"[{name}](#{name})" for name in sorted(types)))

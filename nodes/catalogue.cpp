@@ -20,6 +20,7 @@
     X(Brush, planning)                  \
     X(Burr, contact)                    \
     X(Button, device)                   \
+    X(ButtonEvents, event)              \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
     X(Clip, math)                       \
@@ -27,6 +28,7 @@
     X(Compare, logic)                   \
     X(Compose, geometry)                \
     X(Constant, math)                   \
+    X(ContactEvents, event)             \
     X(Counter, logic)                   \
     X(Cross, geometry)                  \
     X(Curve, math)                      \
@@ -44,6 +46,11 @@
     X(Edge, logic)                      \
     X(Envelope, vibration)              \
     X(Equaliser, vibration)             \
+    X(EventCounter, event)              \
+    X(EventDelay, event)                \
+    X(EventFilter, event)               \
+    X(EventTrigger, event)              \
+    X(EventValue, event)                \
     X(Expression, math)                 \
     X(Filter, vibration)                \
     X(ForceShaping, coupling)           \
@@ -75,6 +82,7 @@
     X(Noise, vibration)                 \
     X(Normalise, geometry)              \
     X(Not, logic)                       \
+    X(Onset, event)                     \
     X(Or, logic)                        \
     X(Oscillator, vibration)            \
     X(PassivityObserver, coupling)      \
@@ -112,6 +120,7 @@
     X(Sweep, vibration)                 \
     X(Task, training)                   \
     X(TestRig, admittance)              \
+    X(ThresholdEvents, event)           \
     X(Timer, logic)                     \
     X(ToNumber, math)                   \
     X(ToSignal, math)                   \

@@ -4,6 +4,7 @@
 
 #include "dsp/expression/measure.hpp"
 #include "dsp/expression/program.hpp"
+#include "dsp/expression/slope.hpp"
 
 #include <span>
 #include <string>
@@ -16,6 +17,8 @@ namespace tactus::expression {
 struct Variable {
     std::string name;
     Measure measure;
+    std::string unit{};  ///< as written
+    Interval range{};    ///< SI; everything when none is given
 };
 
 /// A constant: "k" of "0.8 N/mm".
@@ -38,7 +41,7 @@ struct Formula {
 Formula compile_formula(std::string_view text, std::span<const Variable> variables,
                         std::span<const Constant> constants);
 
-/// "depth m, v m/s, n": names with their units. Throws Error.
+/// "depth m, v m/s, n": names with their units; "depth m from 0 mm to 5 mm" gives one a range. Throws Error.
 std::vector<Variable> parse_variables(std::string_view text);
 /// "k = 0.8 N/mm, c = 2 N s/m". Throws Error.
 std::vector<Constant> parse_constants(std::string_view text);

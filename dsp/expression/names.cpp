@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace tactus::expression {
 
@@ -51,6 +52,47 @@ void need_new(const std::vector<Named>& names, const std::string& name) {
         throw Error(fmt::format("'{}' is named twice", name));
 }
 
+struct Amount {
+    double value = 0.0;  ///< SI
+    Measure measure;
+};
+
+/// "0.8 N/mm"; nothing when `text` is no number with a unit.
+std::optional<Amount> amount_of(std::string_view text) {
+    Amount amount;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), amount.value);
+    if (failure != std::errc{}) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    const MeasuredUnit unit = parse_measured_unit(trimmed(text));
+    amount.value *= unit.factor;
+    amount.measure = unit.measure;
+    return amount;
+}
+
+/// "m from 0 mm to 5 mm": takes the range off and gives it to the variable.
+void take_range(std::string_view& entry, Variable& variable) {
+    const std::string_view whole = entry;
+    constexpr std::string_view from = "from ", to = " to ";
+    std::size_t at = entry.starts_with(from) ? 0 : entry.find(" from ");
+    if (at == entry.npos) return;
+    at += at > 0;
+    const std::string_view range = entry.substr(at + from.size());
+    entry = trimmed(entry.substr(0, at));
+    const std::size_t middle = range.find(to);
+    if (middle != range.npos) {
+        const auto low = amount_of(trimmed(range.substr(0, middle))),
+                   high = amount_of(trimmed(range.substr(middle + to.size())));
+        const Measure measure = parse_measured_unit(entry).measure;
+        if (low && high && low->measure == measure && high->measure == measure && low->value <= high->value &&
+            std::isfinite(low->value) && std::isfinite(high->value)) {
+            variable.range = {low->value, high->value};
+            return;
+        }
+    }
+    throw Error(fmt::format("'{} {}' needs a range in its own unit, as in \"depth m from 0 mm to 5 mm\"", variable.name,
+                            whole));
+}
+
 }  // namespace
 
 std::vector<Variable> parse_variables(std::string_view text) {
@@ -59,6 +101,8 @@ std::vector<Variable> parse_variables(std::string_view text) {
         Variable variable;
         variable.name = take_name(entry);
         need_new(variables, variable.name);
+        take_range(entry, variable);
+        variable.unit = entry;
         variable.measure = parse_measured_unit(entry).measure;
         variables.push_back(std::move(variable));
     });
@@ -74,12 +118,10 @@ std::vector<Constant> parse_constants(std::string_view text) {
         need_new(constants, constant.name);
         if (!entry.starts_with("=")) throw Error(fmt::format("'{}' needs a value, as in \"k = 0.8 N/mm\"", whole));
         entry = trimmed(entry.substr(1));
-        const auto [end, failure] = std::from_chars(entry.data(), entry.data() + entry.size(), constant.value);
-        if (failure != std::errc{}) throw Error(fmt::format("'{}' needs a value, as in \"k = 0.8 N/mm\"", whole));
-        entry.remove_prefix(static_cast<std::size_t>(end - entry.data()));
-        const MeasuredUnit unit = parse_measured_unit(trimmed(entry));
-        constant.value *= unit.factor;
-        constant.measure = unit.measure;
+        const std::optional<Amount> amount = amount_of(entry);
+        if (!amount) throw Error(fmt::format("'{}' needs a value, as in \"k = 0.8 N/mm\"", whole));
+        constant.value = amount->value;
+        constant.measure = amount->measure;
         if (!std::isfinite(constant.value)) throw Error(fmt::format("'{}' is out of range", whole));
         constants.push_back(std::move(constant));
     });

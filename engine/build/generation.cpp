@@ -113,6 +113,8 @@ void GenerationBuilder::find_survivors() {
             for (const compile::PlanOutput& output : node.outputs) live->outputs.push_back(output.port);
             live->params = node.params;
             live->instance = std::move(node.instance);
+            // Analyses of the plan still ask the node.
+            node.instance = compile::NodeInstance(live->instance.get(), [](void*) {});
         } else {
             for (std::size_t k = 0; k < node.inputs.size(); ++k) moved_[node.inputs[k].port] = live->inputs[k];
             for (std::size_t k = 0; k < node.outputs.size(); ++k) moved_[node.outputs[k].port] = live->outputs[k];

@@ -53,12 +53,19 @@ private:
     void connect(const compile::PlanWire& wire);
     void connect_constant(const compile::PlanWire& wire);
     void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
+    void connect_events(const compile::PlanWire& wire, const Output& source, Input& target);
+    /// What brings the events of an input of a node that lives.
+    EventMerge& merge_into(Input* target, int group);
     run::Link& link_for(const compile::PlanWire& wire);
     /// Values of the producer come so often that each of them would cut a call of the consumer, an audio group.
     bool changes_within_calls(int producer, int consumer) const;
     bool is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const;
-    /// Notes for each wire of `link` the same one of `old`; returns how many there are.
-    std::size_t match_wires(run::Link& link, run::Link* old) const;
+    /// Wires of a link that go on: all, and those whose source goes on, too.
+    struct WireMatch {
+        std::size_t continued = 0, same = 0;
+    };
+    /// Notes for each wire of `link` the same one of `old`.
+    WireMatch match_wires(run::Link& link, run::Link* old) const;
     int ring_frames(const run::GroupRuntime& group);
     void finish_links();
 
@@ -99,6 +106,7 @@ private:
     std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
     std::vector<std::vector<Drive>> drives_;
     std::unordered_map<const Input*, const run::LinkWire*> batches_;  // those that change within calls
+    std::unordered_map<const Input*, EventMerge*> merges_;
     std::unordered_set<const run::Link*> new_links_;
 };
 

@@ -16,10 +16,17 @@ void GenerationBuilder::make_steps() {
         for (const auto& [name, param] : made_->nodes[i]->params) owners.emplace(param, i);
     for (const auto& link : made_->links)
         for (const run::LinkWire& wire : link->wires) {
-            if (wire.mode == patch::WireMode::batch && link->changes_within_calls) batches_.emplace(wire.target, &wire);
+            if (wire.brings_events()) {
+                EventFeed& feed = merge_into(wire.target, group_index_.at(link->consumer)).feeds.emplace_back();
+                feed.name = wire.name;
+                feed.delay = wire.delay;
+                feed.link = &wire;
+            } else if (wire.mode == patch::WireMode::batch && link->changes_within_calls)
+                batches_.emplace(wire.target, &wire);
             else if (wire.param && !wire.glide.empty())
                 drives_[owners.at(wire.param)].push_back({wire.param, wire.glide.data(), sizeof(double)});
         }
+    for (const auto& [input, merge] : merges_) merge->sort_feeds();
     const std::vector<bool> vary = vary_within_call();
     for (std::size_t g = 0; g < plan().groups.size(); ++g) {
         for (const int index : plan().groups[g].order)
@@ -102,7 +109,9 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
     StepWires& wires = program.wires.emplace_back();
     for (const Drive& drive : drives_[index]) wires.drives.push_back({live(drive.param), drive.values, drive.stride});
     for (std::size_t k = 0; k < node.inputs.size(); ++k) {
-        if (const auto batch = batches_.find(running.inputs[k]); batch != batches_.end())
+        if (const auto merge = merges_.find(running.inputs[k]); merge != merges_.end())
+            wires.events.push_back(merge->second);
+        else if (const auto batch = batches_.find(running.inputs[k]); batch != batches_.end())
             wires.batches.push_back(batch->second);
         else if (node.inputs[k].port->type) wires.inputs.push_back(running.inputs[k]);
     }
@@ -110,7 +119,7 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
     Step& step = program.steps.emplace_back();
     step.process = node.type->process;
     step.node = running.instance.get();
-    step.driven = !wires.drives.empty();
+    step.driven = !wires.drives.empty() || !wires.events.empty();
     step.one_at_a_time = !node.takes_blocks || varies;
     step.first_output = static_cast<std::uint32_t>(program.published.size());
     step.output_count = static_cast<std::uint32_t>(node.outputs.size());
@@ -122,6 +131,7 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
         output.name = node.name + "." + node.outputs[k].name;
         if (context_.take) output.offset = program.layout.add(output.name, type);
         if (context_.observer) output.seen = &observed(running, k, output.name);
+        if (&type == &value::event) program.event_outputs.push_back(running.outputs[k]);
         if (type.version) program.snapshots.push_back({static_cast<SnapshotOutput*>(running.outputs[k]), {}, {}});
     }
     program.hashes_outputs = context_.hash;
@@ -223,11 +233,12 @@ void GenerationBuilder::find_readers(GroupProgram& program) {
 }
 
 void GenerationBuilder::find_delays_before(GroupProgram& program, const GroupProgram& old) const {
-    // Nothing has two wires.
-    const auto end_of = [](const DelayLine& line) -> const void* {
-        return line.target ? static_cast<const void*>(line.target) : line.param;
+    // Nothing has two wires but an input of events.
+    using End = std::tuple<const void*, const Output*, std::int64_t>;
+    const auto end_of = [](const DelayLine& line) {
+        return End{line.target ? static_cast<const void*>(line.target) : line.param, line.source, line.count};
     };
-    std::unordered_map<const void*, DelayLine*> old_lines;
+    std::map<End, DelayLine*> old_lines;
     for (const auto& line : old.delays) old_lines.emplace(end_of(*line), line.get());
     for (const auto& line : program.delays) {
         const auto found = old_lines.find(end_of(*line));

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <string_view>
+#include <tuple>
 
 namespace tactus::build {
 
@@ -42,7 +45,7 @@ void GenerationBuilder::allocate() {
             port.stride = group.plan->has_audio ? static_cast<std::ptrdiff_t>(size) : 0;
             for (std::size_t f = 0; f < count; ++f) port.type->make_default(port.data + f * size);
             // The memory of a signal is shared with others: its values are valid during one call.
-            const bool keeps_value = port.type != &value::signal;
+            const bool keeps_value = port.type != &value::signal && port.type != &value::event;
             if (made_->survived[n])
                 program_of(node.group)
                     .moved.push_back({made_->nodes[n]->outputs[k], port.data, keeps_value ? count * size : 0});
@@ -128,8 +131,31 @@ void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Outpu
         drives_[static_cast<std::size_t>(wire.to_node)].push_back({wire.param, line.delayed.data(), stride});
         return;
     }
+    if (source.type == &value::event) return;
     target->data = line.delayed.data();
     target->stride = stride;
+}
+
+void GenerationBuilder::connect_events(const compile::PlanWire& wire, const Output& source, Input& target) {
+    const compile::PlanNode& from = plan().nodes[static_cast<std::size_t>(wire.from_node)];
+    EventFeed feed;
+    feed.name = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
+    feed.delay = wire.delay;
+    feed.values = source.data;
+    feed.stride = source.stride;
+    if (wire.mode == patch::WireMode::delay) {
+        connect_delay(wire, source, &target, from.group);
+        const DelayLine& line = *program_of(from.group).delays.back();
+        feed.values = line.delayed.data();
+        feed.stride = group_of(from).plan->has_audio ? static_cast<std::ptrdiff_t>(sizeof(Events)) : 0;
+    }
+    merge_into(live(&target), from.group).feeds.push_back(std::move(feed));
+}
+
+EventMerge& GenerationBuilder::merge_into(Input* target, int group) {
+    EventMerge*& merge = merges_[target];
+    if (!merge) merge = program_of(group).merges.emplace_back(std::make_unique<EventMerge>(*target)).get();
+    return *merge;
 }
 
 void GenerationBuilder::connect(const compile::PlanWire& wire) {
@@ -145,9 +171,15 @@ void GenerationBuilder::connect(const compile::PlanWire& wire) {
         moved.target = target;
         moved.param = wire.param;
         moved.mode = wire.mode == patch::WireMode::delay ? patch::WireMode::hold : wire.mode;
+        if (source.type == &value::event) {
+            moved.mode = patch::WireMode::batch;
+            moved.name = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
+            moved.delay = wire.delay;
+        }
         moved.starts_from_output = !made_->survived[static_cast<std::size_t>(wire.from_node)];
         return;
     }
+    if (source.type == &value::event) return connect_events(wire, source, *target);
     if (wire.mode == patch::WireMode::delay) return connect_delay(wire, source, target, to.group);
     if (!target) {
         drives_[static_cast<std::size_t>(wire.to_node)].push_back({wire.param, source.data, source.stride});
@@ -165,25 +197,30 @@ void GenerationBuilder::connect(const compile::PlanWire& wire) {
 }
 
 bool GenerationBuilder::is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const {
-    return old.source == live(wire.source) && old.target == live(wire.target) && old.param == live(wire.param) &&
-           old.mode == wire.mode;
+    // Events that were on their way when their node was made anew have happened all the same.
+    const bool is_same_source =
+        wire.source->type == &value::event ? old.source->type == &value::event : old.source == live(wire.source);
+    return is_same_source && old.target == live(wire.target) && old.param == live(wire.param) && old.mode == wire.mode;
 }
 
-std::size_t GenerationBuilder::match_wires(run::Link& link, run::Link* old) const {
-    // Nothing has two wires.
-    const auto end_of = [](const auto* target, const auto* param) -> const void* {
-        return target ? static_cast<const void*>(target) : param;
+GenerationBuilder::WireMatch GenerationBuilder::match_wires(run::Link& link, run::Link* old) const {
+    // Nothing has two wires but an input of events, and that none of one name and delay.
+    using End = std::tuple<const void*, std::string_view, int>;
+    const auto end_of = [](const auto* target, const auto* param, const run::LinkWire& wire) {
+        return End{target ? static_cast<const void*>(target) : param, wire.name, wire.delay};
     };
-    std::unordered_map<const void*, run::LinkWire*> old_wires;
+    std::map<End, run::LinkWire*> old_wires;
     if (old)
-        for (run::LinkWire& wire : old->wires) old_wires.emplace(end_of(wire.target, wire.param), &wire);
-    std::size_t same = 0;
+        for (run::LinkWire& wire : old->wires) old_wires.emplace(end_of(wire.target, wire.param, wire), &wire);
+    WireMatch match;
     for (run::LinkWire& wire : link.wires) {
-        const auto found = old_wires.find(end_of(live(wire.target), live(wire.param)));
+        const auto found = old_wires.find(end_of(live(wire.target), live(wire.param), wire));
         wire.before = found != old_wires.end() && is_same_wire(*found->second, wire) ? found->second : nullptr;
-        same += wire.before != nullptr;
+        if (!wire.before) continue;
+        ++match.continued;
+        match.same += wire.before->source == live(wire.source);
     }
-    return same;
+    return match;
 }
 
 /// Activations per call that a ring has room for: a repetition in smaller blocks must keep as many values as the live run.
@@ -197,8 +234,8 @@ void GenerationBuilder::finish_links() {
         // The link of the plan before, between the same groups and of the same latency.
         const auto found = links_before_.find(ends_of(*link));
         run::Link* old = found == links_before_.end() ? nullptr : found->second.get();
-        const std::size_t same = match_wires(*link, old);
-        if (old && same == link->wires.size() && same == old->wires.size()) {
+        const WireMatch match = match_wires(*link, old);
+        if (old && match.same == link->wires.size() && match.same == old->wires.size()) {
             // Nothing changed: the old link is kept, and inputs stay pointed at it.
             for (run::LinkWire& wire : link->wires)
                 if (wire.target) wire.before->point(*wire.target, old->producer_period);
@@ -207,7 +244,7 @@ void GenerationBuilder::finish_links() {
         }
         new_links_.insert(link.get());
         link->id = context_.next_link++;
-        link->continued = same > 0 ? old : nullptr;
+        link->continued = match.continued > 0 ? old : nullptr;
         link->prepare(link_slack, ring_frames(*link->producer), ring_frames(*link->consumer),
                       before_ ? run::Link::unknown : 0);
         for (run::LinkWire& wire : link->wires) {

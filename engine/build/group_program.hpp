@@ -6,6 +6,7 @@
 #include "dsp/core/hash.hpp"
 #include "dsp/core/signal_hash.hpp"
 #include "engine/build/delay_line.hpp"
+#include "engine/build/event_merge.hpp"
 #include "engine/io/device_guard.hpp"
 #include "engine/io/frames.hpp"
 #include "engine/observe/telemetry.hpp"
@@ -48,14 +49,15 @@ struct Step {
     void (*process)(void*, const Tick&) noexcept = nullptr;
     void* node = nullptr;
     std::uint32_t first_output = 0, output_count = 0;  ///< in the program's `published`
-    bool driven = false;  ///< numbers that may change within a call drive its parameters
+    bool driven = false;  ///< numbers that may change within a call drive its parameters, or it has inputs of events
     bool one_at_a_time = false;  ///< in an audio group: called once per activation
 };
 
 /// The other data of a step, at the same index.
 struct StepWires {
     std::vector<Drive> drives;
-    std::vector<Input*> inputs;  ///< but for those of `batches`
+    std::vector<EventMerge*> events;  ///< into each of its inputs of events
+    std::vector<Input*> inputs;  ///< but for those of `batches` and `events`
     std::vector<const run::LinkWire*> batches;  ///< that bring values at any activation of a call
     observe::NodeTelemetry* time = nullptr;
     std::int64_t spent_ns = 0;  ///< in this call, in a cycle
@@ -155,6 +157,8 @@ struct GroupProgram {
     std::vector<run::Link*> new_inputs, new_outputs;  ///< those that begin with this program
     std::vector<run::Link*> ended;  ///< links of the program before that are read no more
     std::vector<std::unique_ptr<DelayLine>> delays;
+    std::vector<std::unique_ptr<EventMerge>> merges;
+    std::vector<Output*> event_outputs;  ///< emptied after each call
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
     std::vector<PublishedSnapshot> snapshots;

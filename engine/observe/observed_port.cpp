@@ -229,6 +229,7 @@ void ObservedPort::send(std::int64_t first, const std::byte* values, std::size_t
 
 bool ObservedPort::latest(std::byte* value, std::int64_t& index) const noexcept {
     if (!latest_) return false;
+    static_assert(sizeof(SeenScene) >= sizeof(Events), "the largest value fits");
     std::uint64_t words[1 + (sizeof(SeenScene) + 7) / 8];
     if (!latest_->read(words)) return false;
     index = static_cast<std::int64_t>(words[0]);

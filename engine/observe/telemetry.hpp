@@ -104,6 +104,7 @@ struct GroupTelemetry {
     std::atomic<std::int64_t> misses{0};   ///< activations that read an older value than the schedule says
     std::atomic<std::int64_t> skipped{0};
     std::atomic<std::int64_t> dropped{0};  ///< publications that found no room
+    std::atomic<std::int64_t> lost_events{0};  ///< that found no room, here or on their way to others
     LateCounts skip_causes;   ///< of `skipped`, live only
     LateCounts withheld;      ///< values of this group that others went without, by why it was late; live only
     mutable std::atomic<std::int64_t> awaited{0};  ///< those not yet explained; written by the groups that miss them

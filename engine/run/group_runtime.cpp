@@ -113,9 +113,11 @@ void GroupRuntime::publish(int frames) noexcept {
     for (Link* link : program_->outputs) {
         if (decisions_->drops(*link, next_, frames)) {
             telemetry.dropped.fetch_add(frames, std::memory_order_relaxed);
+            telemetry.lost_events.fetch_add(link->drop(frames), std::memory_order_relaxed);
             continue;
         }
-        link->publish(next_, frames);
+        if (const std::int64_t lost = link->publish(next_, frames); lost > 0)
+            telemetry.lost_events.fetch_add(lost, std::memory_order_relaxed);
         ++took;
     }
     for (const build::PublishedSnapshot& snapshot : program_->snapshots)
@@ -150,6 +152,7 @@ int GroupRuntime::finish_call() noexcept {
         RealtimeScope scope;
         publish(n);
         hold_outputs(n);
+        clear_events(n);
     }
     committing_ = n;
     for (build::DeviceSlot* slot : program_->driven) {

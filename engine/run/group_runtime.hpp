@@ -135,6 +135,10 @@ private:
     void move_ports(std::size_t step, int by, int to, int frames) noexcept;
     void move_back(std::size_t step, int frames) noexcept;
     void hold_outputs(int frames) noexcept;
+    /// After a call: what happened in it happened once.
+    void clear_events(int frames) noexcept;
+    /// Gives a node what drives its parameters at an activation of the call, and its events.
+    void drive(const build::StepWires& wires, int activation) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
     void put_into_frames(const build::PublishedOutput& output, int frames) noexcept;

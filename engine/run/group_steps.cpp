@@ -29,7 +29,7 @@ void GroupRuntime::move_ports(std::size_t step, int by, int to, int frames) noex
         Output& output = *program_->published[k].port;
         const std::byte* const last = output.data + (by - 1) * output.stride;
         output.data += by * output.stride;
-        if (may_hold) std::memcpy(output.data, last, output.type->size);
+        if (may_hold && output.type != &value::event) std::memcpy(output.data, last, output.type->size);
     }
 }
 
@@ -40,9 +40,26 @@ void GroupRuntime::hold_outputs(int frames) noexcept {
         if (!step.one_at_a_time && !step.driven) continue;
         for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
             const Output& output = *program_->published[k].port;
+            if (output.type == &value::event) continue;
             std::memcpy(output.data, output.data + (frames - 1) * output.stride, output.type->size);
         }
     }
+}
+
+void GroupRuntime::clear_events(int frames) noexcept {
+    for (const Output* output : program_->event_outputs)
+        for (int i = 0; i < frames; ++i) {
+            auto& events = *reinterpret_cast<Events*>(output->data + i * output->stride);
+            if (events.lost > 0) telemetry.lost_events.fetch_add(events.lost, std::memory_order_relaxed);
+            events.clear();
+        }
+}
+
+void GroupRuntime::drive(const build::StepWires& wires, int activation) noexcept {
+    for (const build::Drive& drive : wires.drives) drive.apply(activation);
+    for (build::EventMerge* merge : wires.events)
+        if (const int lost = merge->gather(activation); lost > 0)
+            telemetry.lost_events.fetch_add(lost, std::memory_order_relaxed);
 }
 
 void GroupRuntime::move_back(std::size_t step, int frames) noexcept {
@@ -64,7 +81,7 @@ void GroupRuntime::run_part(std::size_t at, const Tick& part, int from, int fram
     }
     const Flicks start = now;
     for (int i = 0; i < part.frames; ++i) {
-        for (const build::Drive& drive : program_->wires[at].drives) drive.apply(from + i);
+        drive(program_->wires[at], from + i);
         now = (part.index + i) * part.period;
         step.process(step.node, {part.index + i, part.period, i == 0 ? part.elapsed : part.period, 1});
         move_ports(at, 1, from + i + 1, frames);
@@ -153,8 +170,7 @@ void GroupRuntime::run_each(const build::Stretch& stretch, const Tick& tick, boo
         if (!step->driven && !(step->one_at_a_time && tick.frames > 1)) {
             step->process(step->node, tick);
         } else if (tick.frames == 1) {
-            for (const build::Drive& drive : program.wires[static_cast<std::size_t>(step - begin)].drives)
-                drive.apply(0);
+            drive(program.wires[static_cast<std::size_t>(step - begin)], 0);
             step->process(step->node, tick);
         } else {
             run_one_at_a_time(static_cast<std::size_t>(step - begin), tick);

@@ -32,13 +32,14 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
         const bool is_batch = wire.mode == patch::WireMode::batch;
         if (wire.mode == patch::WireMode::linear || (changes_within_calls && !is_batch))
             wire.glide.resize(size * frames);
+        if (wire.type == &value::event) wire.carried = std::make_unique<Events>();
         if (is_batch) {
             held_.resize(depth + (continued ? continued->stamp_.size() : 0));
             // Values that the first part of a call released may be overwritten before the last part reads.
             const std::size_t most = changes_within_calls ? 2 * held_.size() : held_.size();
             wire.batch.resize(most * size);
             wire.batch_times.resize(most);
-            if (changes_within_calls) wire.batch_counts.resize(frames);
+            if (changes_within_calls || wire.brings_events()) wire.batch_counts.resize(frames);
         }
         if (wire.param) wire.param->drive(*reinterpret_cast<const double*>(wire.current.data()));
         if (wire.target) wire.point(*wire.target, producer_period);
@@ -46,16 +47,73 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
 }
 
 void LinkWire::point(Input& input, Flicks producer_period) const {
+    if (brings_events()) return;  // EventMerge does
     input.data = mode == patch::WireMode::batch ? batch.data() : current.data();
     input.times = batch_times.data();
     input.period = producer_period;
 }
 
-void Link::publish(std::int64_t first, int count) noexcept {
-    for (LinkWire& wire : wires)
+std::int64_t Link::publish(std::int64_t first, int count) noexcept {
+    std::int64_t lost = 0;
+    for (LinkWire& wire : wires) {
+        if (wire.brings_events()) {
+            lost += publish_events(wire, first, count);
+            continue;
+        }
         for (int i = 0; i < count; ++i)
             std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
+    }
     for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
+    return lost;
+}
+
+namespace {
+
+const Events& events_at(const Output& output, int activation) noexcept {
+    return *reinterpret_cast<const Events*>(output.data + activation * output.stride);
+}
+
+}  // namespace
+
+std::int64_t Link::publish_events(LinkWire& wire, std::int64_t first, int count) noexcept {
+    std::int64_t lost = 0;
+    for (int i = 0; i < count; ++i) {
+        const Events& given = events_at(*wire.source, i);
+        Events& slot = *reinterpret_cast<Events*>(wire.slot(first + i, depth_));
+        if (wire.carried->is_empty()) {
+            copy_events(given, slot);
+            continue;
+        }
+        const std::int64_t known = std::int64_t{wire.carried->lost} + given.lost;
+        wire.carried->add_all(given);
+        lost += wire.carried->lost - known;
+        copy_events(*wire.carried, slot);
+        wire.carried->clear();
+    }
+    return lost;
+}
+
+std::int64_t Link::drop(int count) noexcept {
+    std::int64_t lost = 0;
+    for (LinkWire& wire : wires) {
+        if (!wire.brings_events()) continue;
+        for (int i = 0; i < count; ++i) {
+            const Events& given = events_at(*wire.source, i);
+            wire.carried->lose(given.lost);
+            const std::int64_t known = wire.carried->lost;
+            for (const Event& event : given.all())
+                if (event.kind == EventKind::end) wire.carried->add(event);
+                else wire.carried->lose(1);
+            lost += wire.carried->lost - known;
+        }
+    }
+    return lost;
+}
+
+void Link::begin_at(std::int64_t index) noexcept {
+    for (LinkWire& wire : wires)
+        if (wire.brings_events() && wire.before) copy_events(*wire.before->carried, *wire.carried);
+    first_.store(index, std::memory_order_release);
 }
 
 void Link::take_over() noexcept {
@@ -156,6 +214,12 @@ void Link::gather_batch(LinkWire& wire) noexcept {
     for (std::size_t n = 0; n < held_count_; ++n) {
         const std::int64_t index = held_[n];
         if (index < first_.load(std::memory_order_acquire) && !wire.before) continue;
+        if (wire.brings_events()) {
+            const Events& given = *reinterpret_cast<const Events*>(value(wire, index));
+            if (given.is_empty()) continue;
+            copy_events(given, reinterpret_cast<Events*>(wire.batch.data())[wire.batch_count++]);
+            continue;
+        }
         std::memcpy(wire.batch.data() + static_cast<std::size_t>(wire.batch_count) * wire.type->size,
                     value(wire, index), wire.type->size);
         wire.batch_times[static_cast<std::size_t>(wire.batch_count++)] = index * producer_period;
@@ -200,6 +264,11 @@ void Link::interpolate(LinkWire& wire, std::int64_t j, int from, int frames) con
 void Link::deliver(std::int64_t j, int frames) noexcept {
     for (LinkWire& wire : wires) {
         if (wire.mode == patch::WireMode::batch) {
+            if (wire.brings_events()) {
+                std::ranges::fill(wire.batch_counts, 0);
+                wire.batch_counts.front() = fresh_ ? wire.batch_count : 0;
+                continue;
+            }
             // A batch is seen by one call only, however many calls share one read.
             wire.target->count = fresh_ ? wire.batch_count : 0;
             continue;
@@ -236,7 +305,7 @@ void Link::deliver_part(std::int64_t index, std::int64_t j, int from, int frames
     for (LinkWire& wire : wires) {
         if (wire.mode == patch::WireMode::batch) {
             wire.batch_counts[static_cast<std::size_t>(from)] += wire.batch_count;
-            if (from > 0) continue;
+            if (from > 0 || wire.brings_events()) continue;
             wire.target->data = wire.batch.data();
             wire.target->times = wire.batch_times.data();
             wire.target->count = wire.batch_count;

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace tactus::run {
@@ -32,8 +34,14 @@ struct LinkWire {
     std::vector<std::byte> batch;  ///< `batch`: the values of a call, and when they were made
     std::vector<Flicks> batch_times;
     int batch_count = 0;           ///< in `batch`
-    std::vector<int> batch_counts;  ///< per activation of a call; when they may come within a call
+    std::vector<int> batch_counts;  ///< per activation of a call; when they may come within a call, and of events
+    std::string name;  ///< of events: that of the output
+    int delay = 0;     ///< of events: activations of the producer
+    /// Of events: ends that were dropped with what had no room, and how many others were. They go with the next that
+    /// has room. The producer's.
+    std::unique_ptr<Events> carried;
 
+    bool brings_events() const noexcept { return carried != nullptr; }
     /// Points an input at the values.
     void point(Input& input, Flicks producer_period) const;
 
@@ -75,7 +83,7 @@ public:
 
     // Producer's side.
     /// The producer publishes here from `index` on. Wait-free.
-    void begin_at(std::int64_t index) noexcept { first_.store(index, std::memory_order_release); }
+    void begin_at(std::int64_t index) noexcept;
     /// True when the slots of indices first … first + count − 1 are released. Wait-free.
     bool has_room(std::int64_t first, int count) const noexcept {
         const std::int64_t oldest = oldest_.load(std::memory_order_acquire);
@@ -87,8 +95,12 @@ public:
                 return false;
         return true;
     }
-    /// Copies the outputs' values into the slots. The group's progress word publishes them. Wait-free.
-    void publish(std::int64_t first, int count) noexcept;
+    /// Copies the outputs' values into the slots. The group's progress word publishes them. Returns how many events are
+    /// lost. Wait-free.
+    std::int64_t publish(std::int64_t first, int count) noexcept;
+    /// Instead of `publish`: nothing is published, but the ends of events are kept for the next time. Returns how many
+    /// events are lost. Wait-free.
+    std::int64_t drop(int count) noexcept;
     /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
@@ -136,6 +148,7 @@ private:
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
     void take_values(std::int64_t index) noexcept;
+    std::int64_t publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
     void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
     /// Lists what lies between the used index and `newest`, in order.
     void list_held(std::int64_t newest) noexcept;

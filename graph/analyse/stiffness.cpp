@@ -3,10 +3,16 @@
 
 #include "dsp/core/units.hpp"
 #include "graph/analyse/latency.hpp"
+#include "graph/analyse/slopes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
 #include <tuple>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace tactus::analyse {
 
@@ -17,8 +23,6 @@ std::string setting_of(const compile::Plan& plan, std::size_t node, std::string_
         if (given.name == name) return given.text;
     return {};
 }
-
-using DrivenParams = std::unordered_set<const Param*>;
 
 DrivenParams driven_params(const compile::Plan& plan) {
     DrivenParams driven;
@@ -41,6 +45,18 @@ std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const comp
         if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value, driven.contains(param)};
     }
     return found;
+}
+
+/// Which nodes carry what some hand does.
+std::vector<bool> reached_by_hands(const compile::Plan& plan) {
+    std::vector<bool> reached(plan.nodes.size(), false);
+    for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
+        const Ages from = ages_from(plan, static_cast<int>(source));
+        for (std::size_t n = 0; n < plan.nodes.size(); ++n)
+            if (from.age[n] != unreached) reached[n] = true;
+    }
+    return reached;
 }
 
 /// The scale from the device to the scene on the quickest path from a source: the product of its workspaces.
@@ -146,9 +162,13 @@ std::vector<bool> between_hand_and_force(const compile::Plan& plan) {
 
 std::vector<std::string> unstated_laws(const compile::Plan& plan) {
     const std::vector<bool> is_between = between_hand_and_force(plan);
+    const DrivenParams driven = driven_params(plan);
+    const Laws laws(plan, driven);
+    const std::vector<bool> reached = reached_by_hands(plan);
     std::vector<std::string> names;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
-        if (is_between[n] && plan.nodes[n].type->shapes_values) names.push_back(plan.nodes[n].name);
+        if (is_between[n] && plan.nodes[n].type->shapes_values && !laws.of(n, reached))
+            names.push_back(plan.nodes[n].name);
     return names;
 }
 
@@ -157,9 +177,16 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::functio
     const DrivenParams driven = driven_params(plan);
     std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;
     std::vector<std::pair<std::size_t, std::vector<Flicks>>> sinks;  // with the way from each node to it
+    const Laws laws(plan, driven);
+    const std::vector<bool> reached = reached_by_hands(plan);
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
-        if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
         if (plan.nodes[n].type->role == NodeRole::hand_sink) sinks.emplace_back(n, ages_to(plan, static_cast<int>(n)));
+        if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
+        if (!plan.nodes[n].type->shapes_values) continue;
+        const auto law = laws.of(n, reached);
+        if (law && law->newton_per_metre)
+            springs.emplace_back(n,
+                                 DeclaredStiffness{plan.nodes[n].name + " (its slope)", *law->newton_per_metre, false});
     }
 
     std::vector<ForceLoop> loops;

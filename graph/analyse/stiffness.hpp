@@ -13,9 +13,9 @@
 
 namespace tactus::analyse {
 
-/// A node that makes a force from a position: one with a parameter in N/m.
+/// A node that makes a force from a position: one with a parameter in N/m, or one of known slope.
 struct DeclaredStiffness {
-    std::string param;              ///< "blade.stiffness"
+    std::string param;              ///< "blade.stiffness", "law (its slope)"
     double newton_per_metre =
         0.0;  ///< its value, or the end of its range when a wire drives it; in the device's metres
     bool is_driven = false;  ///< by a wire
@@ -57,7 +57,8 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
 /// Per node of the plan: whether it lies on a way from a hand's device to a hand's force.
 std::vector<bool> between_hand_and_force(const compile::Plan& plan);
 
-/// Names of the nodes between a hand's device and its force whose law no parameter states, in the order of the patch.
+/// Names of the nodes between a hand's device and its force whose law no parameter states and of which no bound on the
+/// slope is known, in the order of the patch.
 std::vector<std::string> unstated_laws(const compile::Plan& plan);
 
 /// Largest stiffness of a spring that a hand's device, of damping b in N·s/m, can feel without humming when its force is

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
+#include <tuple>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -48,7 +50,10 @@ struct WireContext {
     std::map<std::string_view, int> nodes;
     std::unordered_set<std::string_view> assets;
     std::unordered_set<const Param*> driven;  ///< parameters that wires drive so far
+    std::set<std::tuple<const Output*, const Input*, int>> event_wires;  ///< so far: from, to, delay
 };
+
+using value::with_article;
 
 /// Both ends of one wire found, or what is wrong with it.
 class WireResolver {
@@ -133,7 +138,7 @@ private:
     void check_input() {
         PlanInput& target = node(wire_.to_node).inputs[static_cast<std::size_t>(wire_.to_input)];
         Input& port = *target.port;
-        if (port.connected)
+        if (port.connected && port.kind != InputKind::events)
             throw Error(fmt::format("input '{}' of node '{}' is already fed by another wire", target.name,
                                     node(wire_.to_node).name));
         port.connected = true;
@@ -151,8 +156,9 @@ private:
         const ValueType& type = source_type();
         if (port.kind == InputKind::any) take_type(port, type);
         if (port.type != &type)
-            throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
-                                    type.name, source_.to_node, source_.to_port, port.type->name));
+            throw Error(fmt::format("'{}.{}' gives {}, but '{}.{}' takes {}", source_.from_node, source_.from_port,
+                                    with_article(type), source_.to_node, source_.to_port, with_article(*port.type)));
+        if (port.kind == InputKind::events) return check_events(port);
         check_mode(port, type);
         port.period = plan_.groups[static_cast<std::size_t>(node(wire_.from_node).group)].period;
     }
@@ -163,8 +169,8 @@ private:
             throw Error(fmt::format("the type of '{}.{}' is not known: feed an input of '{}' by a node of known type",
                                     source_.from_node, source_.from_port, source_.from_node));
         if (!(port.takes & kind_of(type)))
-            throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
-                                    type.name, source_.to_node, source_.to_port, type_names(port.takes)));
+            throw Error(fmt::format("'{}.{}' gives {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
+                                    with_article(type), source_.to_node, source_.to_port, type_names(port.takes)));
         if (!port.type) port.type = &type;
     }
 
@@ -181,11 +187,37 @@ private:
                                     source_.from_node, source_.to_node));
     }
 
+    /// Any number of wires may bring events, each in the tick it is for.
+    void check_events(const Input& port) {
+        using patch::WireMode;
+        const bool is_held = wire_.mode == WireMode::hold || wire_.mode == WireMode::linear;
+        if (source_.mode_given && is_held)
+            throw Error(fmt::format("events are never held or interpolated; leave 'as {}' out",
+                                    wire_.mode == WireMode::hold ? "hold" : "linear"));
+        if (is_held) wire_.mode = WireMode::batch;
+        const PlanNode& from = node(wire_.from_node);
+        const PlanGroup& group = plan_.groups[static_cast<std::size_t>(from.group)];
+        const std::int64_t waiting = crosses() ? wire_latency(group, wire_) / group.period : wire_.delay;
+        const Flicks reading = plan_.groups[static_cast<std::size_t>(node(wire_.to_node).group)].period;
+        if (reading / group.period > most_at_once)
+            throw Error(fmt::format("'{}' runs once in {} ticks of '{}', and {} is the most for events",
+                                    source_.to_node, reading / group.period, source_.from_node, most_at_once));
+        if (waiting > most_waiting)
+            throw Error(
+                fmt::format("events would wait for {} ticks on this wire, and {} is the most; event_delay "
+                            "delays them by any time",
+                            waiting, most_waiting));
+        const Output* const output = from.outputs[static_cast<std::size_t>(wire_.from_output)].port;
+        if (!context_.event_wires.emplace(output, &port, wire_.delay).second)
+            throw Error(fmt::format("'{}.{}' is already wired to '{}.{}'; every event would come twice",
+                                    source_.from_node, source_.from_port, source_.to_node, source_.to_port));
+    }
+
     void check_param() {
         if (wire_.from_node < 0) throw Error(fmt::format("asset '{}' cannot drive a parameter", wire_.asset));
         if (&source_type() != &value::number)
-            throw Error(fmt::format("'{}.{}' gives a {}, but the parameter '{}' takes a number", source_.from_node,
-                                    source_.from_port, source_type().name, source_.to_port));
+            throw Error(fmt::format("'{}.{}' gives {}, but the parameter '{}' takes a number", source_.from_node,
+                                    source_.from_port, with_article(source_type()), source_.to_port));
         if (wire_.param->is_structural)
             throw Error(fmt::format("parameter '{}' of node '{}' is structural and cannot change while the patch runs",
                                     source_.to_port, source_.to_node));
@@ -194,6 +226,8 @@ private:
             throw Error(fmt::format("parameter '{}' of node '{}' is already driven by another wire", source_.to_port,
                                     source_.to_node));
     }
+
+    static constexpr std::int64_t most_waiting = 10'000, most_at_once = 50'000;  // a tick's events take 776 bytes
 
     Plan& plan_;
     WireContext& context_;

@@ -23,7 +23,9 @@
 //
 // Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
 // output; `void report(Report&) const` adds results after the run; `static constexpr NodeRole role` is the type's role
-// at the border of a patch; `static constexpr bool shapes_values = true` says that it makes a force as stiff as its law.
+// at the border of a patch; `static constexpr bool shapes_values = true` says that it makes a force as stiff as its law;
+// `std::vector<PortSlope> slopes() const` bounds how stiff that is; `static constexpr UnitRule units` says how the units of
+// its inputs make those of its outputs, `std::string unit_of(std::string_view port) const` which one its texts give a port.
 #pragma once
 
 #include "graph/node/node_memory.hpp"
@@ -37,6 +39,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactus {
 
@@ -87,6 +90,23 @@ enum class NodeRole : std::uint8_t {
     file_sink  ///< writes a file
 };
 
+/// How units pass through a node: its ports of several types, numbers, signals and vectors that state no unit.
+enum class UnitRule : std::uint8_t {
+    none,  ///< nothing is known of them
+    same,  ///< all have one unit
+    product,  ///< each output has the product of the units of the inputs
+    quotient,  ///< each output has the unit of the first input per that of the second
+    rate,  ///< each output has the unit of the input per second
+    integral,  ///< each output has the unit of the input times seconds
+};
+
+/// The largest slope of a node's output over one of its inputs, in SI units. An input that is not listed has none that
+/// is known.
+struct PortSlope {
+    std::string input;
+    double largest = 0.0;
+};
+
 /// A node type as the catalogue lists it. The functions take a node that `create` made; `prepare` may throw Error.
 struct NodeType {
     std::string name;  ///< "blade_contact"
@@ -99,6 +119,11 @@ struct NodeType {
     void (*prepare)(void*, const Setup&) = nullptr;
     void (*process)(void*, const Tick&) noexcept = nullptr;
     void (*report)(const void*, Report&) = nullptr;
+    UnitRule units = UnitRule::none;
+    /// The unit that the texts of a node give a port, "" for none; null: they give none. Before `prepare`; throws Error.
+    std::string (*unit_of)(const void*, std::string_view port) = nullptr;
+    /// Null: no slope of it is known. Before `prepare`; throws Error.
+    std::vector<PortSlope> (*slopes)(const void*) = nullptr;
 };
 
 /// "BladeContact" → "blade_contact".
@@ -117,10 +142,16 @@ constexpr bool shapes_values() {
 }
 
 template <class T>
+constexpr UnitRule units_of() {
+    if constexpr (requires { T::units; }) return T::units;
+    else return UnitRule::none;
+}
+
+template <class T>
 NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
     static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
     static_assert(alignof(T) <= node_offset, "a node is aligned to 16 bytes");
-    return {
+    NodeType type{
         .name = type_name_of(struct_name),
         .about = T::about,
         .role = role_of<T>(),
@@ -149,7 +180,15 @@ NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, Membe
             [](const void* node, Report& report) {
                 if constexpr (requires(const T& t) { t.report(report); }) static_cast<const T*>(node)->report(report);
             },
+        .units = units_of<T>(),
     };
+    if constexpr (requires(const T& t) { t.unit_of(std::string_view()); })
+        type.unit_of = [](const void* node, std::string_view port) -> std::string {
+            return static_cast<const T*>(node)->unit_of(port);
+        };
+    if constexpr (requires(const T& t) { t.slopes(); })
+        type.slopes = [](const void* node) { return static_cast<const T*>(node)->slopes(); };
+    return type;
 }
 
 }  // namespace tactus

@@ -16,6 +16,7 @@ enum class InputKind : std::uint8_t {
     value,   ///< one value, constant within a call
     stream,  ///< one value per activation: signals and ramps
     batch,   ///< every value since the last call
+    events,  ///< the events since the last activation; of any number of wires
     any,     ///< any type, decided by the wire
 };
 
@@ -60,7 +61,9 @@ template <class T>
 struct In : Input {
     In(const char* about_ = "", const char* unit_ = "") {
         type = &value_type<T>();
-        kind = std::is_same_v<T, Signal> || std::is_same_v<T, Ramp> ? InputKind::stream : InputKind::value;
+        kind = std::is_same_v<T, Event>                               ? InputKind::events
+               : std::is_same_v<T, Signal> || std::is_same_v<T, Ramp> ? InputKind::stream
+                                                                      : InputKind::value;
         about = about_;
         unit = unit_;
     }
@@ -69,6 +72,19 @@ struct In : Input {
     const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
     operator const Element<T>&() const { return get(); }
     const Element<T>* operator->() const { return &get(); }
+    /// Of events: those that became visible at this activation, merged by time, then by the name of their output.
+    std::span<const Event> events() const
+        requires std::is_same_v<T, Event>
+    {
+        const auto& list = *reinterpret_cast<const EventList*>(data);
+        return {list.events(), static_cast<std::size_t>(list.count)};
+    }
+    /// Of events: how many more there were.
+    int lost() const
+        requires std::is_same_v<T, Event>
+    {
+        return reinterpret_cast<const EventList*>(data)->lost;
+    }
     /// Value of the i-th activation of this call. The samples of a signal are always adjacent.
     const Element<T>& operator[](int i) const {
         if constexpr (std::is_same_v<T, Signal>) return reinterpret_cast<const float*>(data)[i];
@@ -112,7 +128,7 @@ struct AnyIn : Input {
 };
 
 /// An output. It keeps its value until the node writes another one. A signal does not: write `out[i]` for every
-/// activation of the call.
+/// activation of the call. Nor does one of events: the engine empties it before each call, and the node adds to `out[i]`.
 template <class T>
 struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
     Out(const char* about_ = "", const char* unit_ = "") {

@@ -17,6 +17,8 @@ constexpr std::string_view twist_columns[] = {"vx", "vy", "vz", "wx", "wy", "wz"
 constexpr std::string_view wrench_columns[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
 constexpr std::string_view vector_columns[] = {"x", "y", "z"};
 constexpr std::string_view number_columns[] = {"value"};
+/// How many there are, how many were lost; the kind and the first number of the last one.
+constexpr std::string_view event_columns[] = {"count", "lost", "kind", "value"};
 
 template <class T>
 const T& as(const void* p) {
@@ -142,6 +144,28 @@ const ValueType signal{
     .make_default = set_default<float>,
 };
 
+const ValueType event{
+    .name = "event",
+    .size = sizeof(Events),
+    .columns = event_columns,
+    .hash =
+        [](Hash& hash, const void* p) {
+            const auto& events = as<Events>(p);
+            hash.add_bytes(&events, sizeof(EventList));
+            hash.add_bytes(events.events(), static_cast<std::size_t>(events.count) * sizeof(Event));
+        },
+    .to_columns =
+        [](const void* p, double* out) {
+            const auto& events = as<Events>(p);
+            const Event last = events.count > 0 ? events.all().back() : Event{};
+            out[0] = events.count;
+            out[1] = events.lost;
+            out[2] = static_cast<double>(last.kind);
+            out[3] = last.values[0];
+        },
+    .make_default = set_default<Events>,
+};
+
 const ValueType undecided{
     .name = "type of the input",
     .size = sizeof(double),
@@ -165,7 +189,12 @@ ValueKinds kind_of(const ValueType& type) {
         if (plain == &type) return static_cast<ValueKinds>(bit);
         bit <<= 1;
     }
-    return kinds::snapshot;
+    return &type == &value::event ? ValueKinds{0} : kinds::snapshot;
+}
+
+std::string value::with_article(const ValueType& type) {
+    const bool is_vowel = std::string_view("aeio").find(type.name.front()) != std::string_view::npos;
+    return std::string(is_vowel ? "an " : "a ") + std::string(type.name);
 }
 
 std::string type_names(ValueKinds set) {

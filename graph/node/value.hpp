@@ -5,6 +5,7 @@
 #include "dsp/core/hash.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/volume/bricks.hpp"
+#include "graph/node/event.hpp"
 
 #include <concepts>
 #include <cstddef>
@@ -72,16 +73,20 @@ inline constexpr ValueKinds plain = addable | boolean | pose;
 inline constexpr ValueKinds every = plain | snapshot;
 }  // namespace kinds
 
-/// The one bit of `kinds` that a type has.
+/// The one bit of `kinds` that a type has; 0 for events, which no input of several types takes.
 ValueKinds kind_of(const ValueType& type);
 /// "number, vector or wrench".
 std::string type_names(ValueKinds kinds);
 
 namespace value {
 extern const ValueType pose, twist, wrench, vector, number, boolean, signal;
+/// The events of one activation, `Events`. They are never held and never interpolated.
+extern const ValueType event;
 /// Of an output whose type the wires of its node decide, until they have.
 extern const ValueType undecided;
-/// All plain types, those without snapshots.
+/// "a number", "an event".
+std::string with_article(const ValueType& type);
+/// All plain types: those without snapshots, and no events.
 std::span<const ValueType* const> plain_types();
 
 template <SnapshotHandle T>
@@ -108,6 +113,7 @@ constexpr const ValueType& value_type() {
     else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Ramp>) return value::number;
     else if constexpr (std::is_same_v<T, bool>) return value::boolean;
     else if constexpr (std::is_same_v<T, Signal>) return value::signal;
+    else if constexpr (std::is_same_v<T, Event>) return value::event;
     else return value::snapshot<T>;
 }
 
@@ -120,6 +126,9 @@ template <> struct ElementOf<Signal> {
 };
 template <> struct ElementOf<Ramp> {
     using type = double;
+};
+template <> struct ElementOf<Event> {
+    using type = Events;
 };
 template <class T> using Element = typename ElementOf<T>::type;
 

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 
 struct Cross {
     static constexpr auto about = "Vector product of two vectors.";
+    static constexpr UnitRule units = UnitRule::product;
 
     In<Vec3> a{"the first vector"};
     In<Vec3> b{"the second vector"};

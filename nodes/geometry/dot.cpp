@@ -7,6 +7,7 @@ namespace tactus::nodes {
 
 struct Dot {
     static constexpr auto about = "Scalar product of two vectors.";
+    static constexpr UnitRule units = UnitRule::product;
 
     In<Vec3> a{"a vector"};
     In<Vec3> b{"a vector"};

@@ -8,6 +8,7 @@ struct Interpolate {
         "Between two values of one type: straight for numbers, vectors, twists and wrenches, along the shortest "
         "rotation "
         "for poses.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn a{"the value at share 0", types};
     AnyIn b{"the value at share 1, of the same type", types};

@@ -5,6 +5,7 @@ namespace tactus::nodes {
 
 struct JoinVector {
     static constexpr auto about = "A vector of three numbers. SI units.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<double> x{optional, "first component"};
     In<double> y{optional, "second component"};

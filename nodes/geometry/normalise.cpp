@@ -7,9 +7,10 @@ namespace tactus::nodes {
 
 struct Normalise {
     static constexpr auto about = "Direction and length of a vector.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Vec3> in{"the vector"};
-    Out<Vec3> direction{"the vector divided by its length; the last direction where the length is 0"};
+    Out<Vec3> direction{"the vector divided by its length; the last direction where the length is 0", "1"};
     Out<double> length{"its length"};
 
     void prepare(const Setup&) { direction = Vec3(1.0, 0.0, 0.0); }

@@ -5,6 +5,7 @@ namespace tactus::nodes {
 
 struct Rotate {
     static constexpr auto about = "Turns a vector, twist or wrench from the axes of a pose to world axes, or back.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"what is turned", kinds::vector | kinds::twist | kinds::wrench};
     In<Pose> by{"the pose; only its orientation counts", "m"};

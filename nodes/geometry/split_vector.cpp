@@ -5,6 +5,7 @@ namespace tactus::nodes {
 
 struct SplitVector {
     static constexpr auto about = "The three components of a vector. SI units.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Vec3> in{"the vector"};
     Out<double> x{"first component"};

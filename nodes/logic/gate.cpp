@@ -8,6 +8,7 @@ struct Gate {
     static constexpr auto about =
         "Lets a value through while it is open; closed, it gives zero, the identity, false or silence. It changes at "
         "once.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<bool> open{"lets the value through"};
     AnyIn in{"the value", kinds::plain};

@@ -6,6 +6,7 @@ namespace tactus::nodes {
 
 struct SampleAndHold {
     static constexpr auto about = "Keeps the value that was there when the trigger last became true.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<bool> trigger{"takes the value when it becomes true"};
     AnyIn in{"the value", kinds::plain & ~kinds::signal};

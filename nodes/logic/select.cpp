@@ -9,6 +9,7 @@ struct Select {
         "One of two values of one type. It changes from one to the other at once: on a force or a sound, slew or a "
         "gain "
         "behind it keeps that from being felt.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<bool> which{"false: a, true: b"};
     AnyIn a{"the value while 'which' is false", kinds::plain};

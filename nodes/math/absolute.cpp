@@ -8,6 +8,7 @@ namespace tactus::nodes {
 
 struct Absolute {
     static constexpr auto about = "Absolute value of a number, or of each sample of a signal.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value", kinds::number | kinds::signal};
     AnyOut out{"|in|"};

@@ -8,6 +8,7 @@ struct Add {
     static constexpr auto about =
         "Sum of two values of one type. Wrenches are added as they are: both must refer to one point; wrench_sum "
         "transports them.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn a{"the first value", kinds::addable};
     AnyIn b{"the second value, of the same type", kinds::addable};

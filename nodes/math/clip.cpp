@@ -8,6 +8,7 @@ namespace tactus::nodes {
 
 struct Clip {
     static constexpr auto about = "Limits a number, or each sample of a signal, to a range. SI units.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value", kinds::number | kinds::signal};
     AnyOut out{"the value within the range"};

@@ -4,6 +4,7 @@
 #include "nodes/math/componentwise.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace tactus::nodes {
@@ -28,6 +29,17 @@ struct Curve {
             points_.push_back({point[0], point[1]});
         }
         if (points_.empty()) setup.fail("a curve needs a point, as in \"0 0, 1 1\"");
+    }
+
+    std::vector<PortSlope> slopes() const {
+        double steepest = 0.0;
+        std::vector<double> before;
+        for (const std::vector<double>& point : rows_of_numbers(points.value, points.where)) {
+            if (before.size() == 2 && point.size() == 2)
+                steepest = std::max(steepest, std::abs((point[1] - before[1]) / (point[0] - before[0])));
+            before = point;
+        }
+        return {{"in", steepest}};
     }
 
     void process(const Tick& tick) noexcept {

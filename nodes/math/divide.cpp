@@ -6,6 +6,7 @@ namespace tactus::nodes {
 
 struct Divide {
     static constexpr auto about = "Quotient of two numbers or two signals; 0 where the divisor is 0.";
+    static constexpr UnitRule units = UnitRule::quotient;
     static constexpr bool shapes_values = true;
 
     AnyIn a{"the dividend", kinds::number | kinds::signal};

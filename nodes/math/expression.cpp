@@ -37,7 +37,9 @@ struct Expression {
     AnyOut out{"the value of the formula, in SI units"};
     Text formula{"x", "what is computed, as in \"k * x - c * v\""};
     Text inputs{"x, y, z, u, v, w",
-                "names of in1, in2, … with their units: \"x m, v m/s\"; a name without a unit is a bare number"};
+                "names of in1, in2, … with their units: \"x m, v m/s\"; a name without a unit is a bare number. \"x m "
+                "from 0 mm to "
+                "5 mm\" clamps an input to a range, for which check knows the slope of the formula"};
     Text constants{"", "names with their values: \"k = 0.8 N/mm, c = 2 N s/m\""};
     Text unit{"", "unit of the result, as \"N\"; empty for a bare number"};
 
@@ -57,6 +59,7 @@ struct Expression {
             throw Error(unit.value.empty() ? formula.where : unit.where,
                         "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
         check_wires(setup, names, compiled.program);
+        for (std::size_t i = 0; i < count_; ++i) ranges_[i] = names[i].range;
         machine_ = expression::Machine(std::move(compiled.program));
         is_signal_ = out.type == &value::signal;
     }
@@ -64,13 +67,40 @@ struct Expression {
     void process(const Tick& tick) noexcept {
         if (is_signal_) return process_signal(tick);
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
-        for (std::size_t i = 0; i < count_; ++i) *machine_.variable(i) = *ports[i]->as<double>();
+        for (std::size_t i = 0; i < count_; ++i) *machine_.variable(i) = within(*ports[i]->as<double>(), ranges_[i]);
         const double result = machine_.run();
         *out.as<double>() = std::isfinite(result) ? result : 0.0;
     }
 
+    /// The unit that `inputs` or `unit` gives a port; a name without one takes any.
+    std::string unit_of(std::string_view port) const {
+        if (port == "out") return unit.value;
+        const std::vector<expression::Variable> names = expression::parse_variables(inputs.value);
+        const auto at = static_cast<std::size_t>(port.back() - '1');
+        return at < names.size() ? names[at].unit : "";
+    }
+
+    std::vector<PortSlope> slopes() const {
+        const std::vector<expression::Variable> names = expression::parse_variables(inputs.value);
+        const expression::Formula compiled =
+            expression::compile_formula(formula.value, names, expression::parse_constants(constants.value));
+        std::vector<expression::Interval> ranges;
+        for (const expression::Variable& name : names) ranges.push_back(name.range);
+        std::vector<PortSlope> slopes;
+        for (const double bound : expression::slope_bounds(compiled.program, ranges)) {
+            const std::string port = "in" + std::to_string(slopes.size() + 1);
+            slopes.push_back({port, bound});
+        }
+        return slopes;
+    }
+
 private:
     static constexpr std::size_t most_inputs = 6;
+
+    /// NaN stays NaN.
+    static double within(double x, const expression::Interval& range) noexcept {
+        return x < range.low ? range.low : x > range.high ? range.high : x;
+    }
     static constexpr ValueKinds types = kinds::number | kinds::signal;
 
     void check_wires(const Setup& setup, const std::vector<expression::Variable>& names,
@@ -88,8 +118,12 @@ private:
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
         for (int from = 0; from < tick.frames; from += expression::Machine::block) {
             const int frames = std::min(tick.frames - from, expression::Machine::block);
-            for (std::size_t i = 0; i < count_; ++i)
-                std::copy_n(ports[i]->as<float>() + from, frames, machine_.variable(i));
+            for (std::size_t i = 0; i < count_; ++i) {
+                const expression::Interval range = ranges_[i];
+                const float* const values = ports[i]->as<float>() + from;
+                double* const variable = machine_.variable(i);
+                for (int k = 0; k < frames; ++k) variable[k] = within(static_cast<double>(values[k]), range);
+            }
             const auto results = machine_.run(frames);
             for (int k = 0; k < frames; ++k) {
                 const double y = results[static_cast<std::size_t>(k)];
@@ -99,6 +133,7 @@ private:
     }
 
     expression::Machine machine_;
+    expression::Interval ranges_[most_inputs] = {};
     std::size_t count_ = 0;
     bool is_signal_ = false;
 };

@@ -9,6 +9,7 @@ struct Magnitude {
     static constexpr auto about =
         "Length of a vector, force, velocity or position (or of a torque or angular velocity); absolute value of a "
         "number.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"what has a length", kinds::wrench | kinds::twist | kinds::pose | kinds::vector | kinds::number};
     Out<double> out{"the length, in SI units"};

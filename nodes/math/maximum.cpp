@@ -6,6 +6,7 @@ namespace tactus::nodes {
 
 struct Maximum {
     static constexpr auto about = "The larger of two numbers, or of two signals sample by sample.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn a{"the first value", kinds::number | kinds::signal};
     AnyIn b{"the second value, of the same type", kinds::number | kinds::signal};

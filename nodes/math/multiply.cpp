@@ -7,6 +7,7 @@ namespace tactus::nodes {
 struct Multiply {
     static constexpr auto about =
         "Product of two numbers or two signals. Vectors, twists and wrenches are scaled by gain.";
+    static constexpr UnitRule units = UnitRule::product;
     static constexpr bool shapes_values = true;
 
     AnyIn a{"the first factor", kinds::number | kinds::signal};

@@ -6,6 +6,7 @@ namespace tactus::nodes {
 
 struct Negate {
     static constexpr auto about = "The opposite of a value, component by component.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value", kinds::addable};
     AnyOut out{"-in"};

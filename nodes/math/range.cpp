@@ -29,6 +29,12 @@ struct Range {
             setup.fail("an exponential range needs out_low and out_high of one sign, neither of them 0");
         if (out.type == &value::number) *out.as<double>() = map(0.0);
     }
+    std::vector<PortSlope> slopes() const {
+        const double width = std::abs(in_high - in_low), change = std::abs(out_high - out_low);
+        if (!shape.is("exponential")) return {{"in", change / width}};
+        const double ratio = std::log(std::abs(out_high / out_low));
+        return {{"in", std::abs(ratio) * std::max(std::abs(out_low), std::abs(out_high)) / width}};
+    }
     void process(const Tick& tick) noexcept {
         for_each_component(in, out, tick, [this](double x) { return map(x); });
     }

@@ -6,6 +6,7 @@ namespace tactus::nodes {
 
 struct Subtract {
     static constexpr auto about = "Difference of two values of one type, component by component.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn a{"the value to subtract from", kinds::addable};
     AnyIn b{"what is subtracted, of the same type", kinds::addable};

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 struct ToNumber {
     static constexpr auto about =
         "A bool or a signal as a number: of a bool one of two values, of a signal the newest sample, for slower nodes.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the bool or signal", kinds::boolean | kinds::signal};
     Out<double> out{"the number"};

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 struct ToSignal {
     static constexpr auto about =
         "A number as a signal. A wire 'as linear' glides from value to value, any other holds each one.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Ramp> in{"the number"};
     Out<Signal> out{"the number as samples"};

@@ -10,6 +10,7 @@ struct Wrap {
     static constexpr auto about =
         "Brings a number, or each sample of a signal, into a range by adding or subtracting whole lengths of it, as an "
         "angle into one turn. SI units.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value", kinds::number | kinds::signal};
     AnyOut out{"in + k × (high - low), at least 'low' and below 'high'; 'low' where the range has no length"};

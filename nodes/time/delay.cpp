@@ -13,6 +13,7 @@ struct Delay {
         "The value of some time ago, to whole ticks of its group; before that the first default: zero, identity, "
         "false. "
         "Ticks that are left out leave their values out.";
+    static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::plain};

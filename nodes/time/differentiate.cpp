@@ -13,6 +13,7 @@ struct Differentiate {
         "values within that (adaptive window, Janabi-Sharifi 2000): little noise while the change is steady, little "
         "lag "
         "while it is not. A value that is not finite is left out.";
+    static constexpr UnitRule units = UnitRule::rate;
     static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::number | kinds::vector};

@@ -12,6 +12,7 @@ struct Integrate {
         "Integral over time of a number or vector, by trapezia. A leak lets it forget; the limit keeps each component "
         "in "
         "bounds. A value that is not finite counts as 0.";
+    static constexpr UnitRule units = UnitRule::integral;
     static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::number | kinds::vector};

@@ -12,6 +12,7 @@ struct Slew {
     static constexpr auto about =
         "Follows a value no faster than a limit: each component of a number, vector, twist or wrench, each sample of a "
         "signal. It starts at 0; a value that is not finite is not followed.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value to follow", kinds::addable};
     AnyOut out{"the value with limited rate of change"};

@@ -13,6 +13,7 @@ struct Smooth {
     static constexpr auto about =
         "First-order lag of any value that has values in between; a pose turns along the shortest rotation. It starts "
         "with the first value; a value that is not finite is not followed.";
+    static constexpr UnitRule units = UnitRule::same;
 
     AnyIn in{"the value to follow", kinds::addable | kinds::pose};
     AnyOut out{"the smoothed value"};

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 
 struct Envelope {
     static constexpr auto about = "Envelope follower: the smoothed absolute value of a signal.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Signal> in{"the signal"};
     Out<Signal> out{"the envelope"};

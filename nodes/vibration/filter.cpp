@@ -9,6 +9,7 @@ struct Filter {
     static constexpr auto about =
         "Second-order filter (biquad). A non-finite sample counts as 0; frequencies above half the rate act as just "
         "below.";
+    static constexpr UnitRule units = UnitRule::same;
 
     In<Signal> in{"the signal"};
     Out<Signal> out{"the filtered signal"};

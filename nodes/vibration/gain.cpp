@@ -1,19 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/expression/measure.hpp"
 #include "graph/node/node.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace tactus::nodes {
 
 struct Gain {
     static constexpr auto about = "Multiplies a signal, number, vector, twist or wrench by a factor.";
+    static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
     AnyIn in{"the value", kinds::addable};
     AnyOut out{"factor × in"};
-    Param factor{"1", "-1000", "1000", "gain"};
+    Param factor{"1", "-1000", "1000", "gain, in SI units"};
 
-    void prepare(const Setup&) {
+    std::string unit_of(std::string_view port) const { return port == "out" ? unit.value : ""; }
+    std::vector<PortSlope> slopes() const { return {{"in", std::abs(factor)}}; }
+
+    void prepare(const Setup& setup) {
+        try {
+            static_cast<void>(expression::parse_measured_unit(unit.value));
+        } catch (const Error& error) {
+            throw Error(unit.where.line > 0 ? unit.where : setup.where, error.message());
+        }
         is_signal_ = in.type == &value::signal;
         count_ = in.type->columns.size();
     }
@@ -30,8 +44,12 @@ struct Gain {
 private:
     bool is_signal_ = true;
     std::size_t count_ = 1;
+
+public:
+    // Last, since no call uses it.
+    Text unit{"", "unit of the output when the factor has one itself: \"N\" for a drag that makes a force of a speed"};
 };
 
-TACTUS_NODE(Gain, in, out, factor)
+TACTUS_NODE(Gain, in, out, factor, unit)
 
 }  // namespace tactus::nodes

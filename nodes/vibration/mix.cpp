@@ -2,12 +2,15 @@
 #include "graph/node/node.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace tactus::nodes {
 
 struct Mix {
     static constexpr auto about = "Weighted sum of up to eight values of one type.";
+    static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
     AnyIn in1{optional, "a value", kinds::addable}, in2{optional, "a signal"}, in3{optional, "a signal"};
@@ -18,6 +21,11 @@ struct Mix {
     Param gain3{"1", "-1000", "1000", "factor of in3"}, gain4{"1", "-1000", "1000", "factor of in4"};
     Param gain5{"1", "-1000", "1000", "factor of in5"}, gain6{"1", "-1000", "1000", "factor of in6"};
     Param gain7{"1", "-1000", "1000", "factor of in7"}, gain8{"1", "-1000", "1000", "factor of in8"};
+
+    std::vector<PortSlope> slopes() const {
+        return {{"in1", std::abs(gain1)}, {"in2", std::abs(gain2)}, {"in3", std::abs(gain3)}, {"in4", std::abs(gain4)},
+                {"in5", std::abs(gain5)}, {"in6", std::abs(gain6)}, {"in7", std::abs(gain7)}, {"in8", std::abs(gain8)}};
+    }
 
     void prepare(const Setup& setup) {
         if (out.type == &value::undecided) setup.fail("a mix needs a wire to one of its inputs");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every node type of the catalogue must keep, whatever it computes.
+#include "graph/compile/units.hpp"
 #include "nodes/catalogue.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
@@ -38,8 +39,14 @@ std::uint64_t hash_of(const NodeType& type, const ValueType* any, Feed feed, std
 }
 
 struct Declaration final : MemberVisitor {
-    void input(std::string_view name, Input& port) override { require(name, port.about); }
-    void output(std::string_view name, Output& port) override { require(name, port.about); }
+    void input(std::string_view name, Input& port) override {
+        require(name, port.about);
+        if (port.type) check_unit(name, *port.type, port.unit);
+    }
+    void output(std::string_view name, Output& port) override {
+        require(name, port.about);
+        check_unit(name, *port.type, port.unit);
+    }
     void param(std::string_view name, Param& p) override {
         require(name, p.about);
         CHECK(name != "rate");
@@ -56,6 +63,14 @@ struct Declaration final : MemberVisitor {
     void flag(std::string_view name, Flag& f) override { require(name, f.about); }
     void vector(std::string_view name, Vector& v) override { require(name, v.about); }
     void asset(std::string_view name, AssetParam& a) override { require(name, a.about); }
+
+    /// One that cannot be read would stop every patch with the node.
+    static void check_unit(std::string_view name, const ValueType& type, const char* unit) {
+        INFO("member " << name << " in " << unit);
+        if (&type == &value::number || &type == &value::signal || &type == &value::vector)
+            CHECK_NOTHROW(compile::stated_unit(unit));
+        if (&type == &value::event || &type == &value::boolean) CHECK(std::string_view(unit).empty());
+    }
 
     /// The keys type, rate and group of a node say what it is and when it runs; a port may still be called rate.
     static void require(std::string_view name, std::string_view about) {

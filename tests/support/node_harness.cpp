@@ -251,6 +251,7 @@ void NodeHarness::fill_inputs(std::int64_t first, int frames) {
 void NodeHarness::spoil_signals() {
     for (OutputSlot& output : members_->outputs)
         if (output.port->type == &value::signal) std::ranges::fill(output.buffer, std::byte{0xff});
+        else if (output.port->type == &value::event) std::ranges::fill(output.buffer, std::byte{});
 }
 
 void NodeHarness::drive_params(std::int64_t first) {

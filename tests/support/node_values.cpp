@@ -118,6 +118,13 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         // A conversion of what a float cannot hold is undefined; its own largest value stands in.
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
+    } else if (&type == &value::event) {
+        Events events;
+        const auto n = random.bits(draw.at) % 40;
+        for (std::uint64_t i = 0; i < (n < 18 ? n : 0); ++i)
+            events.add(make_event(k, event_source("other"), static_cast<EventKind>(random.bits(draw.at + 9 + i) % 3),
+                                  {draw.number(1.0), draw.number(1.0)}));
+        put(out, events);
     } else if (&type == &value::snapshot<volume::BoneSnapshot>) put(out, sample_bone().current());
     else if (&type == &value::snapshot<carve::CutFront>) {
         carve::CutFront front;

@@ -26,6 +26,7 @@ Json group_json(const run::GroupRuntime& group, bool live) {
               {"misses", t.misses.load()},
               {"skipped", t.skipped.load()},
               {"dropped", t.dropped.load()},
+              {"lost_events", t.lost_events.load()},
               {"execution_us",
                {{"p50", t.execution.quantile_ns(0.5) * 1e-3},
                 {"p99", t.execution.quantile_ns(0.99) * 1e-3},
@@ -185,6 +186,10 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
             text +=
                 fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
                             tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
+    for (const auto& group : engine.groups())
+        if (const std::int64_t lost = group->telemetry.lost_events.load(); lost > 0)
+            text += fmt::format("  note: {} events were lost in group {}: more than a wire brings in one tick\n", lost,
+                                group->plan->name);
     for (const auto& [section, values] : report.sections)
         if (const auto note = values.find("note"); note != values.end())
             if (const auto* words = std::get_if<std::string>(&note->second))

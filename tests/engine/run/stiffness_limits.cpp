@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whoever makes a plan run: it feels no stiffer than its devices state.
+#include "graph/analyse/stiffness.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
@@ -106,4 +107,15 @@ TEST_CASE("an edit that makes a stiffness be felt more lowers one that was set w
     CHECK_FALSE(again.difference);
     CHECK(again.hashes == live_hashes);
     std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("the nodes of a plan can be asked for their units and slopes once it runs") {
+    run::EngineOptions options;
+    options.seconds = 0.01;
+    const PatchText patch{
+        {{"x", "chaos", "1 kHz", {}}, {"law", "gain", "1 kHz", {{"unit", "N"}}}}, {"x.out -> law.in"}, ""};
+    run::Engine engine(compile_text(patch.toml()), options);
+    engine.render(1);
+    CHECK(analyse::unstated_laws(engine.plan()).empty());
+    CHECK(analyse::force_loops(engine.plan(), [](const std::string&) { return 1.0; }).empty());
 }
