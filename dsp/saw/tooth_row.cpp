@@ -18,6 +18,7 @@ constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
 constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
 constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
+constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
 constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
 
 }  // namespace
@@ -44,6 +45,7 @@ ToothRow::ToothRow(const SawShape& shape, double stiffness)
     }
     squares_.resize(teeth_.size());
     cuts_.resize(teeth_.size());
+    lifts_.resize(teeth_.size());
     cut_.resize(teeth_.size());
 }
 
@@ -51,6 +53,7 @@ void ToothRow::forget() noexcept {
     for (Tooth& tooth : teeth_) {
         tooth.seated = tooth.fresh = false;
         tooth.lag = Vec3(0.0);
+        tooth.lifted = 0.0;
         tooth.density = {};
     }
 }
@@ -62,7 +65,7 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
     const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
     const double jump = std::max(fastest_hand * drive.dt, 0.001);
     for (std::size_t n = 0; n < teeth_.size(); ++n)
-        cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0};
+        cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated};
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
         const double x = first_ + pitch_ * static_cast<double>(n);
@@ -77,23 +80,66 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         } else {
             pursue(walk, n);
         }
-        tooth.lag = tooth.seated ? (tooth.target - tooth.at) * axes_ : Vec3(0.0);
+        tooth.lag = tooth.seated ? (goal(tooth) - tooth.at) * axes_ : Vec3(0.0);
+    }
+    fades_ = std::min(drive.dt / settling, 1.0);
+    hang(walk);
+}
+
+/// Teeth that touch nothing below hang from those that bear: as far above their targets as these, in between linearly.
+/// Their lag stays, so the force does not change.
+void ToothRow::hang(const Walk& walk) noexcept {
+    const auto bears = [](const Tooth& tooth) { return tooth.seated && tooth.density[1] > 0.0 && tooth.lag.y > 0.0; };
+    const std::size_t none = teeth_.size();
+    std::size_t last = none;
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        if (!bears(teeth_[n])) continue;
+        const double here = teeth_[n].lag.y + teeth_[n].lifted;
+        const double from = last == none ? here : lifts_[last];
+        const std::size_t first = last == none ? 0 : last + 1;
+        for (std::size_t k = first; k < n; ++k) {
+            const double share = last == none ? 1.0 : static_cast<double>(k - last) / static_cast<double>(n - last);
+            lifts_[k] = from + (here - from) * share;
+        }
+        lifts_[n] = here;
+        last = n;
+    }
+    for (std::size_t k = last == none ? 0 : last + 1; k < teeth_.size(); ++k)
+        lifts_[k] = last == none ? 0.0 : lifts_[last];
+    const Vec3 &y = axes_[1], &z = axes_[2];
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        if (!tooth.seated || tooth.density[1] > 0.0 || tooth.lag.y > 0.0) continue;
+        const double up = lifts_[n] - tooth.lifted;
+        if (up < 0.0) {
+            tooth.lifted = std::max(0.0, tooth.lifted - descend(walk, n, -up));
+        } else if (up > 0.0) {
+            const Vec3 to = tooth.at - y * up;
+            const double level = -walk.front.ahead + 0.15 * walk.voxel;
+            if (walk.front.floor(walk.bone, to, y, z) <
+                std::min(level - walk.front.ahead, walk.front.floor(walk.bone, tooth.at, y, z)))
+                continue;
+            tooth.at = to;
+            tooth.lifted += up;
+        }
     }
 }
 
 void ToothRow::seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept {
     tooth.at = tooth.target;
+    tooth.lifted = 0.0;
     tooth.seated = tooth.fresh = bone.value(tooth.target) >= radius_;
 }
 
 void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     Tooth& tooth = teeth_[n];
-    const double distance = glm::length(tooth.target - tooth.at);
+    const Vec3 to = goal(tooth);
+    const double distance = glm::length(to - tooth.at);
     if (distance < 1e-12) return;
     // Far from bone, or drawn back to where there is none.
     const bool far = walk.bone.value(tooth.at) > radius_ + distance + pitch_ + walk.front.ahead;
-    if (far || (glm::dot(tooth.target - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(tooth.target) >= radius_)) {
-        tooth.at = tooth.target;
+    if (far || (glm::dot(to - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(to) >= radius_)) {
+        tooth.at = to;
         return;
     }
     if (distance > most_lag) return seat(walk.bone, tooth);
@@ -123,7 +169,7 @@ std::optional<double> ToothRow::cut_below(const Vec3& at, std::size_t n) const n
 void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
     Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
-    double way = glm::dot(tooth.target - tooth.at, y);
+    double way = glm::dot(goal(tooth) - tooth.at, y);
     const double level = -walk.front.ahead + 0.15 * walk.voxel;
     if (way < 0.0) {
         // Back out. Teeth do not hook in: what they would be drawn into, they let go.
@@ -141,25 +187,34 @@ void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
         tooth.at += y * step;
         way -= step;
     }
+    descend(walk, n, way);
+}
+
+/// Along y as far as bone lets it, at most `way` m. Returns how far, m.
+double ToothRow::descend(const Walk& walk, std::size_t n, double way) noexcept {
+    Tooth& tooth = teeth_[n];
+    const Vec3 &y = axes_[1], &z = axes_[2];
+    double gone = 0.0;
     // In contact the interpolated distance ripples: hysteresis between touching and free.
     const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
-    for (int move = 0; move < most_plunges && way > 1e-12; ++move) {
+    for (int move = 0; move < most_plunges && way - gone > 1e-12; ++move) {
         const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
         if (contact.density > 0.0) {
             tooth.density[1] = contact.density;
-            return;
+            break;
         }
-        const double step = std::min(way, contact.clear);
+        const double step = std::min(way - gone, contact.clear);
         tooth.at += y * step;
-        way -= step;
+        gone += step;
     }
+    return gone;
 }
 
 /// Slides along the blade (axis 0) or across it (2), up slopes where that shortens the lag.
 void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
     Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
-    const Vec3 lag = (tooth.target - tooth.at) * axes_;
+    const Vec3 lag = (goal(tooth) - tooth.at) * axes_;
     const double sign = lag[axis] < 0.0 ? -1.0 : 1.0, weight = axis == 2 ? tooth.bending : 1.0;
     double side = std::abs(lag[axis]), deep = std::max(lag.y, 0.0);
     if (side < 1e-12) return;
@@ -234,6 +289,7 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
     if (!drive.running || !(drive.rate > 0.0)) return 0.0;
     double norm = squared_norm();
     if (!(norm > 0.0)) return 0.0;
+    const double before = norm;
     const double passes = sharing_.cuts_per_cycle * drive.rate * drive.dt;
     // Two rounds: the forces share one norm, which falls as the teeth advance.
     for (int round = 0; round < 2; ++round) {
@@ -263,7 +319,27 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
         sum += cuts_[n];
         cutting += cuts_[n] > 0.0;
     }
+    settle(before);
     return cutting > 0.0 ? sum / cutting : 0.0;
+}
+
+/// Teeth that came to bear take more of the thrust: their lifts fade into lags, as far as the springs then hold no more
+/// than `before`, the squared norm before the cut.
+void ToothRow::settle(double before) noexcept {
+    double norm = squared_norm();
+    for (double share = fades_; share > 0.1 * fades_ && norm < before; share *= 0.5) {
+        for (std::size_t n = 0; n < teeth_.size(); ++n) {
+            const Tooth& tooth = teeth_[n];
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? share * tooth.lifted : 0.0;
+            squares_[n] = tooth.square() + cuts_[n] * (2.0 * tooth.lag.y + cuts_[n]);
+        }
+        if (squared_norm8(squares_) > before) continue;
+        for (std::size_t n = 0; n < teeth_.size(); ++n) {
+            teeth_[n].lifted -= cuts_[n];
+            teeth_[n].lag.y += cuts_[n];
+        }
+        return;
+    }
 }
 
 void ToothRow::fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept {

@@ -21,7 +21,8 @@ namespace tactus::saw {
 struct Tooth {
     Vec3 at{0.0, 0.0, 0.0};  ///< where the bone holds it, in the bone's frame, m
     Vec3 target{0.0, 0.0, 0.0};  ///< where the blade is held
-    Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, m
+    double lifted = 0.0;  ///< m along −y: how far bone that other teeth bear on holds this one above its target
+    Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, less `lifted`, m
     std::array<double, 3> density{};  ///< kg/m³ of the bone that stops it along x, y, z; 0: free
     double bending = 1.0;  ///< share of the contact stiffness across the blade that bending leaves
     bool seated = false;  ///< false: it was placed inside bone; it feels nothing until it has been out
@@ -43,6 +44,10 @@ struct Drive {
 /// all, except that a running blade advances it along its own force, by an implicit step of the cutting law. It never
 /// moves away from its target, so its spring only loses energy: whatever the bone does, the force is passive, and bone
 /// never pulls. A node that the blade draws back into bone lets go.
+///
+/// The stiffness is that of the simulation, not of steel on bone: a real blade does not sink into bone by the lag of its
+/// teeth. So a tooth beside the bone hangs no deeper than the teeth that bear, and is not caught at the bone's side. When
+/// it meets bone itself, it bears from there on; its lift fades as the row cuts, with energy that the cut has freed.
 class ToothRow {
 public:
     ToothRow() = default;
@@ -74,9 +79,14 @@ private:
         bool bears = false;
     };
 
+    /// Where its spring pulls a tooth.
+    Vec3 goal(const Tooth& tooth) const noexcept { return tooth.target - axes_[1] * tooth.lifted; }
     void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
     void pursue(const Walk& walk, std::size_t n) noexcept;
+    double descend(const Walk& walk, std::size_t n, double way) noexcept;
     void plunge(const Walk& walk, std::size_t n) noexcept;
+    void hang(const Walk& walk) noexcept;
+    void settle(double before) noexcept;
     void slide(const Walk& walk, std::size_t n, int axis) noexcept;
     std::optional<double> cut_below(const Vec3& at, std::size_t n) const noexcept;
     double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes) const noexcept;
@@ -85,9 +95,10 @@ private:
     ToothSharing sharing_;
     double pitch_ = 0.0, radius_ = 0.0, first_ = 0.0;
     std::vector<Tooth> teeth_;
-    std::vector<double> squares_, cuts_;
+    std::vector<double> squares_, cuts_, lifts_;
     std::vector<Cut> cut_;
     Mat3 axes_{1.0};
+    double fades_ = 0.0;  // share of a lift that fades in this tick
 };
 
 }  // namespace tactus::saw
