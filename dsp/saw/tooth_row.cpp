@@ -19,6 +19,7 @@ constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
 constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
 constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
+constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz
 constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
 
 }  // namespace
@@ -46,7 +47,7 @@ ToothRow::ToothRow(const SawShape& shape, double stiffness)
     squares_.resize(teeth_.size());
     cuts_.resize(teeth_.size());
     lifts_.resize(teeth_.size());
-    cut_.resize(teeth_.size());
+    for (PastRow& row : past_) row.teeth.resize(teeth_.size());
 }
 
 void ToothRow::forget() noexcept {
@@ -60,12 +61,12 @@ void ToothRow::forget() noexcept {
 
 void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept {
     axes_ = Mat3(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
+    origin_ = pose.position;
     const Vec3& spacing = bone.layout().spacing;
     const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6});
     const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
     const double jump = std::max(fastest_hand * drive.dt, 0.001);
-    for (std::size_t n = 0; n < teeth_.size(); ++n)
-        cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated};
+    remember(drive);
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
         const double x = first_ + pitch_ * static_cast<double>(n);
@@ -149,21 +150,48 @@ void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     slide(walk, n, 2);
 }
 
-/// How much deeper than `at`, near the place of tooth `n`, the row cut in the last tick, m; none where it cut nothing.
+/// Keeps the row as the last tick left it, and sees all that are kept from the blade of this tick.
+void ToothRow::remember(const Drive& drive) noexcept {
+    since_kept_ += drive.dt;
+    if (since_kept_ >= kept_every) {
+        since_kept_ = 0.0;
+        std::swap(past_[oldest_], past_[0]);
+        oldest_ = oldest_ + 1 < past_.size() ? oldest_ + 1 : 1;
+    }
+    PastRow& last = past_[0];
+    last.cut = false;
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        last.teeth[n].at = teeth_[n].at;
+        last.teeth[n].bears = drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0;
+        last.cut |= last.teeth[n].bears;
+    }
+    for (PastRow& row : past_)
+        if (row.cut)
+            for (Cut& tooth : row.teeth) tooth.seen = (tooth.at - origin_) * axes_;
+}
+
+/// How much deeper than `at`, near the place of tooth `n`, the row cut in the last ticks, m; none where it cut nothing.
 /// The bone that the teeth read is some ticks older.
 std::optional<double> ToothRow::cut_below(const Vec3& at, std::size_t n) const noexcept {
-    const std::size_t first = n > 2 ? n - 2 : 0, last = std::min(n + 2, cut_.size() - 1);
-    for (std::size_t k = first; k < last; ++k) {
-        const Cut &a = cut_[k], &b = cut_[k + 1];
-        if (!a.bears || !b.bears) continue;
-        const Vec3 from = (a.at - at) * axes_, to = (b.at - at) * axes_;
-        const double span = to.x - from.x;
-        if (!(from.x <= 0.0 && to.x >= 0.0 && span > 0.5 * pitch_ && span < 2.0 * pitch_)) continue;
-        const Vec3 there = from + (to - from) * (-from.x / span);
-        if (std::abs(there.z) > 0.25 * radius_) return std::nullopt;
-        return there.y;
+    const Vec3 here = (at - origin_) * axes_;
+    std::optional<double> deepest;
+    for (const PastRow& row : past_) {
+        if (!row.cut) continue;
+        const double moved = std::clamp((here.x - row.teeth[n].seen.x) / pitch_, -64.0, 64.0);
+        const auto near = static_cast<std::ptrdiff_t>(n) + static_cast<std::ptrdiff_t>(std::floor(moved));
+        const auto last = std::min(near + 2, static_cast<std::ptrdiff_t>(row.teeth.size()) - 1);
+        for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(near - 1, 0); k < last; ++k) {
+            const Cut &a = row.teeth[static_cast<std::size_t>(k)], &b = row.teeth[static_cast<std::size_t>(k) + 1];
+            if (!a.bears || !b.bears || a.seen.x > here.x || b.seen.x < here.x) continue;
+            const double span = b.seen.x - a.seen.x;
+            if (!(span > 0.5 * pitch_ && span < 2.0 * pitch_)) continue;
+            const double share = (here.x - a.seen.x) / span;
+            if (std::abs(a.seen.z + (b.seen.z - a.seen.z) * share - here.z) > 0.25 * radius_) continue;
+            const double below = a.seen.y + (b.seen.y - a.seen.y) * share - here.y;
+            deepest = std::max(deepest.value_or(below), below);
+        }
     }
-    return std::nullopt;
+    return deepest;
 }
 
 void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
@@ -248,19 +276,19 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
-            double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
+            const double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
             if (short_by <= 0.0) break;
-            if (const std::optional<double> below = axis == 0 ? cut_below(to, n) : std::nullopt) {
-                if (*below >= -1e-9) break;
-                short_by = std::min(short_by, -*below);
-            }
             // Beside a wall the distance grows more slowly than the tooth rises.
-            short_by = std::max(short_by, 0.02 * walk.voxel);
-            climbed += short_by;
+            double rise = climb < 3 ? 1.2 * short_by + 1e-9 : std::max(2.0 * short_by, 0.02 * walk.voxel);
+            if (const std::optional<double> below = cut_below(to, n)) {
+                if (*below >= -1e-9) break;
+                rise = std::min(rise, -*below);
+            }
+            climbed += rise;
             const double left = side - step, up = deep + climbed;
             const bool shorter = up * up + weight * left * left < deep * deep + weight * side * side;
             if (climb == most_climbs || !shorter) return;
-            to -= y * short_by;
+            to -= y * rise;
         }
         tooth.at = to;
         side -= step;

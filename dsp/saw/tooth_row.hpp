@@ -73,14 +73,21 @@ public:
 
 private:
     struct Walk;
-    /// Where a tooth was at the end of the last tick, and whether it cut.
+    /// Where a tooth was, and whether it cut.
     struct Cut {
-        Vec3 at{0.0, 0.0, 0.0};
+        Vec3 at{0.0, 0.0, 0.0};  ///< bone's frame
+        Vec3 seen{0.0, 0.0, 0.0};  ///< about the blade of this tick, its axes
         bool bears = false;
+    };
+    /// The row at the end of an earlier tick. What it cut may still be in the version of the bone that is read.
+    struct PastRow {
+        std::vector<Cut> teeth;
+        bool cut = false;  ///< a tooth bore
     };
 
     /// Where its spring pulls a tooth.
     Vec3 goal(const Tooth& tooth) const noexcept { return tooth.target - axes_[1] * tooth.lifted; }
+    void remember(const Drive& drive) noexcept;
     void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
     void pursue(const Walk& walk, std::size_t n) noexcept;
     double descend(const Walk& walk, std::size_t n, double way) noexcept;
@@ -96,7 +103,10 @@ private:
     double pitch_ = 0.0, radius_ = 0.0, first_ = 0.0;
     std::vector<Tooth> teeth_;
     std::vector<double> squares_, cuts_, lifts_;
-    std::vector<Cut> cut_;
+    std::array<PastRow, 8> past_;  // the last tick's, then rows kept every few milliseconds
+    std::size_t oldest_ = 1;  // of those
+    double since_kept_ = 0.0;  // s
+    Vec3 origin_{0.0, 0.0, 0.0};  // of the blade
     Mat3 axes_{1.0};
     double fades_ = 0.0;  // share of a lift that fades in this tick
 };
