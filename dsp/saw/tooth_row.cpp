@@ -276,13 +276,17 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
-            const double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
-            if (short_by <= 0.0) break;
-            // Beside a wall the distance grows more slowly than the tooth rises.
-            double rise = climb < 3 ? 1.2 * short_by + 1e-9 : std::max(2.0 * short_by, 0.02 * walk.voxel);
+            const double floor = walk.front.floor(walk.bone, to, y, z);
+            double rise = 0.0;
             if (const std::optional<double> below = cut_below(to, n)) {
-                if (*below >= -1e-9) break;
-                rise = std::min(rise, -*below);
+                // Bone is where both say so, the version that is read and the row itself.
+                rise = std::min(-*below, -walk.front.ahead - floor);
+                if (rise <= 1e-9) break;
+            } else {
+                const double short_by = std::min(before, level) - floor;
+                if (short_by <= 0.0) break;
+                // Beside a wall the distance grows more slowly than the tooth rises.
+                rise = climb < 3 ? 1.2 * short_by + 1e-9 : std::max(2.0 * short_by, 0.02 * walk.voxel);
             }
             climbed += rise;
             const double left = side - step, up = deep + climbed;
