@@ -73,6 +73,9 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         const Vec3 to = pose.position + axes_ * Vec3(x, -shape_.behind(x) - radius_, 0.0);
         const bool jumped = glm::length(to - tooth.target) > jump;
         tooth.target = to;
+        const bool held = tooth.seated && !jumped && tooth.square() > 0.0;
+        if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
+        squares_[n] = held ? tooth.square() : 0.0;
         tooth.fresh = false;
         tooth.touched = tooth.density[1] > 0.0;
         tooth.density = {};
@@ -83,6 +86,7 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         }
         tooth.lag = tooth.seated ? (goal(tooth) - tooth.at) * axes_ : Vec3(0.0);
     }
+    held_ = squared_norm8(squares_);
     fades_ = std::min(drive.dt / settling, 1.0);
     hang(walk);
 }
@@ -93,9 +97,12 @@ void ToothRow::hang(const Walk& walk) noexcept {
     const auto bears = [](const Tooth& tooth) { return tooth.seated && tooth.density[1] > 0.0 && tooth.lag.y > 0.0; };
     const std::size_t none = teeth_.size();
     std::size_t last = none;
+    double most = 0.0;  // no lift is greater than the elastic depth of the row
+    for (const Tooth& tooth : teeth_)
+        if (bears(tooth)) most = std::max(most, tooth.lag.y);
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         if (!bears(teeth_[n])) continue;
-        const double here = teeth_[n].lag.y + teeth_[n].lifted;
+        const double here = std::min(teeth_[n].lag.y + teeth_[n].lifted, most);
         const double from = last == none ? here : lifts_[last];
         const std::size_t first = last == none ? 0 : last + 1;
         for (std::size_t k = first; k < n; ++k) {
@@ -321,7 +328,6 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
     if (!drive.running || !(drive.rate > 0.0)) return 0.0;
     double norm = squared_norm();
     if (!(norm > 0.0)) return 0.0;
-    const double before = norm;
     const double passes = sharing_.cuts_per_cycle * drive.rate * drive.dt;
     // Two rounds: the forces share one norm, which falls as the teeth advance.
     for (int round = 0; round < 2; ++round) {
@@ -351,21 +357,18 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
         sum += cuts_[n];
         cutting += cuts_[n] > 0.0;
     }
-    settle(before);
     return cutting > 0.0 ? sum / cutting : 0.0;
 }
 
-/// Teeth that came to bear take more of the thrust: their lifts fade into lags, as far as the springs then hold no more
-/// than `before`, the squared norm before the cut.
-void ToothRow::settle(double before) noexcept {
-    double norm = squared_norm();
-    for (double share = fades_; share > 0.1 * fades_ && norm < before; share *= 0.5) {
+void ToothRow::settle() noexcept {
+    const double norm = squared_norm();
+    for (double share = fades_; share > 0.1 * fades_ && norm < held_; share *= 0.5) {
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             const Tooth& tooth = teeth_[n];
             cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? share * tooth.lifted : 0.0;
             squares_[n] = tooth.square() + cuts_[n] * (2.0 * tooth.lag.y + cuts_[n]);
         }
-        if (squared_norm8(squares_) > before) continue;
+        if (squared_norm8(squares_) > held_) continue;
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             teeth_[n].lifted -= cuts_[n];
             teeth_[n].lag.y += cuts_[n];

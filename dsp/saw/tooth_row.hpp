@@ -47,7 +47,7 @@ struct Drive {
 ///
 /// The stiffness is that of the simulation, not of steel on bone: a real blade does not sink into bone by the lag of its
 /// teeth. So a tooth beside the bone hangs no deeper than the teeth that bear, and is not caught at the bone's side. When
-/// it meets bone itself, it bears from there on; its lift fades as the row cuts, with energy that the cut has freed.
+/// it meets bone itself, it bears from there on, and its lift fades.
 class ToothRow {
 public:
     ToothRow() = default;
@@ -59,6 +59,10 @@ public:
 
     /// Cuts for one tick: `spring` N/m is k of lag_norm.hpp. Returns the mean advance of the cutting nodes, m.
     double cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept;
+
+    /// After the cut: teeth that came to bear take more of the thrust. Their lifts fade into lags, as far as the springs
+    /// then hold no more than they held when the hand had moved: with what teeth that cut, slid or left bone have freed.
+    void settle() noexcept;
 
     /// ‖lag‖₈², m².
     double squared_norm() noexcept;
@@ -93,7 +97,6 @@ private:
     double descend(const Walk& walk, std::size_t n, double way) noexcept;
     void plunge(const Walk& walk, std::size_t n) noexcept;
     void hang(const Walk& walk) noexcept;
-    void settle(double before) noexcept;
     void slide(const Walk& walk, std::size_t n, int axis) noexcept;
     std::optional<double> cut_below(const Vec3& at, std::size_t n) const noexcept;
     double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes) const noexcept;
@@ -109,6 +112,7 @@ private:
     Vec3 origin_{0.0, 0.0, 0.0};  // of the blade
     Mat3 axes_{1.0};
     double fades_ = 0.0;  // share of a lift that fades in this tick
+    double held_ = 0.0;  // m², the squared norm when the hand had moved and no tooth
 };
 
 }  // namespace tactus::saw
