@@ -114,7 +114,7 @@ void ToothRow::hang(const Walk& walk) noexcept {
     }
     for (std::size_t k = last == none ? 0 : last + 1; k < teeth_.size(); ++k)
         lifts_[k] = last == none ? 0.0 : lifts_[last];
-    const Vec3 &y = axes_[1], &z = axes_[2];
+    const Vec3& y = axes_[1];
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
         if (!tooth.seated || tooth.density[1] > 0.0 || tooth.lag.y > 0.0) continue;
@@ -123,10 +123,7 @@ void ToothRow::hang(const Walk& walk) noexcept {
             tooth.lifted = std::max(0.0, tooth.lifted - descend(walk, n, -up));
         } else if (up > 0.0) {
             const Vec3 to = tooth.at - y * up;
-            const double level = -walk.front.ahead + 0.15 * walk.voxel;
-            if (walk.front.floor(walk.bone, to, y, z) <
-                std::min(level - walk.front.ahead, walk.front.floor(walk.bone, tooth.at, y, z)))
-                continue;
+            if (walk.bone.value(to) < std::min(0.8 * radius_, walk.bone.value(tooth.at))) continue;
             tooth.at = to;
             tooth.lifted += up;
         }
