@@ -198,7 +198,14 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
             throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
         return found->get<std::string>();
     };
-    return {text("file"), text("hash"), text("record")};
+    TaskSummary summary{text("file"), text("hash"), text("record"), {}, false};
+    if (const auto sources = json.find("carve_sources"); sources != json.end() && sources->is_object())
+        for (const auto& [node, hash] : sources->items())
+            if (hash.is_string()) summary.bones.push_back(hash.get<std::string>());
+    if (const auto carve = json.find("carve"); carve != json.end() && carve->is_object())
+        if (const auto refined = carve->find("refined"); refined != carve->end() && refined->is_number())
+            summary.refined = refined->get<double>() > 0.0;
+    return summary;
 }
 
 }  // namespace tactus::session
