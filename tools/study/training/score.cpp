@@ -138,8 +138,28 @@ std::vector<SparedScore> spared_of(const ScoredRun& run) {
 
 }  // namespace
 
+namespace {
+
+/// A folder of sessions, DIR of 'tactus session' or DIR/PSEUDONYM, is none itself.
+void refuse_many_sessions(const fs::path& folder) {
+    if (!fs::is_directory(folder) || fs::exists(folder / "summary.json") || fs::exists(folder / "take.json")) return;
+    std::vector<std::string> found;
+    for (auto at = fs::recursive_directory_iterator(folder); at != fs::recursive_directory_iterator(); ++at) {
+        if (at.depth() >= 1) at.disable_recursion_pending();
+        if (at->is_directory() && session::is_training_session(at->path())) found.push_back(at->path().string());
+    }
+    if (found.empty()) return;
+    std::ranges::sort(found);
+    throw Error(fmt::format("{}: holds sessions; name those to score: {}", folder.string(), fmt::join(found, " ")));
+}
+
+}  // namespace
+
 std::vector<fs::path> attempts_in(const fs::path& folder) {
-    if (!session::is_training_session(folder)) return {folder};
+    if (!session::is_training_session(folder)) {
+        refuse_many_sessions(folder);
+        return {folder};
+    }
     std::vector<fs::path> all = session::completed_attempts(folder);
     if (all.empty()) throw Error(fmt::format("{}: no attempt of this session was completed", folder.string()));
     return all;
