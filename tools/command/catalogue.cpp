@@ -23,6 +23,7 @@
     X(exposure, vibration, vibrations)    \
     X(import, bones, bones)               \
     X(info, bones, bones)                 \
+    X(segment, bones, bones)              \
     X(export, bones, bones)               \
     X(register, bones, bones)             \
     X(fracture, bones, fractures)         \
@@ -59,7 +60,8 @@
     X(plan_mirror, planning)      \
     X(plan_gap, planning)         \
     X(plan_export, planning)      \
-    X(plan_report, planning)
+    X(plan_report, planning)      \
+    X(plan_fibula, planning)
 
 namespace tactus::command {
 
