@@ -127,7 +127,9 @@ private:
         for (const std::string& name : names_)
             if (const std::size_t at = name.find("_px_"); at != std::string::npos && at > 0)
                 found.push_back(name.substr(0, at));
-        return found.empty() ? "" : fmt::format("; the file has the tools {}", fmt::join(found, ", "));
+        return found.empty() ? ""
+                             : fmt::format("; the file has the tools {}: name one as the device's option 'tool'",
+                                           fmt::join(found, ", "));
     }
 
     double number(const Field& field, std::string_view name) const {

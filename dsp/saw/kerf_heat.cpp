@@ -17,6 +17,8 @@ constexpr double longest_step = 4e-3;  // s
 KerfHeat::KerfHeat(const KerfMaterial& material)
     : material_(material),
       columns_(static_cast<std::size_t>(widest / cell)),
+      half_(std::min(static_cast<std::size_t>(std::lround(std::max(material.kerf, 0.0) / (2.0 * cell))), columns_ - 1)),
+      first_cut_(before),
       rise_((2 * before + static_cast<std::size_t>(deepest / cell)) * columns_, 0.0),
       next_(rise_.size(), 0.0),
       above_(rise_.size(), 0.0),
@@ -30,6 +32,16 @@ void KerfHeat::begin_cut() noexcept {
     std::ranges::fill(above_, 0.0);
     cut_row_ = first_row_ = last_row_ = before;
     hottest_ = depth_ = 0.0;
+}
+
+/// The teeth have passed the rows before `row`: their bone is gone, with its heat.
+void KerfHeat::remove_to(std::size_t row) noexcept {
+    for (; cut_row_ < row; ++cut_row_)
+        for (std::size_t z = 0; z < half_; ++z) {
+            const std::size_t n = cut_row_ * columns_ + z;
+            carried_ += 2.0 * rise_[n] * material_.density * material_.heat_capacity * cell * cell;
+            rise_[n] = next_[n] = above_[n] = 0.0;
+        }
 }
 
 void KerfHeat::advance(double elapsed, double depth, double heat, bool irrigated) noexcept {
@@ -48,20 +60,27 @@ void KerfHeat::step(double h, double depth, double heat, bool irrigated) noexcep
     const double position = depth / cell;
     const std::size_t row = before + static_cast<std::size_t>(position);
     if (heat > 0.0) {
-        cut_row_ = std::max(cut_row_, row);
+        remove_to(row);
         first_row_ = std::min(first_row_, row);
-        last_row_ = std::max(last_row_, row + 1);
-        // Half of the bone's share goes to either side. Between two rows the source moves smoothly.
-        const double rise =
-            0.5 * material_.share * heat * h / (material_.density * material_.heat_capacity * cell * cell);
-        const double part = position - std::floor(position);
-        rise_[row * columns_] += (1.0 - part) * rise;
-        rise_[(row + 1) * columns_] += part * rise;
-        last_row_ = std::max(last_row_, row + 2);
+        // Half of the heat goes to either side. Between two rows the source moves smoothly; bone that is gone gets none.
+        const std::size_t wide = std::max<std::size_t>(half_, 1), at = std::max(row, half_ > 0 ? cut_row_ : row);
+        // Heat of a wet floor is made where the water is: it divides as water and half a cell of bone conduct.
+        const bool is_wet = irrigated && half_ > 0;
+        const double into_cell = material_.conductivity / (0.5 * cell);
+        const double stays = is_wet ? into_cell / (into_cell + material_.transfer) : 1.0;
+        const double rise = stays * 0.5 * heat * h /
+                            (static_cast<double>(wide) * material_.density * material_.heat_capacity * cell * cell);
+        // The surface of a wet floor is that of its row.
+        const double part = is_wet ? 0.0 : position - std::floor(position);
+        for (std::size_t z = 0; z < wide; ++z) {
+            rise_[at * columns_ + z] += (1.0 - part) * rise;
+            rise_[(at + 1) * columns_ + z] += part * rise;
+        }
+        last_row_ = std::max(last_row_, at + 2);
     }
     if (irrigated && cut_row_ > before) {
         first_row_ = std::min(first_row_, before);
-        last_row_ = std::max(last_row_, cut_row_);
+        last_row_ = std::max(last_row_, cut_row_ + 1);
     }
     if (first_row_ >= last_row_) return;
     first_row_ = std::max<std::size_t>(first_row_ - 1, 1);
@@ -79,20 +98,25 @@ void KerfHeat::step(double h, double depth, double heat, bool irrigated) noexcep
         double* const out = next_.data() + y * columns_;
         double warmest = 0.0;
         for (std::size_t z = 0; z < columns_; ++z) {
-            const double inner = z > 0 ? here[z - 1] : here[z];
+            if (is_gone(y, z)) continue;
+            const bool at_wall = z == half_ && y >= first_cut_ && y < cut_row_;
+            const bool at_floor = z < half_ && y == cut_row_ && y > first_cut_;
+            const double inner = z > 0 && !at_wall ? here[z - 1] : here[z];
             const double outer = z + 1 < columns_ ? here[z + 1] : 0.0;
-            double rise = here[z] + number * (back[z] + on[z] + inner + outer - 4.0 * here[z]);
-            if (z == 0 && irrigated && y >= before && y < cut_row_) rise -= cooling * (here[0] - material_.coolant);
+            const double above = at_floor ? here[z] : back[z], below = is_gone(y + 1, z) ? here[z] : on[z];
+            double rise = here[z] + number * (above + below + inner + outer - 4.0 * here[z]);
+            if (irrigated && (at_wall || at_floor)) rise -= cooling * (here[z] - material_.coolant);
             out[z] = rise;
             warmest = std::max(warmest, std::abs(rise));
+            if (z < half_) continue;  // bone that the teeth are about to remove
             hottest_ = std::max(hottest_, rise);
-            double& above = above_[y * columns_ + z];
+            double& hot_for = above_[y * columns_ + z];
             if (rise <= limit) {
-                above = 0.0;
+                hot_for = 0.0;
                 continue;
             }
-            above += h;
-            longest_ = std::max(longest_, above);
+            hot_for += h;
+            longest_ = std::max(longest_, hot_for);
             reach_ = std::max(reach_, (static_cast<double>(z) + 0.5) * cell);
         }
         if (y == first_row_) first_rests = warmest < at_rest;
@@ -118,7 +142,7 @@ double KerfHeat::at(double depth, double distance) const noexcept {
     if (!(y >= 0.0 && y < static_cast<double>(rows() - 1) && z < static_cast<double>(columns_ - 1))) return 0.0;
     const auto row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(std::max(z, 0.0));
     const double b = y - static_cast<double>(row), c = std::max(z, 0.0) - static_cast<double>(column);
-    const auto value = [&](std::size_t r, std::size_t k) { return rise_[r * columns_ + k]; };
+    const auto value = [&](std::size_t r, std::size_t k) { return rise_[r * columns_ + (is_gone(r, k) ? half_ : k)]; };
     return (1.0 - b) * ((1.0 - c) * value(row, column) + c * value(row, column + 1)) +
            b * ((1.0 - c) * value(row + 1, column) + c * value(row + 1, column + 1));
 }

@@ -28,6 +28,7 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     }
     teeth_.follow(bone, pose, drive);
     contact.feed = teeth_.cut(law, drive, tooth_spring_) / drive.dt;
+    teeth_.settle();
     faces_.follow(bone, pose, drive.running, drive.dt);
     const Mat3 axes(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
     push_teeth(axes, pose.position, law, drive.running, contact);

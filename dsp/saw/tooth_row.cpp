@@ -18,6 +18,8 @@ constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
 constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
 constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
+constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
+constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz
 constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
 
 }  // namespace
@@ -44,31 +46,36 @@ ToothRow::ToothRow(const SawShape& shape, double stiffness)
     }
     squares_.resize(teeth_.size());
     cuts_.resize(teeth_.size());
-    cut_.resize(teeth_.size());
+    lifts_.resize(teeth_.size());
+    for (PastRow& row : past_) row.teeth.resize(teeth_.size());
 }
 
 void ToothRow::forget() noexcept {
     for (Tooth& tooth : teeth_) {
         tooth.seated = tooth.fresh = false;
         tooth.lag = Vec3(0.0);
+        tooth.lifted = 0.0;
         tooth.density = {};
     }
 }
 
 void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept {
     axes_ = Mat3(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
+    origin_ = pose.position;
     const Vec3& spacing = bone.layout().spacing;
     const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6});
     const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
     const double jump = std::max(fastest_hand * drive.dt, 0.001);
-    for (std::size_t n = 0; n < teeth_.size(); ++n)
-        cut_[n] = {teeth_[n].at, drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0};
+    remember(drive);
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
         const double x = first_ + pitch_ * static_cast<double>(n);
         const Vec3 to = pose.position + axes_ * Vec3(x, -shape_.behind(x) - radius_, 0.0);
         const bool jumped = glm::length(to - tooth.target) > jump;
         tooth.target = to;
+        const bool held = tooth.seated && !jumped && tooth.square() > 0.0;
+        if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
+        squares_[n] = held ? tooth.square() : 0.0;
         tooth.fresh = false;
         tooth.touched = tooth.density[1] > 0.0;
         tooth.density = {};
@@ -77,23 +84,67 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
         } else {
             pursue(walk, n);
         }
-        tooth.lag = tooth.seated ? (tooth.target - tooth.at) * axes_ : Vec3(0.0);
+        tooth.lag = tooth.seated ? (goal(tooth) - tooth.at) * axes_ : Vec3(0.0);
+    }
+    held_ = squared_norm8(squares_);
+    fades_ = std::min(drive.dt / settling, 1.0);
+    hang(walk);
+}
+
+/// Teeth that touch nothing below hang from those that bear: as far above their targets as these, in between linearly.
+/// Their lag stays, so the force does not change.
+void ToothRow::hang(const Walk& walk) noexcept {
+    const auto bears = [](const Tooth& tooth) { return tooth.seated && tooth.density[1] > 0.0 && tooth.lag.y > 0.0; };
+    const std::size_t none = teeth_.size();
+    std::size_t last = none;
+    double most = 0.0;  // no lift is greater than the elastic depth of the row
+    for (const Tooth& tooth : teeth_)
+        if (bears(tooth)) most = std::max(most, tooth.lag.y);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        if (!bears(teeth_[n])) continue;
+        const double here = std::min(teeth_[n].lag.y + teeth_[n].lifted, most);
+        const double from = last == none ? here : lifts_[last];
+        const std::size_t first = last == none ? 0 : last + 1;
+        for (std::size_t k = first; k < n; ++k) {
+            const double share = last == none ? 1.0 : static_cast<double>(k - last) / static_cast<double>(n - last);
+            lifts_[k] = from + (here - from) * share;
+        }
+        lifts_[n] = here;
+        last = n;
+    }
+    for (std::size_t k = last == none ? 0 : last + 1; k < teeth_.size(); ++k)
+        lifts_[k] = last == none ? 0.0 : lifts_[last];
+    const Vec3& y = axes_[1];
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        if (!tooth.seated || tooth.density[1] > 0.0 || tooth.lag.y > 0.0) continue;
+        const double up = lifts_[n] - tooth.lifted;
+        if (up < 0.0) {
+            tooth.lifted = std::max(0.0, tooth.lifted - descend(walk, n, -up));
+        } else if (up > 0.0) {
+            const Vec3 to = tooth.at - y * up;
+            if (walk.bone.value(to) < std::min(0.8 * radius_, walk.bone.value(tooth.at))) continue;
+            tooth.at = to;
+            tooth.lifted += up;
+        }
     }
 }
 
 void ToothRow::seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept {
     tooth.at = tooth.target;
+    tooth.lifted = 0.0;
     tooth.seated = tooth.fresh = bone.value(tooth.target) >= radius_;
 }
 
 void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     Tooth& tooth = teeth_[n];
-    const double distance = glm::length(tooth.target - tooth.at);
+    const Vec3 to = goal(tooth);
+    const double distance = glm::length(to - tooth.at);
     if (distance < 1e-12) return;
     // Far from bone, or drawn back to where there is none.
     const bool far = walk.bone.value(tooth.at) > radius_ + distance + pitch_ + walk.front.ahead;
-    if (far || (glm::dot(tooth.target - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(tooth.target) >= radius_)) {
-        tooth.at = tooth.target;
+    if (far || (glm::dot(to - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(to) >= radius_)) {
+        tooth.at = to;
         return;
     }
     if (distance > most_lag) return seat(walk.bone, tooth);
@@ -103,27 +154,54 @@ void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     slide(walk, n, 2);
 }
 
-/// How much deeper than `at`, near the place of tooth `n`, the row cut in the last tick, m; none where it cut nothing.
+/// Keeps the row as the last tick left it, and sees all that are kept from the blade of this tick.
+void ToothRow::remember(const Drive& drive) noexcept {
+    since_kept_ += drive.dt;
+    if (since_kept_ >= kept_every) {
+        since_kept_ = 0.0;
+        std::swap(past_[oldest_], past_[0]);
+        oldest_ = oldest_ + 1 < past_.size() ? oldest_ + 1 : 1;
+    }
+    PastRow& last = past_[0];
+    last.cut = false;
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        last.teeth[n].at = teeth_[n].at;
+        last.teeth[n].bears = drive.running && teeth_[n].seated && teeth_[n].density[1] > 0.0;
+        last.cut |= last.teeth[n].bears;
+    }
+    for (PastRow& row : past_)
+        if (row.cut)
+            for (Cut& tooth : row.teeth) tooth.seen = (tooth.at - origin_) * axes_;
+}
+
+/// How much deeper than `at`, near the place of tooth `n`, the row cut in the last ticks, m; none where it cut nothing.
 /// The bone that the teeth read is some ticks older.
 std::optional<double> ToothRow::cut_below(const Vec3& at, std::size_t n) const noexcept {
-    const std::size_t first = n > 2 ? n - 2 : 0, last = std::min(n + 2, cut_.size() - 1);
-    for (std::size_t k = first; k < last; ++k) {
-        const Cut &a = cut_[k], &b = cut_[k + 1];
-        if (!a.bears || !b.bears) continue;
-        const Vec3 from = (a.at - at) * axes_, to = (b.at - at) * axes_;
-        const double span = to.x - from.x;
-        if (!(from.x <= 0.0 && to.x >= 0.0 && span > 0.5 * pitch_ && span < 2.0 * pitch_)) continue;
-        const Vec3 there = from + (to - from) * (-from.x / span);
-        if (std::abs(there.z) > 0.25 * radius_) return std::nullopt;
-        return there.y;
+    const Vec3 here = (at - origin_) * axes_;
+    std::optional<double> deepest;
+    for (const PastRow& row : past_) {
+        if (!row.cut) continue;
+        const double moved = std::clamp((here.x - row.teeth[n].seen.x) / pitch_, -64.0, 64.0);
+        const auto near = static_cast<std::ptrdiff_t>(n) + static_cast<std::ptrdiff_t>(std::floor(moved));
+        const auto last = std::min(near + 2, static_cast<std::ptrdiff_t>(row.teeth.size()) - 1);
+        for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(near - 1, 0); k < last; ++k) {
+            const Cut &a = row.teeth[static_cast<std::size_t>(k)], &b = row.teeth[static_cast<std::size_t>(k) + 1];
+            if (!a.bears || !b.bears || a.seen.x > here.x || b.seen.x < here.x) continue;
+            const double span = b.seen.x - a.seen.x;
+            if (!(span > 0.5 * pitch_ && span < 2.0 * pitch_)) continue;
+            const double share = (here.x - a.seen.x) / span;
+            if (std::abs(a.seen.z + (b.seen.z - a.seen.z) * share - here.z) > 0.25 * radius_) continue;
+            const double below = a.seen.y + (b.seen.y - a.seen.y) * share - here.y;
+            deepest = std::max(deepest.value_or(below), below);
+        }
     }
-    return std::nullopt;
+    return deepest;
 }
 
 void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
     Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
-    double way = glm::dot(tooth.target - tooth.at, y);
+    double way = glm::dot(goal(tooth) - tooth.at, y);
     const double level = -walk.front.ahead + 0.15 * walk.voxel;
     if (way < 0.0) {
         // Back out. Teeth do not hook in: what they would be drawn into, they let go.
@@ -141,25 +219,34 @@ void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
         tooth.at += y * step;
         way -= step;
     }
+    descend(walk, n, way);
+}
+
+/// Along y as far as bone lets it, at most `way` m. Returns how far, m.
+double ToothRow::descend(const Walk& walk, std::size_t n, double way) noexcept {
+    Tooth& tooth = teeth_[n];
+    const Vec3 &y = axes_[1], &z = axes_[2];
+    double gone = 0.0;
     // In contact the interpolated distance ripples: hysteresis between touching and free.
     const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
-    for (int move = 0; move < most_plunges && way > 1e-12; ++move) {
+    for (int move = 0; move < most_plunges && way - gone > 1e-12; ++move) {
         const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
         if (contact.density > 0.0) {
             tooth.density[1] = contact.density;
-            return;
+            break;
         }
-        const double step = std::min(way, contact.clear);
+        const double step = std::min(way - gone, contact.clear);
         tooth.at += y * step;
-        way -= step;
+        gone += step;
     }
+    return gone;
 }
 
 /// Slides along the blade (axis 0) or across it (2), up slopes where that shortens the lag.
 void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
     Tooth& tooth = teeth_[n];
     const Vec3 &y = axes_[1], &z = axes_[2];
-    const Vec3 lag = (tooth.target - tooth.at) * axes_;
+    const Vec3 lag = (goal(tooth) - tooth.at) * axes_;
     const double sign = lag[axis] < 0.0 ? -1.0 : 1.0, weight = axis == 2 ? tooth.bending : 1.0;
     double side = std::abs(lag[axis]), deep = std::max(lag.y, 0.0);
     if (side < 1e-12) return;
@@ -193,19 +280,23 @@ void ToothRow::slide(const Walk& walk, std::size_t n, int axis) noexcept {
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
-            double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
-            if (short_by <= 0.0) break;
-            if (const std::optional<double> below = axis == 0 ? cut_below(to, n) : std::nullopt) {
-                if (*below >= -1e-9) break;
-                short_by = std::min(short_by, -*below);
+            const double floor = walk.front.floor(walk.bone, to, y, z);
+            double rise = 0.0;
+            if (const std::optional<double> below = cut_below(to, n)) {
+                // Bone is where both say so, the version that is read and the row itself.
+                rise = std::min(-*below, -walk.front.ahead - floor);
+                if (rise <= 1e-9) break;
+            } else {
+                const double short_by = std::min(before, level) - floor;
+                if (short_by <= 0.0) break;
+                // Beside a wall the distance grows more slowly than the tooth rises.
+                rise = climb < 3 ? 1.2 * short_by + 1e-9 : std::max(2.0 * short_by, 0.02 * walk.voxel);
             }
-            // Beside a wall the distance grows more slowly than the tooth rises.
-            short_by = std::max(short_by, 0.02 * walk.voxel);
-            climbed += short_by;
+            climbed += rise;
             const double left = side - step, up = deep + climbed;
             const bool shorter = up * up + weight * left * left < deep * deep + weight * side * side;
             if (climb == most_climbs || !shorter) return;
-            to -= y * short_by;
+            to -= y * rise;
         }
         tooth.at = to;
         side -= step;
@@ -264,6 +355,23 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
         cutting += cuts_[n] > 0.0;
     }
     return cutting > 0.0 ? sum / cutting : 0.0;
+}
+
+void ToothRow::settle() noexcept {
+    const double norm = squared_norm();
+    for (double share = fades_; share > 0.1 * fades_ && norm < held_; share *= 0.5) {
+        for (std::size_t n = 0; n < teeth_.size(); ++n) {
+            const Tooth& tooth = teeth_[n];
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? share * tooth.lifted : 0.0;
+            squares_[n] = tooth.square() + cuts_[n] * (2.0 * tooth.lag.y + cuts_[n]);
+        }
+        if (squared_norm8(squares_) > held_) continue;
+        for (std::size_t n = 0; n < teeth_.size(); ++n) {
+            teeth_[n].lifted -= cuts_[n];
+            teeth_[n].lag.y += cuts_[n];
+        }
+        return;
+    }
 }
 
 void ToothRow::fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept {

@@ -21,7 +21,8 @@ namespace tactus::saw {
 struct Tooth {
     Vec3 at{0.0, 0.0, 0.0};  ///< where the bone holds it, in the bone's frame, m
     Vec3 target{0.0, 0.0, 0.0};  ///< where the blade is held
-    Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, m
+    double lifted = 0.0;  ///< m along −y: how far bone that other teeth bear on holds this one above its target
+    Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, less `lifted`, m
     std::array<double, 3> density{};  ///< kg/m³ of the bone that stops it along x, y, z; 0: free
     double bending = 1.0;  ///< share of the contact stiffness across the blade that bending leaves
     bool seated = false;  ///< false: it was placed inside bone; it feels nothing until it has been out
@@ -43,6 +44,10 @@ struct Drive {
 /// all, except that a running blade advances it along its own force, by an implicit step of the cutting law. It never
 /// moves away from its target, so its spring only loses energy: whatever the bone does, the force is passive, and bone
 /// never pulls. A node that the blade draws back into bone lets go.
+///
+/// The stiffness is that of the simulation, not of steel on bone: a real blade does not sink into bone by the lag of its
+/// teeth. So a tooth beside the bone hangs no deeper than the teeth that bear, and is not caught at the bone's side. When
+/// it meets bone itself, it bears from there on, and its lift fades.
 class ToothRow {
 public:
     ToothRow() = default;
@@ -54,6 +59,10 @@ public:
 
     /// Cuts for one tick: `spring` N/m is k of lag_norm.hpp. Returns the mean advance of the cutting nodes, m.
     double cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept;
+
+    /// After the cut: teeth that came to bear take more of the thrust. Their lifts fade into lags, as far as the springs
+    /// then hold no more than they held when the hand had moved: with what teeth that cut, slid or left bone have freed.
+    void settle() noexcept;
 
     /// ‖lag‖₈², m².
     double squared_norm() noexcept;
@@ -68,15 +77,26 @@ public:
 
 private:
     struct Walk;
-    /// Where a tooth was at the end of the last tick, and whether it cut.
+    /// Where a tooth was, and whether it cut.
     struct Cut {
-        Vec3 at{0.0, 0.0, 0.0};
+        Vec3 at{0.0, 0.0, 0.0};  ///< bone's frame
+        Vec3 seen{0.0, 0.0, 0.0};  ///< about the blade of this tick, its axes
         bool bears = false;
     };
+    /// The row at the end of an earlier tick. What it cut may still be in the version of the bone that is read.
+    struct PastRow {
+        std::vector<Cut> teeth;
+        bool cut = false;  ///< a tooth bore
+    };
 
+    /// Where its spring pulls a tooth.
+    Vec3 goal(const Tooth& tooth) const noexcept { return tooth.target - axes_[1] * tooth.lifted; }
+    void remember(const Drive& drive) noexcept;
     void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
     void pursue(const Walk& walk, std::size_t n) noexcept;
+    double descend(const Walk& walk, std::size_t n, double way) noexcept;
     void plunge(const Walk& walk, std::size_t n) noexcept;
+    void hang(const Walk& walk) noexcept;
     void slide(const Walk& walk, std::size_t n, int axis) noexcept;
     std::optional<double> cut_below(const Vec3& at, std::size_t n) const noexcept;
     double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes) const noexcept;
@@ -85,9 +105,14 @@ private:
     ToothSharing sharing_;
     double pitch_ = 0.0, radius_ = 0.0, first_ = 0.0;
     std::vector<Tooth> teeth_;
-    std::vector<double> squares_, cuts_;
-    std::vector<Cut> cut_;
+    std::vector<double> squares_, cuts_, lifts_;
+    std::array<PastRow, 8> past_;  // the last tick's, then rows kept every few milliseconds
+    std::size_t oldest_ = 1;  // of those
+    double since_kept_ = 0.0;  // s
+    Vec3 origin_{0.0, 0.0, 0.0};  // of the blade
     Mat3 axes_{1.0};
+    double fades_ = 0.0;  // share of a lift that fades in this tick
+    double held_ = 0.0;  // m², the squared norm when the hand had moved and no tooth
 };
 
 }  // namespace tactus::saw

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/content_hash.hpp"
 #include "dsp/carve/carver.hpp"
 #include "dsp/saw/saw_shape.hpp"
 #include "dsp/volume/components.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,6 +51,7 @@ struct Carve {
 
     void prepare(const Setup& setup) {
         bone_ = source.shared();
+        name_ = setup.name;
         refine(setup);
         volume::BoneEditorOptions options;
         options.max_dirty = static_cast<int>(bricks_per_tick);
@@ -84,6 +87,7 @@ struct Carve {
     void report(Report& report) const {
         std::vector<double> classes;
         for (const double volume : by_density_) classes.push_back(volume * 1e9);
+        report.set("carve_sources", name_, bone::content_hash(*source.shared()));
         report.set("carve", "removed_mm3", total_ * 1e9);
         report.set("carve", "by_density", classes);
         report.set("carve", "kerf_voxels", carver_.kerf_voxels());
@@ -164,6 +168,7 @@ private:
     }
 
     std::shared_ptr<const bone::Bone> bone_;
+    std::string name_;
     std::unique_ptr<volume::BoneEditor> editor_;
     carve::Carver carver_;
     std::vector<carve::CarveSample> samples_;

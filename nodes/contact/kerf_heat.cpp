@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/kerf_heat.hpp"
 
+#include "dsp/saw/heat_partition.hpp"
+
 #include "graph/node/node.hpp"
 
 #include <glm/geometric.hpp>
@@ -21,10 +23,15 @@ struct KerfHeat {
     Batch<double> cutting{optional, "force of the teeth along the stroke; unconnected: the thrust over 'thrust_ratio'",
                           "N"};
     Batch<double> teeth{optional, "teeth that bear; with 'cutting', in place of 'contact'", "1"};
+    Batch<double> feed{
+        optional,
+        "advance of the teeth: the more a tooth takes, the more heat leaves with the chip (Weiner 1955); "
+        "unconnected: 'share'",
+        "m/s"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
     In<bool> irrigated{optional, "water flows into the kerf; unconnected: 'irrigation'"};
-    Out<double> rise{"of the hottest place now, above the body", "K"};
+    Out<double> rise{"of the hottest place beside the kerf now, above the body", "K"};
     Out<double> peak{"of the hottest place since the start, above the body", "K"};
     Out<double> hot_time{"longest time that one place was hotter than 'limit'", "s"};
     Out<double> hot_reach{"greatest distance from the middle of the cut at which bone was hotter than 'limit'", "m"};
@@ -34,15 +41,19 @@ struct KerfHeat {
     Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts, unless 'teeth' says"};
     Flag irrigation{false, "water flows into the kerf, unless 'irrigated' is connected"};
     Param limit{"10 K", "1 K", "60 K", "rise above the body that counts as hot"};
-    Param share{structural, "0.5", "0", "1", "of the heat that enters the bone; an assumption"};
+    Param share{structural, "0.5", "0", "1",
+                "of the heat that enters the bone, unless 'feed' is connected; an assumption"};
     Param coolant{structural, "-17 K", "-37 K", "0 K", "the water's temperature above the body's"};
-    Param transfer{structural, "2 kW/m^2/K", "0 W/m^2/K", "100 kW/m^2/K", "heat transfer of the water; an assumption"};
+    Param transfer{structural, "10 kW/m^2/K", "0 W/m^2/K", "100 kW/m^2/K",
+                   "heat transfer of the water that fills the slot between blade and wall"};
+    Param kerf{structural, "1 mm", "0 mm", "8 mm", "width of the cut: the bone in it leaves with its heat"};
 
     void prepare(const Setup&) {
         saw::KerfMaterial material;
-        material.share = share;
         material.coolant = coolant;
         material.transfer = transfer;
+        material.kerf = kerf;
+        diffusivity_ = material.diffusivity();
         heat_.emplace(material);
         cut_.reset();
     }
@@ -65,6 +76,7 @@ struct KerfHeat {
         } else if (cuts) {
             heat = 2.0 * rate * stroke * thrust / thrust_ratio / contact;
         }
+        heat *= share_of(mean(feed));
         if (cut_ && is_valid(now)) depth_ = glm::dot(now.position - cut_->origin, cut_->into);
         heat_->advance(tick.elapsed_seconds(), cut_ ? depth_ : 0.0, heat,
                        irrigated.connected ? irrigated.get() : static_cast<bool>(irrigation));
@@ -84,6 +96,12 @@ private:
     struct Cut {
         Vec3 origin, into, across;
     };
+
+    /// Of the heat, into the bone. A cycle of the stroke has two cuts, so speed times depth of cut is stroke times feed.
+    double share_of(double advance) const noexcept {
+        if (!feed.connected) return share;
+        return saw::share_into_bone(stroke, advance, saw::tangent_of_shear(saw::CuttingLaw{}), diffusivity_);
+    }
 
     static double mean(const Batch<double>& batch) noexcept {
         double sum = 0.0, count = 0.0;
@@ -109,10 +127,10 @@ private:
 
     std::optional<saw::KerfHeat> heat_;
     std::optional<Cut> cut_;
-    double depth_ = 0.0;
+    double depth_ = 0.0, diffusivity_ = 1.0;
 };
 
-TACTUS_NODE(KerfHeat, pose, load, cutting, teeth, running, strokes, irrigated, rise, peak, hot_time, hot_reach,
-            stroke_rate, stroke, thrust_ratio, contact, irrigation, limit, share, coolant, transfer)
+TACTUS_NODE(KerfHeat, pose, load, cutting, teeth, feed, running, strokes, irrigated, rise, peak, hot_time, hot_reach,
+            stroke_rate, stroke, thrust_ratio, contact, irrigation, limit, share, coolant, transfer, kerf)
 
 }  // namespace tactus::nodes

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 
 namespace tactus::nodes {
@@ -24,6 +25,10 @@ struct SawBlade {
     Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
     Out<double> feed{"advance of the teeth that cut", "m/s"};
     Out<double> teeth{"teeth that bear on bone", "1"};
+    Out<double> passing{
+        "teeth that pass a place at mid-stroke: speed of the teeth over their pitch; 0 while the saw "
+        "stands",
+        "Hz"};
     Out<double> penetration{"greatest elastic distance of a point of the blade from where bone holds it", "m"};
     Out<bool> in_contact{"bone holds at least one point"};
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
@@ -84,6 +89,7 @@ struct SawBlade {
         stroke_force = now.along;
         feed = now.feed;
         teeth = now.teeth;
+        passing = drive.running ? std::numbers::pi * drive.rate * stroke / tooth_pitch : 0.0;
         penetration = now.lag;
         in_contact = now.count > 0;
         blade_->teeth().fill(last_, pose.get(), drive.running);
@@ -102,7 +108,8 @@ private:
     ToolReport told_;
 };
 
-TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, penetration, in_contact,
-            front, stiffness, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
+TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, passing, penetration,
+            in_contact, front, stiffness, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke,
+            tooth_pitch)
 
 }  // namespace tactus::nodes

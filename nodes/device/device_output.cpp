@@ -78,6 +78,7 @@ struct DeviceOutput {
         const double force = glm::length(out.force);
         largest_ = std::max(largest_, force);
         sum_ += force;
+        note_felt(tick, force);
     }
 
     void report(Report& report) const {
@@ -86,6 +87,7 @@ struct DeviceOutput {
         report.set("force", "max_N", largest_);
         report.set("force", "mean_N", s.ticks > 0 ? sum_ / ticks : 0.0);
         report.set("force", "ticks", ticks);
+        tell_felt(report);
         report.set("force", "raw_max_N", s.max_force);
         report.set("force", "raw_max_step_N", s.max_force_step);
         report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
@@ -112,6 +114,29 @@ struct DeviceOutput {
     }
 
 private:
+    /// A simulation goes on while forces are off: what it asks for then is not what the hand felt.
+    void note_felt(const Tick& tick, double force) noexcept {
+        const double asked = glm::length(wrench.get().force);
+        if (!(asked > control::ForceLimits{}.engage_force)) return;
+        ++asked_ticks_;
+        felt_ += force;
+        if (limiter_.engaged()) return;
+        if (!(off_s_ > 0.0)) off_from_ = tick.time_seconds();
+        off_until_ = tick.time_seconds();
+        off_s_ += seconds(tick.period);
+    }
+
+    /// Of several hands that for which forces were off longest.
+    void tell_felt(Report& report) const {
+        const auto& told = report.sections["force"];
+        if (const auto other = told.find("off_s"); other != told.end() && std::get<double>(other->second) > off_s_)
+            return;
+        report.set("force", "felt_mean_N", asked_ticks_ > 0 ? felt_ / static_cast<double>(asked_ticks_) : 0.0);
+        report.set("force", "off_s", off_s_);
+        report.set("force", "off_from_s", off_from_);
+        report.set("force", "off_until_s", off_until_);
+    }
+
     /// Observes also while it is off, so that the report says what the hand was given.
     Wrench capped(const Wrench& limited, bool is_good, double elapsed_s) noexcept {
         const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
@@ -162,6 +187,8 @@ private:
     double most_granted_ = 0.0, most_capped_ = 0.0;
     std::int64_t capped_ticks_ = 0;
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
+    double felt_ = 0.0, off_s_ = 0.0, off_from_ = 0.0, off_until_ = 0.0;
+    std::int64_t asked_ticks_ = 0;
     std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
     std::string name_;
     control::Fault last_fault_ = control::Fault::none;

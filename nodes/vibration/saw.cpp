@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/modelled_saw.hpp"
 #include "dsp/vibration/saw_voice.hpp"
+#include "dsp/vibration/tooth_passing.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 
@@ -13,6 +14,12 @@ struct Saw {
     In<Ramp> load{optional, "thrust on the blade; unconnected: 0", "N"};
     In<bool> trigger{optional, "the saw runs while true; unconnected: it always runs"};
     In<Ramp> density{optional, "apparent density of the bone; only a model follows it; unconnected: unknown", "kg/m^3"};
+    In<Ramp> tooth_force{optional,
+                         "of the teeth along the stroke, saw_blade.stroke_force: with 'teeth' and 'passing' a "
+                         "model sounds the teeth as they pass; unconnected: as recorded",
+                         "N"};
+    In<Ramp> teeth{optional, "teeth that bear, saw_blade.teeth", "1"};
+    In<Ramp> passing{optional, "speed of the teeth at mid-stroke over their pitch, saw_blade.passing", "Hz"};
     Out<Signal> signal{"the vibration; recordings that are not calibrated are played as 100 m/s^2 rms", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
@@ -26,6 +33,7 @@ struct Saw {
     Param spin_down{structural, "150 ms", "0 ms", "10 s", "time constant of the rate after it is released"};
     Param load_on{structural, "0.5 N", "0 N", "100 N", "cutting starts above this load"};
     Param load_off{structural, "0.3 N", "0 N", "100 N", "cutting ends below this load"};
+    Param mass{structural, "0.5 kg", "10 g", "10 kg", "that the tooth_force shakes: the saw and the hand's share"};
     Param fade{structural, "20 ms", "1 ms", "1 s", "duration of the cross-fade between recordings"};
 
     void prepare(const Setup& setup) {
@@ -39,15 +47,18 @@ struct Saw {
             setup.fail(error.message());
         }
         name_ = setup.name;
+        highest_ = 0.42 * setup.rate();
         calibrated_ = saw->calibrated();
     }
 
     void process(const Tick& tick) noexcept {
         const bool pulled = !trigger.connected || trigger;
         const double commanded = blade_rate;
+        const bool has_teeth = tooth_force.connected && teeth.connected && passing.connected;
         if (modelled_) {
             for (int i = 0; i < tick.frames; ++i) {
-                signal[i] = model_.tick(load[i], density[i], pulled, commanded);
+                const double beat = has_teeth ? teeth_beat(i) : 0.0;
+                signal[i] = static_cast<float>(model_.tick(load[i], density[i], pulled, commanded) + beat);
                 rate[i] = model_.blade().rate();
                 running[i] = model_.blade().state() != vibration::SawState::off;
             }
@@ -65,14 +76,22 @@ struct Saw {
     }
 
 private:
+    /// m/s².
+    double teeth_beat(int i) noexcept {
+        const vibration::BladeMotion& blade = model_.blade();
+        const vibration::TeethInBone now{tooth_force[i], teeth[i], passing[i]};
+        return gain * vibration::tooth_passing_force(now, blade.cycles(), blade.rate(), highest_) / mass;
+    }
+
     vibration::SawVoice voice_;
     vibration::ModelledSaw model_;
+    double highest_ = 0.0;  // Hz
     bool modelled_ = false;
     std::string name_;
     bool calibrated_ = true;
 };
 
-TACTUS_NODE(Saw, load, trigger, density, signal, rate, running, saw, voice, blade_rate, gain, spin_up, spin_down,
-            load_on, load_off, fade)
+TACTUS_NODE(Saw, load, trigger, density, tooth_force, teeth, passing, signal, rate, running, saw, voice, blade_rate,
+            gain, spin_up, spin_down, load_on, load_off, mass, fade)
 
 }  // namespace tactus::nodes

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/io/lost_device.hpp"
+#include "tools/session/force_summary.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/task_summary.hpp"
 
@@ -73,15 +74,6 @@ std::vector<double> list_of(const Report& report, const char* section, const cha
     if (value == found->second.end()) return {};
     const auto* list = std::get_if<std::vector<double>>(&value->second);
     return list ? *list : std::vector<double>{};
-}
-
-double number(const Report& report, const char* section, const char* key, double otherwise = 0.0) {
-    const auto s = report.sections.find(section);
-    if (s == report.sections.end()) return otherwise;
-    const auto k = s->second.find(key);
-    if (k == s->second.end()) return otherwise;
-    const double* v = std::get_if<double>(&k->second);
-    return v ? *v : otherwise;
 }
 
 }  // namespace
@@ -157,28 +149,19 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
         if (const std::string late = describe_lateness(*group); !late.empty())
             text += fmt::format("            {}\n", late);
     }
-    if (const auto never = report.sections.find("forces_never_engaged"); never != report.sections.end())
-        for (const auto& [node, newton] : never->second)
-            text += fmt::format(
-                "  {}: the hand never felt a force. It began in contact, where the patch asked for up to {:.2g} N; "
-                "begin with the hand away from what it touches\n",
-                node, std::get<double>(newton));
-    if (number(report, "contact", "fraction", -1.0) >= 0.0)
-        text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep; thrust {:.2f} N mean\n",
-                            100.0 * number(report, "contact", "fraction"),
-                            number(report, "contact", "max_penetration_mm"), number(report, "force", "thrust_mean_N"));
+    text += force_text(report);
     if (report.sections.contains("coupling"))
         text += fmt::format("  touching {:.0f} % of the time, at most {:.2f} mm deep; balanced {:.1f} % of the ticks\n",
-                            100.0 * number(report, "coupling", "in_contact"),
-                            number(report, "coupling", "penetration_max_mm"),
-                            100.0 * number(report, "coupling", "balanced"));
+                            100.0 * number_in(report, "coupling", "in_contact"),
+                            number_in(report, "coupling", "penetration_max_mm"),
+                            100.0 * number_in(report, "coupling", "balanced"));
     if (report.sections.contains("carve"))
-        text += fmt::format("  removed {:.1f} mm³; the bone is {}\n", number(report, "carve", "removed_mm3"),
-                            number(report, "carve", "severed") > 0.0 ? "severed" : "not severed");
+        text += fmt::format("  removed {:.1f} mm³; the bone is {}\n", number_in(report, "carve", "removed_mm3"),
+                            number_in(report, "carve", "severed") > 0.0 ? "severed" : "not severed");
     if (const std::vector<double> at = list_of(report, "contact", "blade_mm"); at.size() == 3)
         text += fmt::format(
             "  the blade touched no bone; it ends at {:.1f}, {:.1f}, {:.1f} mm, {:.1f} mm from the surface\n", at[0],
-            at[1], at[2], number(report, "contact", "blade_clearance_mm"));
+            at[1], at[2], number_in(report, "contact", "blade_clearance_mm"));
     for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
     for (const auto& slot : engine.host().devices)
@@ -220,7 +203,14 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
             throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
         return found->get<std::string>();
     };
-    return {text("file"), text("hash"), text("record")};
+    TaskSummary summary{text("file"), text("hash"), text("record"), {}, false};
+    if (const auto sources = json.find("carve_sources"); sources != json.end() && sources->is_object())
+        for (const auto& [node, hash] : sources->items())
+            if (hash.is_string()) summary.bones.push_back(hash.get<std::string>());
+    if (const auto carve = json.find("carve"); carve != json.end() && carve->is_object())
+        if (const auto refined = carve->find("refined"); refined != carve->end() && refined->is_number())
+            summary.refined = refined->get<double>() > 0.0;
+    return summary;
 }
 
 }  // namespace tactus::session

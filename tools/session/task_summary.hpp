@@ -4,12 +4,15 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tactus::session {
 
 struct TaskSummary {
     std::string file, hash;  ///< of the task
     std::string record;      ///< name of the table of the attempt, beside the summary
+    std::vector<std::string> bones;  ///< bone::content_hash of each bone that was cut; empty: the run does not say
+    bool refined = false;  ///< a bone was resampled around the site
 };
 
 /// Reads FOLDER/summary.json. Throws Error when there is none, when the run did not come to its end, or when it had no

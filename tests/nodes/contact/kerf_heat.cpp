@@ -33,11 +33,12 @@ TEST_CASE("a kerf gets as hot as the teeth's work in it says") {
     cut(node, 8.0);
     // 8 N of thrust over 1.6 is 5 N along the teeth, at a mean speed of 2 × 3 mm × 228 Hz, over 15 mm of teeth.
     saw::KerfHeat expected;
-    for (int k = 0; k < 600; ++k) expected.advance(1.0 / 60.0, 0.67e-3 * k / 60.0, 5.0 * 6e-3 * 228.0 / 15e-3, false);
+    for (int k = 0; k < 600; ++k)
+        expected.advance(1.0 / 60.0, 0.67e-3 * k / 60.0, 0.5 * 5.0 * 6e-3 * 228.0 / 15e-3, false);
     // The hottest cell depends a little on where in it the source is.
     CHECK(node.last<double>("peak") == Approx(expected.peak()).epsilon(0.03));
     CHECK(node.last<double>("rise") == Approx(expected.hottest()).epsilon(0.07));
-    CHECK(node.last<double>("hot_time") == Approx(expected.longest_above()).margin(0.05));
+    CHECK(node.last<double>("hot_time") == Approx(expected.longest_above()).margin(0.1));
     CHECK(node.last<double>("peak") > 20.0);
 }
 
@@ -49,7 +50,7 @@ TEST_CASE("half the thrust is half the heat, no thrust and a saw that stands are
     off.feed<Pose>("pose", advancing);
     off.feed<double>("load", [](std::int64_t) { return 8.0; });
     off.feed<bool>("running", false);
-    off.disconnect("strokes").disconnect("irrigated");
+    off.disconnect("strokes").disconnect("irrigated").disconnect("feed");
     off.prepare();
     off.run(600);
     CHECK(half.last<double>("peak") == Approx(0.5 * full.last<double>("peak")).epsilon(1e-3));
@@ -64,7 +65,7 @@ TEST_CASE("a second cut elsewhere is in cool bone, and the hottest of both count
         if (k >= 600) pose.position.y += 20e-3;
         return pose;
     });
-    node.feed<double>("load", [](std::int64_t k) { return k < 600 ? 8.0 : 2.0; });
+    node.feed<double>("load", [](std::int64_t k) { return k < 600 * 20 ? 8.0 : 2.0; });
     node.disconnect_optional();
     node.prepare();
     node.run(1200);
@@ -82,14 +83,15 @@ TEST_CASE("heat follows the force along the teeth and the teeth that bear, and t
         node.feed<double>("cutting", [cutting](std::int64_t) { return cutting; });
         node.feed<double>("teeth", [teeth](std::int64_t) { return teeth; });
         node.set("stroke", stroke);
-        node.disconnect("strokes").disconnect("irrigated").disconnect("running");
+        node.disconnect("strokes").disconnect("irrigated").disconnect("running").disconnect("feed");
         node.prepare();
         node.run(600);
         return node.last<double>("peak");
     };
     const double one = peak(5.0, 4.0, "3 mm");
     saw::KerfHeat expected;
-    for (int k = 0; k < 600; ++k) expected.advance(1.0 / 60.0, 0.67e-3 * k / 60.0, 2.0 * 228.0 * 5.0 / 4.0, false);
+    for (int k = 0; k < 600; ++k)
+        expected.advance(1.0 / 60.0, 0.67e-3 * k / 60.0, 0.5 * 2.0 * 228.0 * 5.0 / 4.0, false);
     CHECK(one == Approx(expected.peak()).epsilon(0.03));
     CHECK(peak(5.0, 4.0, "6 mm") == one);
     CHECK(peak(10.0, 8.0, "3 mm") == Approx(one).epsilon(1e-9));

@@ -99,6 +99,25 @@ TEST_CASE("device_output lets go, and says why, when the device stops delivering
     CHECK(std::get<std::string>(node.report().sections.at("force").at("fault")).find("stopped") != std::string::npos);
 }
 
+TEST_CASE("device_output tells what the hand felt, and since when forces were off while the patch asked for some") {
+    NodeHarness node("device_output", servo);
+    node.set("recover_after", "0 s");
+    node.device_feed = [](std::int64_t k, DevicePort& port) {
+        port.sample = sample_at(0.0, k);
+        if (k >= 600) port.sample.valid = false;
+    };
+    node.feed<Wrench>("wrench",
+                      [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{k < 600 ? 2.0 : 8.0, 0.0, 0.0}, {}}; });
+    node.prepare();
+    node.run(1500);
+    const Report report = node.report();
+    CHECK(number_of(report, "force", "off_s") == Approx(0.9).margin(0.02));
+    CHECK(number_of(report, "force", "off_from_s") == Approx(0.6).margin(0.02));
+    CHECK(number_of(report, "force", "off_until_s") == Approx(1.499));
+    // 300 ticks of 2 N, 900 of none.
+    CHECK(number_of(report, "force", "felt_mean_N") == Approx(0.5).margin(0.05));
+}
+
 TEST_CASE("workspace and device_wrench together keep the power of hand and tool equal") {
     const Pose handle{{0.03, 0.01, -0.02}, rotation_by({0.3, 0.7, -0.2})};
     const Vec3 velocity(0.2, -0.1, 0.05);

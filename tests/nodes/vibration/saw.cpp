@@ -3,6 +3,10 @@
 #include "tests/support/node_harness.hpp"
 
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <tuple>
+#include <vector>
 
 using namespace tactus;
 using test::NodeHarness;
@@ -16,7 +20,77 @@ double level(const std::vector<float>& samples, std::size_t first) {
     return std::sqrt(sum / 9600.0);
 }
 
+/// The teeth alone: a model's sound with them less the sound without, over 1 s at `strokes`, after half a second.
+std::vector<double> teeth_alone(double strokes, double stroke, double pitch, double force, double mass) {
+    std::vector<double> alone;
+    for (const double n : {force, 0.0}) {
+        NodeHarness node("saw");
+        node.set("blade_rate", std::to_string(strokes) + " Hz").set("voice", "model").disconnect("trigger");
+        node.disconnect("density").set("mass", std::to_string(mass) + " kg");
+        node.feed<double>("load", [](std::int64_t) { return 7.0; });
+        node.feed<double>("tooth_force", [n](std::int64_t) { return n; });
+        node.feed<double>("teeth", [](std::int64_t) { return 4.0; });
+        const double passing = std::numbers::pi * strokes * stroke / pitch;
+        node.feed<double>("passing", [passing](std::int64_t) { return passing; });
+        node.prepare();
+        node.run(72000);
+        const auto signal = node.values<float>("signal");
+        if (alone.empty()) alone.assign(signal.begin() + 24000, signal.end());
+        else
+            for (std::size_t i = 0; i < alone.size(); ++i) alone[i] -= static_cast<double>(signal[24000 + i]);
+    }
+    return alone;
+}
+
+double amplitude(const std::vector<double>& samples, double hz) {
+    double re = 0.0, im = 0.0;
+    const auto count = static_cast<double>(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double hann = 1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / count);
+        re += hann * samples[i] * std::cos(2.0 * std::numbers::pi * hz * static_cast<double>(i) / 48000.0);
+        im += hann * samples[i] * std::sin(2.0 * std::numbers::pi * hz * static_cast<double>(i) / 48000.0);
+    }
+    return 2.0 * std::hypot(re, im) / count;
+}
+
 }  // namespace
+
+TEST_CASE("in a model the line of the passing teeth follows the speed of the stroke over the tooth pitch") {
+    // The beat is cos(β sin φ)·cos φ with β = speed/(pitch·rate): its strongest order of the stroke is the odd one next
+    // below β, where the blade is near its greatest speed.
+    for (const auto& [strokes, stroke, pitch] :
+         {std::tuple{120.0, 3e-3, 1.411e-3}, std::tuple{228.0, 3e-3, 1.411e-3}, std::tuple{300.0, 3e-3, 1.411e-3},
+          std::tuple{228.0, 3e-3, 0.94e-3}, std::tuple{228.0, 5e-3, 1.411e-3}}) {
+        const std::vector<double> alone = teeth_alone(strokes, stroke, pitch, 4.0, 0.5);
+        double strongest = 0.0, at = 0.0, sum = 0.0;
+        for (int order = 1; order <= 20; ++order) {
+            const double level = amplitude(alone, order * strokes);
+            if (level > strongest) {
+                strongest = level;
+                at = order * strokes;
+            }
+        }
+        for (const double x : alone) sum += x * x / static_cast<double>(alone.size());
+        const double speed = std::numbers::pi * strokes * stroke;  // at mid-stroke
+        CAPTURE(strokes, stroke, pitch, at, strongest, speed / pitch);
+        CHECK(at > 0.65 * speed / pitch);
+        CHECK(at < 1.05 * speed / pitch);
+        // A tooth's share of 1 N on 0.5 kg: 2 m/s² at most.
+        CHECK(std::sqrt(sum) == Approx(1.0).epsilon(0.15));
+        CHECK(amplitude(alone, 1.5 * speed / pitch) < 0.1 * strongest);
+    }
+}
+
+TEST_CASE("in a model teeth that are out of the bone are silent, and half the force is half the sound") {
+    const auto rms = [](const std::vector<double>& x) {
+        double sum = 0.0;
+        for (const double v : x) sum += v * v;
+        return std::sqrt(sum / static_cast<double>(x.size()));
+    };
+    CHECK(rms(teeth_alone(228.0, 3e-3, 1.411e-3, 0.0, 0.5)) == 0.0);
+    const double one = rms(teeth_alone(228.0, 3e-3, 1.411e-3, 4.0, 0.5));
+    CHECK(rms(teeth_alone(228.0, 3e-3, 1.411e-3, 2.0, 0.5)) == Approx(0.5 * one).epsilon(1e-3));
+}
 
 TEST_CASE("a saw spins up to its rate while the trigger is held, and stops after") {
     NodeHarness node("saw");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus session: a trainee's tasks in order, with their takes, resumed after a crash.
+#include "assets/bone/content_hash.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/training/task_file.hpp"
 #include "dsp/core/error.hpp"
@@ -101,6 +102,18 @@ void keep_score(const fs::path& attempt) {
     }
 }
 
+/// Another bone than the task's could be cut, but not scored.
+void check_bone(const SessionChoice& choice, const training::TaskFile& task) {
+    for (const std::string& asset : choice.run.overrides.assets) {
+        if (!asset.starts_with("bone=")) continue;
+        if (bone::content_hash(bone::load_bone(asset.substr(5))) != bone::content_hash(bone::load_bone(task.bone)))
+            throw Error(
+                fmt::format("--asset {}: is another bone than {} of the task '{}', so its cut could not be "
+                            "scored; write a task file for it",
+                            asset, task.bone.string(), task.title));
+    }
+}
+
 int run_session(const SessionChoice& choice) {
     TrainingSession::Choice wanted{choice.trainee, choice.out, {}, choice.is_new};
     check_pseudonym(choice.trainee);
@@ -112,6 +125,7 @@ int run_session(const SessionChoice& choice) {
         const training::Task task = training::load_task(file);
         wanted.tasks.push_back({file.stem().string(), file, task.hash});
         tasks.push_back(task);
+        check_bone(choice, task);
         load_plan(attempt_choice(choice, task, "attempt"), assets);
     }
     TrainingSession session(wanted);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/training/score.hpp"
 
+#include "assets/bone/content_hash.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/table/number_table.hpp"
 #include "dsp/core/error.hpp"
@@ -13,6 +14,7 @@
 #include "tools/session/training_session.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +30,7 @@ namespace {
 constexpr double degree = 57.29577951308232;
 
 /// The bone that was cut: the one of the run that has the samples of the task's.
-bone::Bone bone_after(const fs::path& folder, const bone::Bone& before) {
+bone::Bone bone_after(const fs::path& folder, const bone::Bone& before, bool refined) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder))
         if (entry.path().extension() == ".vdb") files.push_back(entry.path());
@@ -39,15 +41,23 @@ bone::Bone bone_after(const fs::path& folder, const bone::Bone& before) {
         const volume::Grid &a = before.distance, &b = bone.distance;
         if (a.size == b.size && a.origin == b.origin && a.spacing == b.spacing) return bone;
     }
-    throw Error(fmt::format("{}: the run cut another bone than the task's", folder.string()));
+    if (refined)
+        throw Error(
+            fmt::format("{}: the bone was too coarse for the kerf and was resampled around the site, so its cut "
+                        "cannot be compared; import the task's bone with a finer --spacing and cut again",
+                        folder.string()));
+    throw Error(fmt::format("{}: the run has no bone on the grid of the task's", folder.string()));
 }
 
-/// Where a bone has grown, it was not cut from this one.
-void check_same_bone(const bone::Bone& before, const bone::Bone& after, const fs::path& folder) {
-    const auto slack = static_cast<float>(0.1 * before.distance.spacing.x);
-    for (std::size_t n = 0; n < before.distance.values.size(); ++n)
-        if (before.distance.values[n] > 0.0f && after.distance.values[n] < -slack)
-            throw Error(fmt::format("{}: the run cut another bone than the task's", folder.string()));
+/// By content, not by name: the bone that the run began with, or a file of the same name that holds another one.
+void check_same_bone(const session::TaskSummary& said, const ScoredRun& run, const fs::path& folder) {
+    const std::string wanted = bone::content_hash(run.before);
+    if (std::ranges::find(said.bones, wanted) != said.bones.end()) return;
+    if (said.bones.empty())
+        throw Error(
+            fmt::format("{}: the run does not say which bone it cut; score its take, or cut again", folder.string()));
+    throw Error(fmt::format("{}: the run cut another bone than the task's: {}, not {} of {}", folder.string(),
+                            fmt::join(said.bones, ", "), wanted, run.task.bone.string()));
 }
 
 struct Record {
@@ -128,8 +138,28 @@ std::vector<SparedScore> spared_of(const ScoredRun& run) {
 
 }  // namespace
 
+namespace {
+
+/// A folder of sessions, DIR of 'tactus session' or DIR/PSEUDONYM, is none itself.
+void refuse_many_sessions(const fs::path& folder) {
+    if (!fs::is_directory(folder) || fs::exists(folder / "summary.json") || fs::exists(folder / "take.json")) return;
+    std::vector<std::string> found;
+    for (auto at = fs::recursive_directory_iterator(folder); at != fs::recursive_directory_iterator(); ++at) {
+        if (at.depth() >= 1) at.disable_recursion_pending();
+        if (at->is_directory() && session::is_training_session(at->path())) found.push_back(at->path().string());
+    }
+    if (found.empty()) return;
+    std::ranges::sort(found);
+    throw Error(fmt::format("{}: holds sessions; name those to score: {}", folder.string(), fmt::join(found, " ")));
+}
+
+}  // namespace
+
 std::vector<fs::path> attempts_in(const fs::path& folder) {
-    if (!session::is_training_session(folder)) return {folder};
+    if (!session::is_training_session(folder)) {
+        refuse_many_sessions(folder);
+        return {folder};
+    }
     std::vector<fs::path> all = session::completed_attempts(folder);
     if (all.empty()) throw Error(fmt::format("{}: no attempt of this session was completed", folder.string()));
     return all;
@@ -155,8 +185,8 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
     run.name = folder.string();
     run.task = task_of(said, task, folder);
     run.before = bone::load_bone(run.task.bone);
-    run.after = bone_after(folder, run.before);
-    check_same_bone(run.before, run.after, folder);
+    check_same_bone(said, run, folder);
+    run.after = bone_after(folder, run.before, said.refined);
     const std::string& record_name = said.record;
     if (record_name.empty() || fs::path(record_name).has_parent_path())
         throw Error(fmt::format("{}: the run has no record of its attempt", folder.string()));

@@ -32,27 +32,32 @@ double line(std::span<const double> samples, double hz) {
 
 }  // namespace
 
-TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw", "[slow]") {
-    const test::Folder folder;
-    const test::Outcome outcome = folder.tactus("render saw-training --seconds 8 -o " + (folder.path / "out").string());
-    REQUIRE(outcome.code == 0);
-    const std::vector<double> all = table::load_number_table(folder.path / "out" / "force.csv").numbers("fz_N");
-    REQUIRE(all.size() >= 8000);
-    for (const std::size_t begin : {1500, 3500, 5500}) {
-        const std::span<const double> part = std::span(all).subspan(begin, 2000);
-        double floor = 0.0;
-        for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0}) floor += line(part, hz) / 8.0;
-        CAPTURE(begin, floor, line(part, 60.0));
-        CHECK(line(part, 60.0) < floor + 0.01);
+TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw, pushed gently or hard", "[slow]") {
+    for (const char* thrust : {"7.5 N", "20 N"}) {
+        const test::Folder folder;
+        const test::Outcome outcome = folder.tactus("render saw-training --seconds 10 --set simulated.thrust='" +
+                                                    std::string(thrust) + "' -o " + (folder.path / "out").string());
+        REQUIRE(outcome.code == 0);
+        const std::vector<double> all = table::load_number_table(folder.path / "out" / "force.csv").numbers("fz_N");
+        REQUIRE(all.size() >= 10000);
+        for (std::size_t begin = 1500; begin + 2000 <= all.size(); begin += 1000) {
+            const std::span<const double> part = std::span(all).subspan(begin, 2000);
+            double floor = 0.0;
+            for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0}) floor += line(part, hz) / 8.0;
+            CAPTURE(thrust, begin, floor, line(part, 60.0));
+            CHECK(line(part, 60.0) < floor + 0.01);
+        }
     }
 }
 
 TEST_CASE("a hand that rocks the saw with 20 N cuts through the jaw and is not caught in its own cut", "[slow]") {
     const test::Folder folder;
-    const test::Outcome outcome = folder.tactus("render saw-training --seconds 12 --set simulated.thrust='20 N' -o " +
-                                                (folder.path / "out").string());
+    const test::Outcome outcome = folder.tactus(
+        "render saw-training --seconds 22 --set simulated.thrust='20 N' --set "
+        "simulated.stroke_amplitude='6 mm' -o " +
+        (folder.path / "out").string());
     REQUIRE(outcome.code == 0);
     const auto summary = nlohmann::json::parse(test::slurp(folder.path / "out" / "summary.json"));
     CHECK(summary["carve"]["severed"].get<double>() == 1.0);
-    CHECK(summary["contact"]["max_penetration_mm"].get<double>() < 3.0);
+    CHECK(summary["contact"]["max_penetration_mm"].get<double>() < 2.0);
 }

@@ -193,6 +193,17 @@ TEST_CASE("runs that cannot be scored are refused with what to do", "[slow]") {
     folder.write("block.toml", task);
     write_block(folder, 0.2 * mm);
     CHECK(refusal(here + "/run").find("cut another bone than the task's") != std::string::npos);
+    // On the same grid, what is left of the task's bone after a run on it.
+    write_block(folder, 0.3 * mm);
+    fs::copy_file(folder.path / "run/bone.vdb", folder.path / "part.vdb");
+    REQUIRE(folder
+                .tactus("render " + here + "/guided.toml --seconds 1 --asset bone=" + here + "/part.vdb --out " + here +
+                        "/on-part")
+                .code == 0);
+    const std::string part = refusal(here + "/on-part");
+    CHECK(part.find("cut another bone than the task's") != std::string::npos);
+    CHECK(std::count(part.begin(), part.end(), '\n') == 1);
+    CHECK(folder.tactus("score " + here + "/run").code == 0);
     fs::rename(folder.path / "run/summary.json", folder.path / "run/summary.json.part");
     CHECK(refusal(here + "/run").find("did not come to its end") != std::string::npos);
 }

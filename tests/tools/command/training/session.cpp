@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // 'tactus session': order, what is kept, and going on after a crash.
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -133,7 +134,25 @@ TEST_CASE("a session is refused before anything is made when its trainee or a ta
     const Outcome unknown = folder.tactus("session mandible-canal mandible-kanal --offline --trainee P01 --out " + out);
     CHECK(unknown.code == 2);
     CHECK(unknown.err.find("no task 'mandible-kanal'") != std::string::npos);
+    const std::string bones = (test::library_folder() / "bones").string();
+    const Outcome other = folder.tactus("session mandible-canal --offline --trainee P01 --out " + out +
+                                        " --asset bone=" + bones + "/fibula.vdb");
+    INFO(other.err);
+    CHECK(other.code == 2);
+    CHECK(other.err.find("is another bone than") != std::string::npos);
     CHECK_FALSE(fs::exists(out));
+}
+
+TEST_CASE("a folder of sessions is not scored as a run, and says which sessions it holds", "[slow]") {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    REQUIRE(folder.tactus("session mandible-canal --offline --seconds 0.2 --trainee P01 --out " + out).code == 0);
+    for (const std::string& at : {out, out + "/P01"}) {
+        const Outcome o = folder.tactus("score " + at);
+        CHECK(o.code == 2);
+        CHECK(o.err.find("holds sessions; name those to score: " + out + "/P01/1") != std::string::npos);
+    }
+    CHECK(folder.tactus("score " + out + "/P01/1").code == 0);
 }
 
 TEST_CASE("two programs do not run one session at the same time", "[slow]") {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/force_summary.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::session {
+
+double number_in(const Report& report, const char* section, const char* key, double otherwise) {
+    const auto s = report.sections.find(section);
+    if (s == report.sections.end()) return otherwise;
+    const auto k = s->second.find(key);
+    if (k == s->second.end()) return otherwise;
+    const double* v = std::get_if<double>(&k->second);
+    return v ? *v : otherwise;
+}
+
+namespace {
+
+/// Why forces went off, in brackets; empty: no fault did it.
+std::string fault_of(const Report& report) {
+    const auto force = report.sections.find("force");
+    if (force == report.sections.end() || !(number_in(report, "force", "faults") > 0.0)) return "";
+    const auto fault = force->second.find("fault");
+    const auto* words = fault == force->second.end() ? nullptr : std::get_if<std::string>(&fault->second);
+    return words ? fmt::format(" ({})", *words) : "";
+}
+
+}  // namespace
+
+std::string force_text(const Report& report) {
+    std::string text;
+    if (const auto never = report.sections.find("forces_never_engaged"); never != report.sections.end())
+        for (const auto& [node, newton] : never->second)
+            text += fmt::format(
+                "  {}: the hand never felt a force. It began in contact, where the patch asked for up to {:.2g} N; "
+                "begin with the hand away from what it touches\n",
+                node, std::get<double>(newton));
+    const double off = number_in(report, "force", "off_s"), fraction = number_in(report, "contact", "fraction", -1.0);
+    const bool has_thrust = number_in(report, "force", "thrust_mean_N", -1.0) >= 0.0;
+    if (fraction >= 0.0)
+        text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep", 100.0 * fraction,
+                            number_in(report, "contact", "max_penetration_mm"));
+    if (fraction >= 0.0 && has_thrust && !(off > 0.0))
+        text += fmt::format("; thrust {:.2f} N mean", number_in(report, "force", "thrust_mean_N"));
+    if (fraction >= 0.0) text += "\n";
+    if (off > 0.0)
+        text += fmt::format(
+            "  forces were off for {:.3g} s in contact, from {:.3f} s to {:.3f} s{}: the hand did not feel what it "
+            "touched then; over the whole contact it felt {:.2f} N mean\n",
+            off, number_in(report, "force", "off_from_s"), number_in(report, "force", "off_until_s"), fault_of(report),
+            number_in(report, "force", "felt_mean_N"));
+    return text;
+}
+
+}  // namespace tactus::session
