@@ -83,9 +83,16 @@ public:
     /// Clears the fault; forces re-engage.
     void recover() noexcept;
 
+    /// Clears the fault; forces ramp in over at least `ramp_s` of ticks that are on time, also when they are large already.
+    /// Whoever calls it sees to it that a hand deep inside of a body is not thrown out: by an energy cap.
+    void recover_slowly(double ramp_s) noexcept;
+
     Fault fault() const noexcept { return fault_; }
     /// Forces are on, possibly still ramping in.
     bool engaged() const noexcept { return fault_ == Fault::none && small_ticks_ >= limits_.engage_ticks; }
+    /// Engaged, and not yet in full.
+    bool is_ramping() const noexcept { return engaged() && ramped_s_ < ramp(); }
+    bool is_held_off() const noexcept { return held_off_; }
     const ForceStatistics& statistics() const noexcept { return statistics_; }
 
 private:
@@ -93,11 +100,12 @@ private:
     void watch_input(std::int64_t counter, bool valid) noexcept;
     Wrench fade(double elapsed_s) noexcept;
     double engagement(const Wrench& raw, double elapsed_s) noexcept;
+    double ramp() const noexcept;
 
     ForceLimits limits_;
     double period_s_ = 0.001;
     Wrench output_, raw_, fade_from_;
-    double faded_s_ = 0.0, ramped_s_ = 0.0;
+    double faded_s_ = 0.0, ramped_s_ = 0.0, slow_ramp_s_ = 0.0;
     std::int64_t counter_ = 0;
     int still_ticks_ = 0, small_ticks_ = 0;
     bool has_counter_ = false, held_off_ = false;

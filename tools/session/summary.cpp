@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/io/lost_device.hpp"
+#include "tools/session/force_news.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/task_summary.hpp"
 
@@ -124,6 +125,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
             json["faults"].push_back({{"device", slot->name},
                                       {"reason", control::describe(fault.reason)},
                                       {"time_s", tactus::seconds(fault.tick * slot->period)},
+                                      {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
                                       {"force_N", fault.force_N}});
     json["signals"] = Json::array();
     Json all = Json::array();
@@ -180,11 +182,7 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
             at[1], at[2], number(report, "contact", "blade_clearance_mm"));
     for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
-    for (const auto& slot : engine.host().devices)
-        for (const io::DeviceFault& fault : slot->guard.faults())
-            text +=
-                fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
-                            tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
+    for (const FaultOnRecord& fault : faults_on_record(engine)) text += fmt::format("  fault {}\n", fault.text());
     for (const auto& [section, values] : report.sections)
         if (const auto note = values.find("note"); note != values.end())
             if (const auto* words = std::get_if<std::string>(&note->second))

@@ -3,6 +3,7 @@
 
 #include "tools/view/run_bar.hpp"
 #include "tools/view/spots.hpp"
+#include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
 #include <imgui.h>
@@ -134,6 +135,7 @@ void Desk::draw_scene(double height) {
 
 void Desk::draw() {
     follow_run();
+    scene_.hand().beat();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
     forget_spots();
@@ -147,6 +149,7 @@ void Desk::draw() {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     shortcuts();
     run_bar(bench_, take_, fonts_);
+    const Point below_bar = point(ImGui::GetCursorScreenPos());
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
@@ -210,6 +213,7 @@ void Desk::draw() {
     // One dialog at a time.
     if (farewell != Farewell::asks) questions.draw();
     ImGui::End();
+    if (!take_) state_banner(bench_, below_bar, fonts_);
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
     calibration_.draw(live_.get());
     ImGui::PopFont();

@@ -40,11 +40,13 @@ void ScenePanel::tools() {
     int axis = clip_axis_ + 1;
     ImGui::SetNextItemWidth(6.0f * unit);
     if (ImGui::Combo("##axis", &axis, axes, 4)) clip(axis - 1, clip_share_);
-    if (clip_axis_ < 0) return;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    auto share = static_cast<float>(clip_share_);
-    if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+    if (clip_axis_ >= 0) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(-1.0f);
+        auto share = static_cast<float>(clip_share_);
+        if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+    }
+    hand_.tools();
 }
 
 /// Stereo, head, display file, offset, windows.
