@@ -66,6 +66,7 @@ public:
         hand_.pose = {};
         hand_.twist = {};
         intended_ = {};
+        told_ = {};
         force_.set({});
         counter_ = 0;
         buttons_ = 0;
@@ -84,8 +85,8 @@ public:
         const std::int64_t silence = now_ns_() - heard_ns_;
         const bool is_silent = silence > (has_heard_ ? longest_silence_of_window_ns : longest_start_ns);
         tell(is_silent);
-        DeviceSample sample{hand_.pose, hand_.twist, is_silent ? 0u : buttons_, ++counter_, !is_silent};
-        sample.valid = sample.valid && is_valid(hand_.pose);
+        DeviceSample sample{hand_.pose, hand_.twist, is_silent ? 0u : buttons_, ++counter_, is_valid(hand_.pose)};
+        sample.late = is_silent;
         return sample;
     }
 
@@ -102,6 +103,9 @@ private:
         has_heard_ = true;
         buttons_ = static_cast<std::uint32_t>(wanted.buttons);
         if (!is_valid(wanted.pose) || glm::length(wanted.pose.position) > farthest_m) return;
+        // A window that only says that it is alive does not begin the way anew.
+        if (wanted.pose.position == told_.position && wanted.pose.orientation == told_.orientation) return;
+        told_ = wanted.pose;
         intended_.go_to(wanted.pose, static_cast<double>(wanted.picture_ns) * 1e-9);
     }
 
@@ -114,6 +118,7 @@ private:
     std::int64_t (*now_ns_)();
     simulate::Hand hand_;
     Gliding intended_;
+    Pose told_;
     SharedWrench force_;
     std::uint32_t buttons_ = 0;
     std::uint64_t heard_ = 0;

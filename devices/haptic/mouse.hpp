@@ -11,7 +11,7 @@
 
 namespace tactus::haptic {
 
-/// A window that shows no picture for this long has lost the hand: samples are not valid until it is back.
+/// A window that says nothing for this long has lost the hand: samples are late, which fades the force.
 inline constexpr std::int64_t longest_silence_of_window_ns = 100'000'000;
 
 /// Options: those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. `link` must outlive the device;

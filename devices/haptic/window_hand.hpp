@@ -25,7 +25,7 @@ struct FeltHand {
     Wrench force;
     std::int64_t run = 0;     ///< increases when a run begins; 0: no device was opened yet
     std::int64_t at_ns = 0;   ///< steady clock
-    std::int64_t is_silent = 0;  ///< the window was silent for too long: the sample is not valid
+    std::int64_t is_silent = 0;  ///< the window said nothing for too long: the force fades
 };
 
 /// Wait-free on both sides. The window writes `wanted`, the thread of the device's ticks writes `felt`.

@@ -27,6 +27,7 @@ const char* describe(Fault fault) noexcept {
         case Fault::sound_lost: return "the sound card was lost";
         case Fault::stuck_encoder: return "the motor was told to run and the encoder stood still";
         case Fault::beyond_drive_limit: return "a motor was told to run faster than it may";
+        case Fault::late_source: return "the window that moves the hand was too slow";
     }
     return "unknown fault";
 }
@@ -51,7 +52,7 @@ void ForceLimiter::start_from(const Wrench& committed) noexcept {
 
 void ForceLimiter::fail(Fault reason) noexcept {
     // A late tick says only that something is wrong: a reason that says what replaces it.
-    if (fault_ == Fault::late_commit && reason != Fault::none) fault_ = reason;
+    if (is_lateness(fault_) && reason != Fault::none && !is_lateness(reason)) fault_ = reason;
     if (fault_ != Fault::none) return;
     fault_ = reason;
     fade_from_ = output_;

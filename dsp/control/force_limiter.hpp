@@ -30,12 +30,18 @@ enum class Fault : std::uint8_t {
     late_commit,
     sound_lost,
     stuck_encoder,
-    beyond_drive_limit
+    beyond_drive_limit,
+    late_source
 };
+
+/// The machine was slow; nothing is wrong with the patch or the device.
+constexpr bool is_lateness(Fault fault) noexcept {
+    return fault == Fault::late_commit || fault == Fault::late_source;
+}
 
 /// The fault for a number on a wire; other numbers are invalid input.
 inline Fault fault_of_number(double number) noexcept {
-    for (int n = 0; n <= static_cast<int>(Fault::beyond_drive_limit); ++n)
+    for (int n = 0; n <= static_cast<int>(Fault::late_source); ++n)
         if (number == n) return static_cast<Fault>(n);
     return Fault::invalid_input;
 }
@@ -69,8 +75,8 @@ public:
     /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
     void start_from(const Wrench& committed) noexcept;
 
-    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only `late_commit` gives way to
-    /// another one, for it names no cause.
+    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only lateness gives way
+    /// to another one, for it names no cause.
     void fail(Fault reason) noexcept;
 
     /// The same when another thread has already faded the force: the output is zero at once.

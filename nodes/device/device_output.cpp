@@ -68,9 +68,10 @@ struct DeviceOutput {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
         const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
-        late_.tick(s.taken, is_quiet && !s.taken, tick.elapsed_seconds());
+        late_.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
+        if (s.late) limiter_.fail(control::Fault::late_source);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
         const bool is_good = s.valid && is_valid(s.pose);
@@ -159,12 +160,12 @@ private:
             is_let_ = false;
             ++faults_;
             well_for_ = 0.0;
-            if (last_fault_ == Fault::late_commit) late_.lose();
+            if (is_lateness(last_fault_)) late_.lose();
         }
         const DeviceSample& s = port_->sample;
         const bool is_good = s.valid && is_valid(s.pose) && s.counter != counter_;
         well_for_ = is_good && !s.taken ? well_for_ + tick.elapsed_seconds() : 0.0;
-        if (last_fault_ == Fault::late_commit) return return_from_lateness(is_good);
+        if (is_lateness(last_fault_)) return return_from_lateness(is_good);
         if (last_fault_ == Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
         limiter_.recover();
         in_fault_ = false;
@@ -188,7 +189,8 @@ private:
         switch (limiter_.fault()) {
             case Fault::none: break;
             case Fault::not_finite: return ForceState::never;
-            case Fault::late_commit: {
+            case Fault::late_commit:
+            case Fault::late_source: {
                 const bool waits_for_hand = late_.needs_hand() || (recover_after == 0.0 && !is_let_);
                 return waits_for_hand ? ForceState::by_hand : ForceState::returns;
             }

@@ -32,9 +32,12 @@ std::vector<HandForces> forces_of(const run::Engine& engine) {
         for (const auto& node : engine.nodes())
             for (const auto& [used, use] : node->uses.devices)
                 if (used == slot.get() && use == DeviceUse::drive) forces.node = node->name;
-        if (const auto faults = slot->guard.faults(); control::is_off(state.state) && !faults.empty()) {
-            forces.fault = control::describe(faults.back().reason);
-            forces.fault_since_s = seconds(faults.back().tick * slot->period);
+        if (control::is_off(state.state)) {
+            // Only so many faults are kept.
+            const auto faults = slot->guard.faults();
+            const bool is_kept = !faults.empty() && faults.back().over < 0;
+            forces.fault = is_kept ? control::describe(faults.back().reason) : "one more fault";
+            forces.fault_since_s = is_kept ? seconds(faults.back().tick * slot->period) : forces.since_s;
         }
         all.push_back(std::move(forces));
     }

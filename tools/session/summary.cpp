@@ -90,7 +90,7 @@ std::vector<std::string> unrecovered(const run::Engine& engine) {
     std::vector<std::string> lines;
     for (const auto& slot : engine.host().devices)
         if (const control::Fault fault = slot->port.fault;
-            fault != control::Fault::none && fault != control::Fault::late_commit)
+            fault != control::Fault::none && !control::is_lateness(fault))
             lines.push_back(fmt::format("fault of {} at the end of the run: {}", slot->name, control::describe(fault)));
     for (const auto& slot : engine.host().devices)
         if (const std::string loss = io::loss_of(*slot); !loss.empty())

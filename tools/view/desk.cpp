@@ -135,7 +135,7 @@ void Desk::draw_scene(double height) {
 
 void Desk::draw() {
     follow_run();
-    scene_.hand().beat();
+    scene_.hand().begin_picture();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
     forget_spots();
@@ -176,11 +176,13 @@ void Desk::draw() {
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::EndChild();
+    scene_.hand().beat();
     splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
     // Without a scene the node panel uses its space.
     if (scene_.is_empty()) scene_.rest();
     else draw_scene(height);
+    scene_.hand().beat();
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));
@@ -192,6 +194,10 @@ void Desk::draw() {
         };
         if (tab("Node", 0)) {
             nodes_.draw_parameters(patch_.selected, fonts_);
+            ImGui::EndTabItem();
+        }
+        if (!scene_.is_empty() && tab("Scene", 0)) {
+            scene_.draw_tree();
             ImGui::EndTabItem();
         }
         const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::view {
@@ -72,6 +73,7 @@ void forces_word(const RunStatus& status) {
               is_off ? tone::bad : is_on ? tone::good : tone::warm);
     }
     if (status.faults.empty()) return;
+    if (ImGui::GetCursorPosX() + 5.0f * ImGui::GetFontSize() > words_end) return;
     const std::string label = fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
     if (ImGui::Button(label.c_str())) ImGui::OpenPopup("history of faults");
     mark_spot("faults");
@@ -158,12 +160,13 @@ void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
     float wide = 3.0f * 2.0f * style.FramePadding.x + 3.0f * style.ItemSpacing.x + style.WindowPadding.x;
     for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
     words_end = ImGui::GetWindowWidth() - (take ? 0.0f : wide);
-    // A long title leaves room for the buttons.
+    // A long title leaves room for the buttons of the run.
+    const float signs = 3.0f * (1.4f * ImGui::GetFrameHeight() + style.ItemSpacing.x) + 2.0f * style.WindowPadding.x;
+    const double room = static_cast<double>(std::clamp(words_end - signs, 0.0f, 0.3f * ImGui::GetWindowWidth()));
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     ImGui::PushFont(fonts.bold);
-    words(paint.shortened(bench.title(), static_cast<double>(ImGui::GetFontSize()),
-                          0.3 * static_cast<double>(ImGui::GetWindowWidth()), true),
-          tone::text);
+    if (room > 3.0 * static_cast<double>(ImGui::GetFontSize()))
+        words(paint.shortened(bench.title(), static_cast<double>(ImGui::GetFontSize()), room, true), tone::text);
     ImGui::PopFont();
     if (take) return take_line(bench, *take);
     run_buttons(bench, *bench.status());

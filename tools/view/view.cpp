@@ -77,10 +77,12 @@ public:
             if (window_.begin()) {
                 if (script_) script_->move_mouse();
                 desk_->draw();
+                desk_->scene().hand().beat();
                 window_.end();
+                desk_->scene().hand().beat();
             } else {
                 bench_->tend();
-                desk_->scene().hand().beat();
+                desk_->scene().hand().begin_picture();
             }
             if (script_) script_->step(*desk_, window_);
             if (!wanted_.empty()) open_wanted();

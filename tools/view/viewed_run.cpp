@@ -3,6 +3,7 @@
 
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -108,7 +109,10 @@ void ViewedRun::look_at(RunSession& session) {
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
     status.forces = session::forces_of(engine);
     status.faults = session::faults_on_record(engine);
-    for (const std::string& told : news_.next(engine)) say(told);
+    for (const std::string& told : news_.next(engine)) {
+        say(told);
+        tactus::say(stderr, told + "\n");
+    }
     const std::lock_guard lock(lock_);
     status_ = std::make_shared<RunStatus>(std::move(status));
 }

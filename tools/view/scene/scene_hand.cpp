@@ -17,6 +17,8 @@ namespace tactus::view {
 namespace {
 
 constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
+constexpr std::int64_t ticking_ns = 500'000'000;  // the run is under way
+constexpr int first_pictures = 6;
 constexpr double radians_per_pixel = 0.006;
 constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3;
 
@@ -31,6 +33,14 @@ constexpr std::array<HandButton, 4> hand_buttons{
 
 }  // namespace
 
+void SceneHand::begin_picture() {
+    const std::int64_t now = hosted::steady_ns();
+    interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
+    picture_ns_ = now;
+    if (now - felt_.at_ns < ticking_ns) pictures_ = std::min(pictures_ + 1, first_pictures);
+    beat();
+}
+
 void SceneHand::beat() {
     haptic::WindowHand& link = haptic::window_hand();
     const std::int64_t now = hosted::steady_ns();
@@ -42,10 +52,11 @@ void SceneHand::beat() {
         run_ = felt_.run;
         cursor_.begin(felt_.pose);
         latched_ = keys_ = 0;
+        pictures_ = 0;
     }
+    if (pictures_ < first_pictures) return;
     cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));
-    link.wanted.write({cursor_.wanted(), held_buttons(), now, beat_ns_ > 0 ? now - beat_ns_ : 0, run_});
-    beat_ns_ = now;
+    link.wanted.write({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
 }
 
 std::int64_t SceneHand::held_buttons() const {
@@ -87,7 +98,6 @@ HandPlace SceneHand::place() const {
 
 void SceneHand::tools() {
     if (!is_there_) return;
-    ImGui::NewLine();
     if (ImGui::SmallButton(is_on_ ? "mouse: hand (H)" : "mouse: view (H)")) is_on_ = !is_on_;
     mark_spot("mouse");
     if (ImGui::IsItemHovered())
@@ -95,7 +105,9 @@ void SceneHand::tools() {
             "left button: move; with Shift, or the wheel: nearer and farther\nright button: turn; with Shift: roll\n"
             "middle button: turn the view\narrows, Page Up, Page Down: small steps\nH: mouse for the hand or the view");
     for (std::size_t i = 0; i < hand_buttons.size(); ++i) {
-        ImGui::SameLine();
+        const float end = ImGui::GetItemRectMax().x + 2.0f * ImGui::GetStyle().ItemSpacing.x +
+                          ImGui::CalcTextSize(hand_buttons[i].name).x;
+        if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
         const bool is_held = ((keys_ | latched_) >> i & 1u) != 0;
         if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
         if (ImGui::SmallButton(hand_buttons[i].name)) latched_ ^= 1u << i;

@@ -19,8 +19,10 @@ namespace tactus::view {
 
 class SceneHand {
 public:
-    /// Tells the driver where the hand is wanted; for each picture, and while there are none because the window is
-    /// minimised.
+    /// Once per picture, and while there are none because the window is minimised.
+    void begin_picture();
+    /// Tells the driver where the hand is wanted, and that the window is alive; several times in a picture, which may take
+    /// long without a graphics card.
     void beat();
     /// A device of the run is moved by the window.
     bool is_there() const { return is_there_; }
@@ -47,7 +49,8 @@ private:
     std::string frame_port_, scale_port_;
     haptic::FeltHand felt_;
     HandCursor cursor_;
-    std::int64_t run_ = 0, beat_ns_ = 0;
+    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0;
+    int pictures_ = 0;  // of this run; the first ones make meshes and take long
     bool is_there_ = false, is_on_ = true, is_hovered_ = false;
     unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit
 };

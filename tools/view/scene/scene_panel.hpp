@@ -33,6 +33,9 @@ public:
     /// Replaces `draw` while the patch has no scene: closes the windows and releases the run.
     void rest();
 
+    /// The bones and bodies as a list.
+    void draw_tree();
+
     /// The hand that the mouse moves, in runs with the driver 'mouse'.
     SceneHand& hand() { return hand_; }
 

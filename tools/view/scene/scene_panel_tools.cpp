@@ -7,12 +7,14 @@
 
 namespace tactus::view {
 
-/// Stays on the line if it fits, otherwise starts a new one.
-static bool next_button(const char* label) {
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float end =
-        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
+/// The next item stays on the line if it fits, otherwise it starts a new one.
+static void stay_on_line(float width) {
+    const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
     if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+
+static bool next_button(const char* label) {
+    stay_on_line(ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x);
     return ImGui::SmallButton(label);
 }
 
@@ -34,8 +36,8 @@ void ScenePanel::tools() {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
     sight_tools();
-    ImGui::SameLine();
     const float unit = ImGui::GetFontSize();
+    stay_on_line(6.0f * unit);
     static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z"};
     int axis = clip_axis_ + 1;
     ImGui::SetNextItemWidth(6.0f * unit);
@@ -60,7 +62,7 @@ void ScenePanel::sight_tools() {
                 use_stereo(std::string(display::stereo_names[i]));
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    stay_on_line(7.5f * unit);
     ImGui::SetNextItemWidth(7.5f * unit);
     if (ImGui::BeginCombo("##head", sight_.head.empty() ? "no head" : sight_.head.c_str())) {
         if (ImGui::Selectable("no head", sight_.head.empty())) use_head("");
@@ -71,8 +73,7 @@ void ScenePanel::sight_tools() {
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("pose output of the viewer's head; the picture follows it");
-    ImGui::SameLine();
-    if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
+    if (next_button("screens...")) ImGui::OpenPopup("screens");
     mark_spot("screens...");
     if (!ImGui::BeginPopup("screens")) return;
     static char file[512] = "";
