@@ -2,6 +2,7 @@
 #include "dsp/control/late_return.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::control {
 
@@ -9,6 +10,7 @@ namespace {
 
 // A second of ticks of 1 ms can sum to just under a second.
 constexpr double rounding = 1.0 - 1e-9;
+constexpr double most_at_once = 2.0;
 
 }  // namespace
 
@@ -20,8 +22,12 @@ void LateReturn::prepare(double period_s, double at_least_s) noexcept {
 
 void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
     now_s_ += elapsed_s;
-    const bool on_time = !is_late && elapsed_s < 1.5 * period_s_;
-    on_time_ = on_time ? on_time_ + elapsed_s : 0.0;
+    const double left_out = std::max(0.0, std::round(elapsed_s / period_s_) - 1.0);
+    left_out_ += static_cast<int>(std::min(left_out, 100.0));
+    if (is_late || left_out > most_at_once || left_out_ > most_left_out) {
+        on_time_ = 0.0;
+        left_out_ = 0;
+    } else on_time_ += elapsed_s;
     quiet_ = is_quiet ? quiet_ + elapsed_s : 0.0;
 }
 

@@ -97,7 +97,7 @@ Return come_back(HeldHand hand, double stiffness, bool is_capped, double ramp_s 
 
 }  // namespace
 
-TEST_CASE("after a late tick forces come back when each tick was on time for a second") {
+TEST_CASE("after a late tick forces come back when ticks were on time for a second") {
     Waiting waiting;
     waiting.lose();
     CHECK(waiting.ticks_until_return() == 1000);
@@ -107,11 +107,27 @@ TEST_CASE("after a late tick forces come back when each tick was on time for a s
         waiting.late.tick(true, true, period);
         CHECK(waiting.ticks_until_return() == 1000);
     }
-    SECTION("so does a skipped tick") {
+    SECTION("so do three ticks that are left out at once") {
         waiting.lose();
         CHECK(waiting.ticks_until_return(700) == 700);
-        waiting.late.tick(false, true, 2.0 * period);
+        waiting.late.tick(false, true, 4.0 * period);
         CHECK(waiting.ticks_until_return() == 1000);
+    }
+    SECTION("ten that are left out one by one do not") {
+        waiting.lose();
+        for (int n = 0; n < 10; ++n) {
+            waiting.late.tick(false, true, 2.0 * period);
+            CHECK(waiting.ticks_until_return(48) == 48);
+        }
+        CHECK(waiting.ticks_until_return() == 500);
+    }
+    SECTION("eleven do") {
+        waiting.lose();
+        for (int n = 0; n < 11; ++n) {
+            waiting.late.tick(false, true, 2.0 * period);
+            CHECK(waiting.ticks_until_return(48) == 48);
+        }
+        CHECK(waiting.ticks_until_return() == 952);
     }
     SECTION("a longer wait that the patch asks for is kept") {
         waiting.late.prepare(period, 3.0);

@@ -126,7 +126,7 @@ TEST_CASE("the fragments of a plan are in the picture, each in a colour of its o
             }
             ++count[best];
         }
-    CHECK(std::ranges::count_if(count, [](int pixels) { return pixels > 40; }) >= 8);
+    CHECK(std::ranges::count_if(count, [](int pixels) { return pixels > 40; }) >= 6);
 }
 
 TEST_CASE("frames come at even times, whole, and do not depend on threads", "[slow]") {

@@ -18,6 +18,8 @@ using namespace scene_colours;
 
 namespace {
 
+constexpr std::uint64_t most_in_legend = 6;
+
 std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
 }  // namespace
@@ -68,7 +70,9 @@ void SceneModel::show_bodies() {
             const std::string name =
                 i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("fragment {}", i + 1);
             if (!is_part_shown(name, group_colours[i % group_colours.size()])) continue;
-            legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
+            // A long legend would cover the scene.
+            if (held || seen->value.count <= most_in_legend)
+                legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
             if (!is_valid(pose)) {
                 legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
                 continue;
