@@ -68,9 +68,8 @@ bool is_real_driver(std::string_view driver) {
 }
 
 bool needs_window(std::string_view driver) {
-    return std::ranges::any_of(haptic_drivers(), [&](const HapticDriver& one) {
-        return one.name == driver && one.needs_window;
-    });
+    return std::ranges::any_of(haptic_drivers(),
+                               [&](const HapticDriver& one) { return one.name == driver && one.needs_window; });
 }
 
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,

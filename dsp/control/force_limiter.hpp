@@ -35,9 +35,7 @@ enum class Fault : std::uint8_t {
 };
 
 /// The machine was slow; nothing is wrong with the patch or the device.
-constexpr bool is_lateness(Fault fault) noexcept {
-    return fault == Fault::late_commit || fault == Fault::late_source;
-}
+constexpr bool is_lateness(Fault fault) noexcept { return fault == Fault::late_commit || fault == Fault::late_source; }
 
 /// The fault for a number on a wire; other numbers are invalid input.
 inline Fault fault_of_number(double number) noexcept {

@@ -32,7 +32,8 @@ void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
 }
 
 void LateReturn::lose() noexcept {
-    const auto recent = std::count_if(at_.begin(), at_.begin() + count_, [&](double t) { return now_s_ - t < window_s; });
+    const auto recent =
+        std::count_if(at_.begin(), at_.begin() + count_, [&](double t) { return now_s_ - t < window_s; });
     needs_hand_ = needs_hand_ || recent >= most_returns;
 }
 

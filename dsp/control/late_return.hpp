@@ -16,7 +16,7 @@ public:
     /// That may be left out in this time, one or two at once: a busy machine always leaves out some, and a force that is
     /// held for 2 ms harms nobody.
     static constexpr int most_left_out = 10;
-    static constexpr double ramp_s = 0.5;   ///< in which they then come in, at least
+    static constexpr double ramp_s = 0.5;  ///< in which they then come in, at least
     static constexpr int most_returns = 3;  ///< in `window_s`; the next loss waits for a person
     static constexpr double window_s = 60.0;
 

@@ -33,7 +33,8 @@ struct DeviceOutput {
                       "limit of the rate of change of the torque"};
     Param recover_after{
         structural, "1 s", "0 s", "1 h",
-        "forces may come back after ticks and samples were good for this long: after a late tick by themselves, at least "
+        "forces may come back after ticks and samples were good for this long: after a late tick by themselves, at "
+        "least "
         "1 s later and over 0.5 s, three times a minute; after a fault of samples when they are small; 0 s: only by "
         "'recover'. After a non-finite force they stay off"};
     Param recover{discrete, "0", "0", "1e9", "change the number to let forces return after late ticks"};

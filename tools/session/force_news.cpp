@@ -18,8 +18,8 @@ std::string HandForces::text() const {
 }
 
 std::string FaultOnRecord::text() const {
-    const std::string when = over_s < 0.0 ? fmt::format("from {:.2f} s on", began_s)
-                                          : fmt::format("{:.2f} s to {:.2f} s", began_s, over_s);
+    const std::string when =
+        over_s < 0.0 ? fmt::format("from {:.2f} s on", began_s) : fmt::format("{:.2f} s to {:.2f} s", began_s, over_s);
     return fmt::format("{}: {}: {}, {:.2g} N before", when, device, what, force_N);
 }
 

@@ -29,8 +29,8 @@ struct HandForces {
 struct FaultOnRecord {
     std::string device, what;
     double began_s = 0.0;
-    double over_s = -1.0;   ///< negative: it is not over
-    double force_N = 0.0;   ///< on the hand before
+    double over_s = -1.0;  ///< negative: it is not over
+    double force_N = 0.0;  ///< on the hand before
 
     std::string text() const;
 };

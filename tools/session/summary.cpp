@@ -122,11 +122,12 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
     json["faults"] = Json::array();
     for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
-            json["faults"].push_back({{"device", slot->name},
-                                      {"reason", control::describe(fault.reason)},
-                                      {"time_s", tactus::seconds(fault.tick * slot->period)},
-                                      {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
-                                      {"force_N", fault.force_N}});
+            json["faults"].push_back(
+                {{"device", slot->name},
+                 {"reason", control::describe(fault.reason)},
+                 {"time_s", tactus::seconds(fault.tick * slot->period)},
+                 {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
+                 {"force_N", fault.force_N}});
     json["signals"] = Json::array();
     Json all = Json::array();
     for (const auto& stream : engine.host().streams) {

@@ -14,8 +14,8 @@ namespace tactus::view {
 struct InputEvent {
     enum class Kind { move, leave, button, wheel, key, letter, focus } kind = Kind::move;
     double x = 0.0, y = 0.0;  ///< of `move`: pixels; of `wheel`: turns
-    int code = 0;             ///< button, key or letter
-    bool is_down = false;     ///< of buttons and keys; of `focus`: gained
+    int code = 0;  ///< button, key or letter
+    bool is_down = false;  ///< of buttons and keys; of `focus`: gained
 };
 
 /// What a picture sees.

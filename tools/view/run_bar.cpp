@@ -69,12 +69,17 @@ void forces_word(const RunStatus& status) {
     if (worst) {
         const bool is_off = control::is_off(worst->state);
         const bool is_on = worst->state == ForceState::on || worst->state == ForceState::ramps;
-        words(is_off ? "forces off" : is_on ? "forces on" : "forces wait",
-              is_off ? tone::bad : is_on ? tone::good : tone::warm);
+        words(is_off  ? "forces off"
+              : is_on ? "forces on"
+                      : "forces wait",
+              is_off  ? tone::bad
+              : is_on ? tone::good
+                      : tone::warm);
     }
     if (status.faults.empty()) return;
     if (ImGui::GetCursorPosX() + 5.0f * ImGui::GetFontSize() > words_end) return;
-    const std::string label = fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
+    const std::string label =
+        fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
     if (ImGui::Button(label.c_str())) ImGui::OpenPopup("history of faults");
     mark_spot("faults");
     ImGui::SameLine();

@@ -74,7 +74,8 @@ void Window::listen() {
         static_cast<InputQueue*>(glfwGetWindowUserPointer(window))->add(event);
     };
     static constexpr auto queue = add;
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { queue(w, {Kind::move, x, y, 0, false}); });
+    glfwSetCursorPosCallback(window_,
+                             [](GLFWwindow* w, double x, double y) { queue(w, {Kind::move, x, y, 0, false}); });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
         if (!entered) queue(w, {Kind::leave, 0.0, 0.0, 0, false});
     });
@@ -100,7 +101,8 @@ void Window::hand_on_input() {
     const InputState& input = input_.next(io.WantTextInput);
     constexpr float nowhere = -3.4e38f;
     const bool is_known = input.is_inside || std::ranges::any_of(input.button, [](bool down) { return down; });
-    io.MousePos = is_known ? ImVec2(static_cast<float>(input.x), static_cast<float>(input.y)) : ImVec2(nowhere, nowhere);
+    io.MousePos =
+        is_known ? ImVec2(static_cast<float>(input.x), static_cast<float>(input.y)) : ImVec2(nowhere, nowhere);
     for (std::size_t i = 0; i < InputState::buttons; ++i) io.MouseDown[i] = input.button[i];
     io.MouseWheelH += static_cast<float>(input.wheel_x);
     io.MouseWheel += static_cast<float>(input.wheel_y);

@@ -34,11 +34,8 @@ struct Rig {
         REQUIRE(link.felt.read(felt, number));
     }
     void say(const Vec3& at, double picture_s, std::int64_t buttons = 0) {
-        link.wanted.write({{at, {1.0, 0.0, 0.0, 0.0}},
-                           buttons,
-                           clock_ns,
-                           static_cast<std::int64_t>(picture_s * 1e9),
-                           felt.run});
+        link.wanted.write(
+            {{at, {1.0, 0.0, 0.0, 0.0}}, buttons, clock_ns, static_cast<std::int64_t>(picture_s * 1e9), felt.run});
     }
     DeviceSample tick() {
         clock_ns += millisecond;

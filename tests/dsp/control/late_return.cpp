@@ -51,10 +51,10 @@ struct HeldHand {
 };
 
 struct Return {
-    double given_J = 0.0;   ///< most that the wall has given the hand, less what the hand has damped, until it pushes
-    double fastest = 0.0;   ///< m/s outwards, until it pushes
+    double given_J = 0.0;  ///< most that the wall has given the hand, less what the hand has damped, until it pushes
+    double fastest = 0.0;  ///< m/s outwards, until it pushes
     double motion_J = 0.0;  ///< most kinetic energy outwards, until it pushes
-    double force_N = 0.0;   ///< largest while it pushes
+    double force_N = 0.0;  ///< largest while it pushes
 };
 
 /// The forces of a wall of that stiffness come back to a hand that is inside; two seconds later it pushes in by 3 mm more, in
@@ -201,7 +201,8 @@ TEST_CASE("a slow return ramps a large force in over half a second of ticks on t
     CHECK_FALSE(limiter.engaged());
 }
 
-TEST_CASE("forces that come back to a hand deep inside of a wall do not throw it out, and it feels the wall when it pushes") {
+TEST_CASE(
+    "forces that come back to a hand deep inside of a wall do not throw it out, and it feels the wall when it pushes") {
     Return worst, bare;
     for (const double mass : {0.1, 0.3, 1.0})
         for (const double stiffness : {500.0, 1e3, 2e3, 5e3})

@@ -5,10 +5,10 @@
 #include "devices/display/gl_context.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/display/camera.hpp"
-#include "tools/picture/scene/scene_colours.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -100,8 +100,8 @@ TEST_CASE("pictures of the library look as they did", "[slow]") {
 TEST_CASE("the fragments of a plan are in the picture, each in a colour of its own") {
     if (!can_render()) return;
     const Folder folder;
-    const Outcome outcome = folder.tactus("render planning-trauma --seconds 0.05 --frames 1 --size 640x400 --out " +
-                                          folder.path.string());
+    const Outcome outcome =
+        folder.tactus("render planning-trauma --seconds 0.05 --frames 1 --size 640x400 --out " + folder.path.string());
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     const Pixels seen(folder.path / "frame_0001.png");

@@ -103,7 +103,7 @@ Picture Person::look() const {
     using Get = Image*(void*, unsigned long, int, int, unsigned, unsigned, unsigned long, int);
     constexpr int by_pixels = 2;
     Image* image = x_->find<Get>(x_->x11, "XGetImage")(x_->display, root, 0, 0, static_cast<unsigned>(width),
-                                                      static_cast<unsigned>(height), ~0ul, by_pixels);
+                                                       static_cast<unsigned>(height), ~0ul, by_pixels);
     if (!image) return picture;
     picture.width = width;
     picture.height = height;

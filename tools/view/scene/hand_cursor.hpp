@@ -10,8 +10,8 @@ namespace tactus::view {
 /// How the device lies in the scene.
 struct HandPlace {
     Quat to_scene{1.0, 0.0, 0.0, 0.0};  ///< axes of the device in the scene
-    double scale = 1.0;                 ///< m in the scene per m of the device
-    Vec3 handle{0.0};                   ///< where the hand is, scene
+    double scale = 1.0;  ///< m in the scene per m of the device
+    Vec3 handle{0.0};  ///< where the hand is, scene
 };
 
 class HandCursor {

@@ -113,7 +113,8 @@ void SceneHand::tools() {
         if (ImGui::SmallButton(hand_buttons[i].name)) latched_ ^= 1u << i;
         if (is_held) ImGui::PopStyleColor();
         mark_spot(hand_buttons[i].name);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("press: stays held until pressed again; the key: while it is held");
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("press: stays held until pressed again; the key: while it is held");
     }
 }
 
@@ -194,11 +195,12 @@ void SceneHand::draw(const Painter& paint, const Box& picture,
     const double size = static_cast<double>(ImGui::GetFontSize()) * 0.85;
     const std::string text = fmt::format("{:.1f} N", force);
     const double text_wide = paint.width_of(text, size);
-    paint.box({right - text_wide - 6.0, picture.bottom - 30.0, right + 4.0, picture.bottom - 8.0}, colour(0xffffff, 215),
-              4.0);
+    paint.box({right - text_wide - 6.0, picture.bottom - 30.0, right + 4.0, picture.bottom - 8.0},
+              colour(0xffffff, 215), 4.0);
     paint.text({right - text_wide, picture.bottom - 28.0}, size, colour(0x1e293b), text);
     if (felt_.is_silent != 0)
-        paint.text({picture.left + 12.0, picture.top + 12.0}, size, tone::bad, "the hand was let go: pictures came too late");
+        paint.text({picture.left + 12.0, picture.top + 12.0}, size, tone::bad,
+                   "the hand was let go: pictures came too late");
 }
 
 }  // namespace tactus::view

@@ -28,7 +28,8 @@ void ScenePanel::draw_tree() {
         mark_spot("show " + part.name);
         ImGui::SameLine();
         const auto part_of = [](double x) { return static_cast<float>(x); };
-        ImGui::ColorButton("##colour", ImVec4(part_of(part.colour.x), part_of(part.colour.y), part_of(part.colour.z), 1.0f),
+        ImGui::ColorButton("##colour",
+                           ImVec4(part_of(part.colour.x), part_of(part.colour.y), part_of(part.colour.z), 1.0f),
                            ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop);
         ImGui::SameLine();
         const bool is_chosen = model_->chosen_part() == part.name;
