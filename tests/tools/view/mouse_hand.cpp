@@ -27,7 +27,8 @@ std::future<Outcome> begin(const Display& display, const Folder& folder, const s
 TEST_CASE("a person with a mouse saws the jaw through, and the take repeats it", "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
-    folder.write("script", R"(until 19
+    folder.write("script", R"(size 800 600
+until 19
 screenshot sawn.png
 stop
 until over
@@ -40,7 +41,7 @@ close
     Person::wait(3.0);
     person.key("t", true);
     // In the middle of the scene's picture, down through the bone.
-    person.drag(1300.0, 250.0, 1300.0, 440.0, 13.0);
+    person.drag(620.0, 180.0, 620.0, 300.0, 13.0);
     person.key("t", false);
     const Outcome outcome = done.get();
     INFO(outcome.err);
@@ -50,7 +51,7 @@ close
     CHECK(summary["carve"]["removed_mm3"].get<double>() > 50.0);
     CHECK(summary["force"]["max_N"].get<double>() > 1.0);
     CHECK(summary["carve"]["severed"].get<double>() > 0.0);
-    check_picture(folder.path / "sawn.png", 1600, 1000);
+    check_picture(folder.path / "sawn.png", 800, 600);
     const Outcome again = on(display, folder, "replay take --json");
     INFO(again.out << again.err);
     CHECK(again.code == 0);
