@@ -3,12 +3,14 @@
 
 #include "devices/gripper/serial_gripper.hpp"
 #include "devices/gripper/simulated_gripper.hpp"
+#include "devices/haptic/mouse.hpp"
 #include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,10 @@ std::vector<HapticDriver>& drivers() {
          [](Options& options, const PathResolver&) { return open_simulated(options); }},
         {"scripted", "a hand that moves to given poses at given times and yields to force", open_scripted},
         {"replay", "a recorded movement as the intention of a hand that yields to force", open_replay},
+        {.name = "mouse",
+         .summary = "a hand at the window of a run (--view): mouse and keys move it, and it yields to force",
+         .open = open_mouse,
+         .needs_window = true},
         {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
          gripper::open_walking_gripper},
         {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",
@@ -59,6 +65,11 @@ bool is_real_driver(std::string_view driver) {
     for (const HapticDriver& one : haptic_drivers())
         if (one.name == driver) return one.is_real;
     return false;
+}
+
+bool needs_window(std::string_view driver) {
+    return std::ranges::any_of(haptic_drivers(),
+                               [&](const HapticDriver& one) { return one.name == driver && one.needs_window; });
 }
 
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,

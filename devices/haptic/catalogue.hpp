@@ -26,6 +26,7 @@ struct HapticDriver {
     bool is_real = false;  ///< hardware; runs in real time only
     /// Of hardware: reads the options as `open` does and opens nothing. Null: the driver cannot say.
     HardwareOutline (*describe)(Options& options, const PathResolver& resolve) = nullptr;
+    bool needs_window = false;  ///< a person at the window of a live run moves it
 };
 
 /// All drivers, in the order of listings.
@@ -37,6 +38,9 @@ void add_haptic_driver(HapticDriver driver);
 
 /// True for a driver of hardware.
 bool is_real_driver(std::string_view driver);
+
+/// True for a driver that a person at a window moves.
+bool needs_window(std::string_view driver);
 
 /// Opens a device with the options of a patch. `where`: position of the driver's name in the patch. Throws Error for an
 /// unknown driver, listing all, and for invalid options.

@@ -27,6 +27,7 @@ const char* describe(Fault fault) noexcept {
         case Fault::sound_lost: return "the sound card was lost";
         case Fault::stuck_encoder: return "the motor was told to run and the encoder stood still";
         case Fault::beyond_drive_limit: return "a motor was told to run faster than it may";
+        case Fault::late_source: return "the window that moves the hand was too slow";
     }
     return "unknown fault";
 }
@@ -51,7 +52,7 @@ void ForceLimiter::start_from(const Wrench& committed) noexcept {
 
 void ForceLimiter::fail(Fault reason) noexcept {
     // A late tick says only that something is wrong: a reason that says what replaces it.
-    if (fault_ == Fault::late_commit && reason != Fault::none) fault_ = reason;
+    if (is_lateness(fault_) && reason != Fault::none && !is_lateness(reason)) fault_ = reason;
     if (fault_ != Fault::none) return;
     fault_ = reason;
     fade_from_ = output_;
@@ -67,7 +68,7 @@ void ForceLimiter::hold_off(bool wanted) noexcept {
     if (wanted == held_off_) return;
     held_off_ = wanted;
     small_ticks_ = 0;
-    ramped_s_ = 0.0;
+    ramped_s_ = slow_ramp_s_ = 0.0;
     if (!wanted || fault_ != Fault::none) return;
     fade_from_ = output_;
     faded_s_ = 0.0;
@@ -77,8 +78,16 @@ void ForceLimiter::recover() noexcept {
     fault_ = Fault::none;
     has_counter_ = false;
     still_ticks_ = small_ticks_ = 0;
-    ramped_s_ = 0.0;
+    ramped_s_ = slow_ramp_s_ = 0.0;
 }
+
+void ForceLimiter::recover_slowly(double ramp_s) noexcept {
+    recover();
+    small_ticks_ = limits_.engage_ticks;
+    slow_ramp_s_ = ramp_s;
+}
+
+double ForceLimiter::ramp() const noexcept { return std::max(limits_.engage_ramp_s, slow_ramp_s_); }
 
 void ForceLimiter::measure(const Wrench& raw) noexcept {
     const Vec3 force_step = raw.force - raw_.force, torque_step = raw.torque - raw_.torque;
@@ -117,8 +126,9 @@ double ForceLimiter::engagement(const Wrench& raw, double elapsed_s) noexcept {
         small_ticks_ = is_small ? small_ticks_ + 1 : 0;
         return 0.0;
     }
-    ramped_s_ = std::min(ramped_s_ + elapsed_s, limits_.engage_ramp_s);
-    return limits_.engage_ramp_s > 0.0 ? ramped_s_ / limits_.engage_ramp_s : 1.0;
+    // A slow ramp stands still while ticks are skipped.
+    ramped_s_ = std::min(ramped_s_ + (slow_ramp_s_ > 0.0 ? std::min(elapsed_s, period_s_) : elapsed_s), ramp());
+    return ramp() > 0.0 ? ramped_s_ / ramp() : 1.0;
 }
 
 Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, double elapsed_s) noexcept {

@@ -30,12 +30,16 @@ enum class Fault : std::uint8_t {
     late_commit,
     sound_lost,
     stuck_encoder,
-    beyond_drive_limit
+    beyond_drive_limit,
+    late_source
 };
+
+/// The machine was slow; nothing is wrong with the patch or the device.
+constexpr bool is_lateness(Fault fault) noexcept { return fault == Fault::late_commit || fault == Fault::late_source; }
 
 /// The fault for a number on a wire; other numbers are invalid input.
 inline Fault fault_of_number(double number) noexcept {
-    for (int n = 0; n <= static_cast<int>(Fault::beyond_drive_limit); ++n)
+    for (int n = 0; n <= static_cast<int>(Fault::late_source); ++n)
         if (number == n) return static_cast<Fault>(n);
     return Fault::invalid_input;
 }
@@ -69,8 +73,8 @@ public:
     /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
     void start_from(const Wrench& committed) noexcept;
 
-    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only `late_commit` gives way to
-    /// another one, for it names no cause.
+    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only lateness gives way
+    /// to another one, for it names no cause.
     void fail(Fault reason) noexcept;
 
     /// The same when another thread has already faded the force: the output is zero at once.
@@ -83,9 +87,16 @@ public:
     /// Clears the fault; forces re-engage.
     void recover() noexcept;
 
+    /// Clears the fault; forces ramp in over at least `ramp_s` of ticks that are on time, also when they are large already.
+    /// Whoever calls it sees to it that a hand deep inside of a body is not thrown out: by an energy cap.
+    void recover_slowly(double ramp_s) noexcept;
+
     Fault fault() const noexcept { return fault_; }
     /// Forces are on, possibly still ramping in.
     bool engaged() const noexcept { return fault_ == Fault::none && small_ticks_ >= limits_.engage_ticks; }
+    /// Engaged, and not yet in full.
+    bool is_ramping() const noexcept { return engaged() && ramped_s_ < ramp(); }
+    bool is_held_off() const noexcept { return held_off_; }
     const ForceStatistics& statistics() const noexcept { return statistics_; }
 
 private:
@@ -93,11 +104,12 @@ private:
     void watch_input(std::int64_t counter, bool valid) noexcept;
     Wrench fade(double elapsed_s) noexcept;
     double engagement(const Wrench& raw, double elapsed_s) noexcept;
+    double ramp() const noexcept;
 
     ForceLimits limits_;
     double period_s_ = 0.001;
     Wrench output_, raw_, fade_from_;
-    double faded_s_ = 0.0, ramped_s_ = 0.0;
+    double faded_s_ = 0.0, ramped_s_ = 0.0, slow_ramp_s_ = 0.0;
     std::int64_t counter_ = 0;
     int still_ticks_ = 0, small_ticks_ = 0;
     bool has_counter_ = false, held_off_ = false;

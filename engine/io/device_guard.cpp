@@ -44,13 +44,30 @@ bool DeviceGuard::was_taken() noexcept {
     return taken;
 }
 
-void DeviceGuard::note(control::Fault reason, std::int64_t tick, double force_N) noexcept {
+void DeviceGuard::note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N) noexcept {
+    const auto told = state_.load(std::memory_order_relaxed);
+    if (const auto now = static_cast<std::int64_t>(state); (told & 15) != now)
+        state_.store(16 * tick + now, std::memory_order_release);
     if (reason == last_) return;
     last_ = reason;
     const std::size_t count = count_.load(std::memory_order_relaxed);
-    if (reason == control::Fault::none || count == faults_.size()) return;
+    if (is_kept_) over_[count - 1].store(tick + 1, std::memory_order_release);
+    is_kept_ = reason != control::Fault::none && count < faults_.size();
+    if (!is_kept_) return;
     faults_[count] = {reason, tick, force_N};
     count_.store(count + 1, std::memory_order_release);
+}
+
+std::vector<DeviceFault> DeviceGuard::faults() const {
+    std::vector<DeviceFault> all(faults_.begin(),
+                                 faults_.begin() + static_cast<std::ptrdiff_t>(count_.load(std::memory_order_acquire)));
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].over = over_[i].load(std::memory_order_acquire) - 1;
+    return all;
+}
+
+DeviceState DeviceGuard::state() const noexcept {
+    const std::int64_t packed = state_.load(std::memory_order_acquire);
+    return {static_cast<control::ForceState>(packed & 15), packed >> 4};
 }
 
 void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {

@@ -5,13 +5,14 @@
 
 #include "dsp/control/commit_guard.hpp"
 #include "dsp/control/force_limiter.hpp"
+#include "dsp/control/force_state.hpp"
 #include "graph/node/device.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 namespace tactus::io {
 
@@ -20,6 +21,13 @@ struct DeviceFault {
     control::Fault reason = control::Fault::none;
     std::int64_t tick = 0;  ///< of the device's group
     double force_N = 0.0;   ///< that was on the hand the tick before
+    std::int64_t over = -1;  ///< tick at which it was over, or another fault took its place; -1: it is not over
+};
+
+/// Whether the hand feels forces, and since when.
+struct DeviceState {
+    control::ForceState state = control::ForceState::unknown;
+    std::int64_t since = 0;  ///< tick of the device's group
 };
 
 /// What is finite and within what the device states it can bear; anything else becomes no force at all, so that not even
@@ -39,8 +47,8 @@ public:
     bool was_taken() noexcept;
     /// No tick comes any more, on purpose: the watchdog may fade what is left.
     void retire() noexcept { retired_.store(true, std::memory_order_release); }
-    /// Keeps a fault to tell of, when the reason is new.
-    void note(control::Fault reason, std::int64_t tick, double force_N) noexcept;
+    /// Keeps a fault to tell of, when the reason is new, and what the hand may expect.
+    void note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N) noexcept;
 
     // Thread of the watchdog.
     /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the
@@ -59,10 +67,10 @@ public:
     /// Retired, and no force is left.
     bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
 
+    /// The first 64 faults. Any thread, never in a tick.
+    std::vector<DeviceFault> faults() const;
     /// Any thread.
-    std::span<const DeviceFault> faults() const noexcept {
-        return {faults_.data(), count_.load(std::memory_order_acquire)};
-    }
+    DeviceState state() const noexcept;
 
 private:
     control::CommitGuard guard_;
@@ -72,7 +80,11 @@ private:
     std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
-    std::array<DeviceFault, 64> faults_;
+    static constexpr std::size_t most_faults = 64;
+    std::array<DeviceFault, most_faults> faults_;  // without `over`
+    std::array<std::atomic<std::int64_t>, most_faults> over_{};  // tick, + 1; 0: not over
+    std::atomic<std::int64_t> state_{0};  // 16 * since + state
+    bool is_kept_ = false;  // the fault that is on; thread of the tick
     std::atomic<std::size_t> count_{0};
 };
 

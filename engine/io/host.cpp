@@ -3,6 +3,7 @@
 
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
+#include "devices/haptic/window_hand.hpp"
 #include "devices/hosted/hosted_device.hpp"
 #include "engine/io/async_sink.hpp"
 #include "engine/io/lost_device.hpp"
@@ -85,9 +86,10 @@ void EngineHost::discard() { opened_ = {}; }
 
 std::string EngineHost::device_name(const std::string& wanted, const SourceLocation& where) const {
     if (!wanted.empty()) return wanted;
-    if (patch_.devices.size() == 1) return patch_.devices.front().name;
+    // What another node has opened comes first: `--set hand.device=mouse` names one that the patch does not declare.
     if (devices.size() + opened_.devices.size() == 1)
         return (devices.empty() ? opened_.devices : devices).front()->name;
+    if (patch_.devices.size() == 1) return patch_.devices.front().name;
     throw Error(where, "which device is meant? Name it, as in device = \"simulated\"");
 }
 
@@ -154,6 +156,9 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
         if (!live_ && haptic::is_real_driver(request.driver))
             throw Error(request.where,
                         fmt::format("device '{}' is hardware and keeps its own time; use 'tactus run'", name));
+        if (!describes_hardware_ && haptic::needs_window(request.driver) &&
+            (!live_ || haptic::window_hand().windows == 0))
+            throw Error(where, fmt::format("device '{}' is a hand at a window; use 'tactus run PATCH --view'", name));
         slot->device = live_ ? hosted::open_placed(request, resolve) : hosted::open_here(request, resolve);
     }
     slot->device->prepare(seconds(period_));

@@ -141,11 +141,17 @@ ObservedPort::ObservedPort(Identity who, const ValueType& of, const std::byte* i
         return;
     }
     if (is_body(type)) {
-        body = copy_of(*reinterpret_cast<const coupling::Body*>(initial), identity.name);
+        bodies.push_back(copy_of(*reinterpret_cast<const coupling::Body*>(initial), identity.name));
         return;
     }
-    if (is_scene(type)) value_size_ = sizeof(SeenScene);
-    else if (!type.version) value_size_ = type.size;
+    if (is_scene(type)) {
+        value_size_ = sizeof(SeenScene);
+        const auto& scene = *reinterpret_cast<const coupling::Scene*>(initial);
+        for (std::size_t i = 0; i < scene.count; ++i)
+            if (const coupling::Body& body = scene.objects[i].body; body.map || body.shell)
+                bodies.push_back(copy_of(body, identity.name));
+    }
+    if (!type.version && value_size_ == 0) value_size_ = type.size;
     if (value_size_ == 0) return;
     latest_ = std::make_unique<LatestValue>(1 + words_of(value_size_));
     words_.resize(1 + words_of(value_size_));

@@ -129,7 +129,8 @@ public:
     }
 
     std::unique_ptr<SeenBone> initial_bone;  ///< until an observer takes it
-    std::shared_ptr<const SeenBody> body;
+    /// The shape of a body; of a scene, those of the bodies that it has from the beginning, such as a plan's fragments.
+    std::vector<std::shared_ptr<const SeenBody>> bodies;
     std::vector<std::byte> initial_value;  ///< encoded
 
 private:

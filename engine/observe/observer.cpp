@@ -236,7 +236,8 @@ std::vector<std::shared_ptr<const SeenBody>> Observer::bodies() const {
     std::vector<std::shared_ptr<const SeenBody>> bodies;
     for (const auto& named : order_)
         for (const Reading& reading : named->second.readings)
-            if (const auto port = reading.port.lock(); port && port->body) bodies.push_back(port->body);
+            if (const auto port = reading.port.lock())
+                bodies.insert(bodies.end(), port->bodies.begin(), port->bodies.end());
     return bodies;
 }
 

@@ -157,7 +157,7 @@ int GroupRuntime::finish_call() noexcept {
     committing_ = n;
     for (build::DeviceSlot* slot : program_->driven) {
         telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
-        slot->guard.note(slot->port.fault, next_, glm::length(slot->committed.force));
+        slot->guard.note(slot->port.fault, slot->port.state, next_, glm::length(slot->committed.force));
         // The node that wrote it reads here what the device was given.
         slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
         slot->committed = slot->port.wrench;

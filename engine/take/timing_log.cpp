@@ -37,7 +37,7 @@ bool is_flag(const bool& flag) {
 }
 
 bool has_flags(const DeviceSample& sample) {
-    return is_flag(sample.valid) && is_flag(sample.taken) && is_flag(sample.sound_lost);
+    return is_flag(sample.valid) && is_flag(sample.taken) && is_flag(sample.late) && is_flag(sample.sound_lost);
 }
 
 }  // namespace

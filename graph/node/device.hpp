@@ -37,6 +37,7 @@ struct DeviceSample {
     bool valid = false;  ///< false: ignore the other members
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; ramp it in again
     bool sound_lost = false;  ///< set by the engine once when a sound card is lost: fade the force and ramp it in again
+    bool late = false;  ///< set by a driver that was not told in time where the hand is: as after a late tick
     std::array<FingerSample, most_fingers> fingers{};  ///< of a gripper
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/control/force_limiter.hpp"
+#include "dsp/control/force_state.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/time.hpp"
 #include "graph/node/device.hpp"
@@ -41,6 +42,7 @@ struct DevicePort {
     Wrench wrench;  ///< on the hand, in the device frame about the origin of the pose: N, N·m
     MotorDrive motors;
     control::Fault fault = control::Fault::none;  ///< why the node that writes `wrench` sends no force
+    control::ForceState state = control::ForceState::unknown;  ///< of the node that writes `wrench`
     /// True before the plan changes: fade the force to zero. Ramp it in when this is false again.
     bool hold_off = false;
 };

@@ -46,6 +46,9 @@ struct GripperOutput {
         motors.free = !still && low_friction >= 0.5;
         if (cord.connected && std::isfinite(cord.get())) motors.cord = cord;
         port_->fault = reason_ != control::Fault::none ? reason_ : upstream();
+        port_->state = port_->fault != control::Fault::none ? control::ForceState::by_hand
+                       : port_->hold_off                    ? control::ForceState::held_back
+                                                            : control::ForceState::on;
         given = motors.speed[0];
         const double fastest = port_->info.max_speed;
         cycles = fastest > 0.0 ? std::min(1.0, std::abs(motors.speed[0]) / fastest) * drive_limit : 0.0;

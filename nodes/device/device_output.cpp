@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/energy_cap.hpp"
 #include "dsp/control/force_limiter.hpp"
+#include "dsp/control/late_return.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
@@ -32,8 +33,11 @@ struct DeviceOutput {
                       "limit of the rate of change of the torque"};
     Param recover_after{
         structural, "1 s", "0 s", "1 h",
-        "forces may ramp in again after ticks and samples were good for this long after a timing or sample fault; 0 s: "
-        "never. After a non-finite force they stay off"};
+        "forces may come back after ticks and samples were good for this long: after a late tick by themselves, at "
+        "least "
+        "1 s later and over 0.5 s, three times a minute; after a fault of samples when they are small; 0 s: only by "
+        "'recover'. After a non-finite force they stay off"};
+    Param recover{discrete, "0", "0", "1e9", "change the number to let forces return after late ticks"};
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
     Flag energy_cap{true, "a contact returns no more energy than the hand has put in; false: 'check' warns"};
@@ -56,13 +60,19 @@ struct DeviceOutput {
         // A device states its damping with a hand on it. More than this would blur what a bounce returns.
         cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
         cap_.prepare(cap);
+        late_.prepare(seconds(setup.period), recover_after);
+        asked_ = recover;
+        port_->state = control::ForceState::waits;
     }
 
     void process(const Tick& tick) noexcept {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
+        const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
+        late_.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
+        if (s.late) limiter_.fail(control::Fault::late_source);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
         const bool is_good = s.valid && is_valid(s.pose);
@@ -71,7 +81,9 @@ struct DeviceOutput {
         applied = out;
         port_->wrench = out;
         port_->fault = limiter_.fault();
-        if (limiter_.fault() != control::Fault::none) recover(tick);
+        if (limiter_.fault() != control::Fault::none) recover_from_fault(tick);
+        asked_ = recover;
+        port_->state = state();
         counter_ = s.counter;
         engaged = limiter_.engaged();
         engaged_ticks_ += limiter_.engaged();
@@ -111,6 +123,7 @@ struct DeviceOutput {
             report.set("forces_never_engaged", name_, s.max_force);
         report.set("force", "fault", std::string(control::describe(last_fault_)));
         report.set("force", "faults", static_cast<double>(faults_));
+        report.set("force", "returns_after_late_ticks", static_cast<double>(returns_));
     }
 
 private:
@@ -165,37 +178,73 @@ private:
         return asked;
     }
 
-    void recover(const Tick& tick) noexcept {
+    void recover_from_fault(const Tick& tick) noexcept {
+        using control::Fault;
         last_fault_ = limiter_.fault();
         if (!in_fault_) {
             in_fault_ = true;
+            is_let_ = false;
             ++faults_;
             well_for_ = 0.0;
+            if (is_lateness(last_fault_)) late_.lose();
         }
         const DeviceSample& s = port_->sample;
-        const bool well = s.valid && is_valid(s.pose) && !s.taken && s.counter != counter_;
-        well_for_ = well ? well_for_ + tick.elapsed_seconds() : 0.0;
-        if (limiter_.fault() == control::Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
+        const bool is_good = s.valid && is_valid(s.pose) && s.counter != counter_;
+        well_for_ = is_good && !s.taken ? well_for_ + tick.elapsed_seconds() : 0.0;
+        if (is_lateness(last_fault_)) return return_from_lateness(is_good);
+        if (last_fault_ == Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
         limiter_.recover();
         in_fault_ = false;
+    }
+
+    /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body: they
+    /// wait for the hand to leave it.
+    void return_from_lateness(bool is_good) noexcept {
+        const bool is_asked = recover.value != asked_;
+        if (is_asked) late_.forgive();
+        is_let_ = is_let_ || is_asked;
+        if (!is_good || (recover_after == 0.0 && !is_let_) || !late_.returns()) return;
+        if (energy_cap) limiter_.recover_slowly(std::max(control::LateReturn::ramp_s, engage_time.value));
+        else limiter_.recover();
+        in_fault_ = is_let_ = false;
+        ++returns_;
+    }
+
+    control::ForceState state() const noexcept {
+        using control::Fault, control::ForceState;
+        switch (limiter_.fault()) {
+            case Fault::none: break;
+            case Fault::not_finite: return ForceState::never;
+            case Fault::late_commit:
+            case Fault::late_source: {
+                const bool waits_for_hand = late_.needs_hand() || (recover_after == 0.0 && !is_let_);
+                return waits_for_hand ? ForceState::by_hand : ForceState::returns;
+            }
+            default: return recover_after == 0.0 ? ForceState::never : ForceState::returns_freed;
+        }
+        if (limiter_.is_held_off()) return ForceState::held_back;
+        if (!limiter_.engaged()) return ForceState::waits;
+        return limiter_.is_ramping() ? ForceState::ramps : ForceState::on;
     }
 
     static constexpr double most_granted_W = 50.0;
     DevicePort* port_ = nullptr;
     control::ForceLimiter limiter_;
     control::EnergyCap cap_;
+    control::LateReturn late_;
     double most_granted_ = 0.0, most_capped_ = 0.0;
     std::int64_t capped_ticks_ = 0;
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
-    double felt_ = 0.0, off_s_ = 0.0, off_from_ = 0.0, off_until_ = 0.0;
+    double felt_ = 0.0, off_s_ = 0.0, off_from_ = 0.0, off_until_ = 0.0, asked_ = 0.0;
     std::int64_t asked_ticks_ = 0;
-    std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
+    std::int64_t counter_ = 0, faults_ = 0, returns_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
     std::string name_;
     control::Fault last_fault_ = control::Fault::none;
     bool in_fault_ = false;
+    bool is_let_ = false;  // a person lets forces return
 };
 
 TACTUS_NODE(DeviceOutput, wrench, granted, applied, engaged, torque_dropped, device, max_force, max_torque, slew,
-            torque_slew, engage_time, recover_after, energy_cap)
+            torque_slew, engage_time, recover_after, recover, energy_cap)
 
 }  // namespace tactus::nodes

@@ -76,8 +76,7 @@ Outcome run_patch(const std::string& toml, double length, const std::function<De
     run::Engine engine(compile_text(toml), options);
     if (live_log) engine.run_live({.dilate = 1.0, .log = live_log, .stop = nullptr, .watch = {}});
     else engine.render(1);
-    for (const auto& slot : engine.host().devices)
-        outcome.faults.assign(slot->guard.faults().begin(), slot->guard.faults().end());
+    for (const auto& slot : engine.host().devices) outcome.faults = slot->guard.faults();
     for (const auto& group : engine.groups())
         if (group->plan->name == "200 Hz") {
             outcome.other_ran = group->telemetry.ticks;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/live_table.hpp"
 
+#include "tools/session/force_news.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,10 +73,9 @@ std::string describe_sound(const io::SoundCard& card) {
 
 std::string live_table(const run::Engine& engine) {
     std::string text = fmt::format("{:.1f} s, {:.1f} N on the hand", engine.progress_seconds(), force_of(engine));
-    for (const auto& slot : engine.host().devices)
-        if (const auto faults = slot->guard.faults(); !faults.empty())
-            text += fmt::format("; fault of {} at {:.1f} s: {}", slot->name, seconds(faults.back().tick * slot->period),
-                                control::describe(faults.back().reason));
+    for (const HandForces& forces : forces_of(engine))
+        if (const std::string state = forces.text(); !state.empty())
+            text += fmt::format("; '{}': {}", forces.device, state);
     for (const auto& card : engine.host().cards) text += "; sound " + describe_sound(*card);
     text += fmt::format("\n{:>10} {:>9} {:>10} {:>7} {:>9} {:>9} {:>9} {:>9} {:>6}", "group", "Hz", "ticks", "missed",
                         "late ms", "p50 µs", "p99 µs", "max µs", "load %");

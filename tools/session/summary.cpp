@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/io/lost_device.hpp"
+#include "tools/session/force_news.hpp"
 #include "tools/session/force_summary.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/task_summary.hpp"
@@ -82,7 +83,7 @@ std::vector<std::string> unrecovered(const run::Engine& engine) {
     std::vector<std::string> lines;
     for (const auto& slot : engine.host().devices)
         if (const control::Fault fault = slot->port.fault;
-            fault != control::Fault::none && fault != control::Fault::late_commit)
+            fault != control::Fault::none && !control::is_lateness(fault))
             lines.push_back(fmt::format("fault of {} at the end of the run: {}", slot->name, control::describe(fault)));
     for (const auto& slot : engine.host().devices)
         if (const std::string loss = io::loss_of(*slot); !loss.empty())
@@ -114,10 +115,12 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
     json["faults"] = Json::array();
     for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
-            json["faults"].push_back({{"device", slot->name},
-                                      {"reason", control::describe(fault.reason)},
-                                      {"time_s", tactus::seconds(fault.tick * slot->period)},
-                                      {"force_N", fault.force_N}});
+            json["faults"].push_back(
+                {{"device", slot->name},
+                 {"reason", control::describe(fault.reason)},
+                 {"time_s", tactus::seconds(fault.tick * slot->period)},
+                 {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
+                 {"force_N", fault.force_N}});
     json["signals"] = Json::array();
     Json all = Json::array();
     for (const auto& stream : engine.host().streams) {
@@ -164,11 +167,7 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
             at[1], at[2], number_in(report, "contact", "blade_clearance_mm"));
     for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
-    for (const auto& slot : engine.host().devices)
-        for (const io::DeviceFault& fault : slot->guard.faults())
-            text +=
-                fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
-                            tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
+    for (const FaultOnRecord& fault : faults_on_record(engine)) text += fmt::format("  fault {}\n", fault.text());
     for (const auto& group : engine.groups())
         if (const std::int64_t lost = group->telemetry.lost_events.load(); lost > 0)
             text += fmt::format("  note: {} events were lost in group {}: more than a wire brings in one tick\n", lost,

@@ -3,6 +3,7 @@
 
 #include "tools/view/run_bar.hpp"
 #include "tools/view/spots.hpp"
+#include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
 #include <imgui.h>
@@ -134,6 +135,7 @@ void Desk::draw_scene(double height) {
 
 void Desk::draw() {
     follow_run();
+    scene_.hand().begin_picture();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
     forget_spots();
@@ -147,6 +149,7 @@ void Desk::draw() {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     shortcuts();
     run_bar(bench_, take_, fonts_);
+    const Point below_bar = point(ImGui::GetCursorScreenPos());
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
@@ -173,11 +176,13 @@ void Desk::draw() {
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::EndChild();
+    scene_.hand().beat();
     splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
     // Without a scene the node panel uses its space.
     if (scene_.is_empty()) scene_.rest();
     else draw_scene(height);
+    scene_.hand().beat();
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));
@@ -189,6 +194,10 @@ void Desk::draw() {
         };
         if (tab("Node", 0)) {
             nodes_.draw_parameters(patch_.selected, fonts_);
+            ImGui::EndTabItem();
+        }
+        if (!scene_.is_empty() && tab("Scene", 0)) {
+            scene_.draw_tree();
             ImGui::EndTabItem();
         }
         const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;
@@ -210,6 +219,7 @@ void Desk::draw() {
     // One dialog at a time.
     if (farewell != Farewell::asks) questions.draw();
     ImGui::End();
+    if (!take_) state_banner(bench_, below_bar, fonts_);
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
     calibration_.draw(live_.get());
     ImGui::PopFont();

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::view {
@@ -46,12 +47,49 @@ bool button(const char* label) {
     return pressed;
 }
 
+/// Where the words of the bar end: what stands on the right must never leave the window.
+float words_end = 0.0f;
+
+/// Words that do not fit before `words_end` are left out.
 void words(const std::string& text, ImU32 ink) {
+    if (ImGui::GetCursorPosX() + ImGui::CalcTextSize(text.c_str()).x > words_end) return;
     ImGui::PushStyleColor(ImGuiCol_Text, ink);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
     ImGui::SameLine();
+}
+
+/// Whether the hands feel forces; earlier faults behind a button.
+void forces_word(const RunStatus& status) {
+    using control::ForceState;
+    const session::HandForces* worst = nullptr;
+    for (const session::HandForces& forces : status.forces)
+        if (!worst || forces.state > worst->state) worst = &forces;
+    if (worst) {
+        const bool is_off = control::is_off(worst->state);
+        const bool is_on = worst->state == ForceState::on || worst->state == ForceState::ramps;
+        words(is_off  ? "forces off"
+              : is_on ? "forces on"
+                      : "forces wait",
+              is_off  ? tone::bad
+              : is_on ? tone::good
+                      : tone::warm);
+    }
+    if (status.faults.empty()) return;
+    if (ImGui::GetCursorPosX() + 5.0f * ImGui::GetFontSize() > words_end) return;
+    const std::string label =
+        fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
+    if (ImGui::Button(label.c_str())) ImGui::OpenPopup("history of faults");
+    mark_spot("faults");
+    ImGui::SameLine();
+    if (!ImGui::BeginPopup("history of faults")) return;
+    for (const session::FaultOnRecord& fault : status.faults) {
+        ImGui::PushStyleColor(ImGuiCol_Text, fault.over_s < 0.0 ? tone::bad : tone::text);
+        ImGui::TextUnformatted(fault.text().c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::EndPopup();
 }
 
 void run_buttons(Workbench& bench, const RunStatus& status) {
@@ -79,6 +117,7 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
         ImGui::SameLine();
     }
     if (!runs) return;
+    forces_word(status);
     words(fmt::format("{:8.2f} s", status.time), tone::text);
     words(fmt::format("{:5.2f} N on the hand", status.force), status.force > 0.01 ? tone::text : tone::dim);
     std::int64_t missed = 0;
@@ -88,7 +127,6 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
         late = std::max(late, group.late_max_ms);
     }
     words(fmt::format("{} missed, latest {:.2f} ms", missed, late), missed > 0 ? tone::bad : tone::dim);
-    if (!status.faults.empty()) words(status.faults.back(), tone::bad);
 }
 
 void take_line(Workbench& bench, TakeBench& take) {
@@ -122,16 +160,22 @@ void take_line(Workbench& bench, TakeBench& take) {
 }  // namespace
 
 void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
+    const char* const save = bench.editor().is_saved() ? "Saved" : "Save";
+    const ImGuiStyle& style = ImGui::GetStyle();
+    float wide = 3.0f * 2.0f * style.FramePadding.x + 3.0f * style.ItemSpacing.x + style.WindowPadding.x;
+    for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
+    words_end = ImGui::GetWindowWidth() - (take ? 0.0f : wide);
+    // A long title leaves room for the buttons of the run.
+    const float signs = 3.0f * (1.4f * ImGui::GetFrameHeight() + style.ItemSpacing.x) + 2.0f * style.WindowPadding.x;
+    const double room = static_cast<double>(std::clamp(words_end - signs, 0.0f, 0.3f * ImGui::GetWindowWidth()));
+    const Painter paint(ImGui::GetWindowDrawList(), fonts);
     ImGui::PushFont(fonts.bold);
-    words(bench.title(), tone::text);
+    if (room > 3.0 * static_cast<double>(ImGui::GetFontSize()))
+        words(paint.shortened(bench.title(), static_cast<double>(ImGui::GetFontSize()), room, true), tone::text);
     ImGui::PopFont();
     if (take) return take_line(bench, *take);
     run_buttons(bench, *bench.status());
-    const char* const save = bench.editor().is_saved() ? "Saved" : "Save";
-    const ImGuiStyle& style = ImGui::GetStyle();
-    float wide = 3.0f * 2.0f * style.FramePadding.x + 2.0f * style.ItemSpacing.x + style.WindowPadding.x;
-    for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
-    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - wide));
+    ImGui::SameLine(words_end);
     ImGui::BeginDisabled(!bench.editor().can_undo());
     if (button("Undo")) bench.undo();
     ImGui::EndDisabled();

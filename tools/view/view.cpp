@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/view.hpp"
 
+#include "devices/haptic/window_hand.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
@@ -30,13 +31,17 @@ class Viewer {
 public:
     Viewer(const ViewChoice& view, const std::atomic<bool>& interrupted)
         : view_(view), interrupted_(interrupted), window_("Tactus", 1600, 1000, view.scale) {
+        ++haptic::window_hand().windows;
         if (!view.script.empty()) {
             script_.emplace(view.script);
             script_->open = [this](const std::string& what) { wanted_ = what; };
         }
     }
 
-    ~Viewer() { keep_edits(); }
+    ~Viewer() {
+        keep_edits();
+        --haptic::window_hand().windows;
+    }
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
@@ -72,8 +77,13 @@ public:
             if (window_.begin()) {
                 if (script_) script_->move_mouse();
                 desk_->draw();
+                desk_->scene().hand().beat();
                 window_.end();
-            } else bench_->tend();
+                desk_->scene().hand().beat();
+            } else {
+                bench_->tend();
+                desk_->scene().hand().begin_picture();
+            }
             if (script_) script_->step(*desk_, window_);
             if (!wanted_.empty()) open_wanted();
             if (bench_->wants_take) open_take(fs::path(bench_->take()));

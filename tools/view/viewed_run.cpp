@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/viewed_run.hpp"
 
-#include "dsp/control/force_limiter.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -107,10 +107,12 @@ void ViewedRun::look_at(RunSession& session) {
         status.force = std::max(status.force, group->telemetry.force_N.load(std::memory_order_relaxed));
     }
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
-    for (const auto& slot : engine.host().devices)
-        for (const io::DeviceFault& fault : slot->guard.faults())
-            status.faults.push_back(fmt::format("{} at {:.1f} s: {}", slot->name, seconds(fault.tick * slot->period),
-                                                control::describe(fault.reason)));
+    status.forces = session::forces_of(engine);
+    status.faults = session::faults_on_record(engine);
+    for (const std::string& told : news_.next(engine)) {
+        say(told);
+        tactus::say(stderr, told + "\n");
+    }
     const std::lock_guard lock(lock_);
     status_ = std::make_shared<RunStatus>(std::move(status));
 }
@@ -149,6 +151,14 @@ void ViewedRun::edit(const std::string& text) {
 
 void ViewedRun::pause(bool wanted) {
     ask([wanted](RunSession& session) { session.engine().pause(wanted); });
+}
+
+void ViewedRun::recover(const std::string& node) {
+    ask([=](RunSession& session) {
+        // Any number that is not the one before.
+        const auto number = 1 + static_cast<std::int64_t>(session.engine().progress_seconds() * 1e3);
+        session.engine().set(node, "recover", std::to_string(number));
+    });
 }
 
 void ViewedRun::record(const std::filesystem::path& folder) {

@@ -4,6 +4,7 @@
 
 #include "engine/observe/observer.hpp"
 #include "graph/compile/load_assets.hpp"
+#include "tools/session/force_news.hpp"
 #include "tools/session/run_choice.hpp"
 
 #include <atomic>
@@ -41,7 +42,8 @@ struct RunStatus {
     double force = 0.0;  ///< force on the hand, N
     std::vector<GroupStatus> groups;
     std::vector<NodeStatus> nodes;
-    std::vector<std::string> faults;
+    std::vector<session::HandForces> forces;
+    std::vector<session::FaultOnRecord> faults;
     std::int64_t edits = 0;
     bool is_recording = false;
     std::string failure;  ///< why it ended early; empty: it did not
@@ -65,6 +67,8 @@ public:
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
     void pause(bool wanted);
+    /// Lets forces return that stay off until a person asks for them; `node`: HandForces::node.
+    void recover(const std::string& node);
     /// Starts recording; the first call sets the folder.
     void record(const std::filesystem::path& folder);
     void stop_recording();
@@ -92,6 +96,7 @@ private:
     std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
     int tends_ = 0;
     std::size_t told_notices_ = 0;
+    session::ForceNews news_;
     std::string json_, text_;
     std::vector<std::string> losses_;
     std::unique_ptr<RunSession> session_;  // kept after the end, so that the last values stay visible

@@ -61,8 +61,57 @@ Window::Window(const std::string& title, int width, int height, double scale) {
     io.IniFilename = nullptr;  // no settings file is written
     load_fonts();
     apply_theme(scale_);
-    if (!ImGui_ImplGlfw_InitForOpenGL(window_, true) || !ImGui_ImplOpenGL3_Init("#version 330"))
+    if (!ImGui_ImplGlfw_InitForOpenGL(window_, false) || !ImGui_ImplOpenGL3_Init("#version 330"))
         throw Error("the window cannot be drawn: OpenGL 3.3 rejects the shaders");
+    listen();
+}
+
+/// Callbacks queue; ImGui 1.86 itself would see only the state at each picture.
+void Window::listen() {
+    using Kind = InputEvent::Kind;
+    glfwSetWindowUserPointer(window_, &input_);
+    const auto add = [](GLFWwindow* window, const InputEvent& event) {
+        static_cast<InputQueue*>(glfwGetWindowUserPointer(window))->add(event);
+    };
+    static constexpr auto queue = add;
+    glfwSetCursorPosCallback(window_,
+                             [](GLFWwindow* w, double x, double y) { queue(w, {Kind::move, x, y, 0, false}); });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
+        if (!entered) queue(w, {Kind::leave, 0.0, 0.0, 0, false});
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+        queue(w, {Kind::button, 0.0, 0.0, button, action == GLFW_PRESS});
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) { queue(w, {Kind::wheel, x, y, 0, false}); });
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+        // Dear ImGui repeats keys by itself.
+        if (key >= 0 && action != GLFW_REPEAT) queue(w, {Kind::key, 0.0, 0.0, key, action == GLFW_PRESS});
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned letter) {
+        queue(w, {Kind::letter, 0.0, 0.0, static_cast<int>(letter), false});
+    });
+    glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
+        queue(w, {Kind::focus, 0.0, 0.0, 0, focused != 0});
+        ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+    });
+}
+
+void Window::hand_on_input() {
+    ImGuiIO& io = ImGui::GetIO();
+    const InputState& input = input_.next(io.WantTextInput);
+    constexpr float nowhere = -3.4e38f;
+    const bool is_known = input.is_inside || std::ranges::any_of(input.button, [](bool down) { return down; });
+    io.MousePos =
+        is_known ? ImVec2(static_cast<float>(input.x), static_cast<float>(input.y)) : ImVec2(nowhere, nowhere);
+    for (std::size_t i = 0; i < InputState::buttons; ++i) io.MouseDown[i] = input.button[i];
+    io.MouseWheelH += static_cast<float>(input.wheel_x);
+    io.MouseWheel += static_cast<float>(input.wheel_y);
+    for (std::size_t i = 0; i < InputState::keys; ++i) io.KeysDown[i] = input.key[i];
+    io.KeyCtrl = input.key[GLFW_KEY_LEFT_CONTROL] || input.key[GLFW_KEY_RIGHT_CONTROL];
+    io.KeyShift = input.key[GLFW_KEY_LEFT_SHIFT] || input.key[GLFW_KEY_RIGHT_SHIFT];
+    io.KeyAlt = input.key[GLFW_KEY_LEFT_ALT] || input.key[GLFW_KEY_RIGHT_ALT];
+    io.KeySuper = input.key[GLFW_KEY_LEFT_SUPER] || input.key[GLFW_KEY_RIGHT_SUPER];
+    for (const unsigned letter : input.letters) io.AddInputCharacter(letter);
 }
 
 Window::~Window() {
@@ -116,6 +165,7 @@ bool Window::begin() {
     began_s_ = glfwGetTime();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hand_on_input();
     return true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "devices/display/offscreen.hpp"
+#include "tools/view/input_queue.hpp"
 
 #include <memory>
 #include <string>
@@ -49,6 +50,8 @@ public:
 
 private:
     void load_fonts();
+    void listen();
+    void hand_on_input();
 
     struct Library {
         Library();
@@ -56,6 +59,7 @@ private:
     };
     Library library_;
     GLFWwindow* window_ = nullptr;
+    InputQueue input_;
     int width_ = 0, height_ = 0;
     double scale_ = 1.0;
     bool follows_screen_ = false;  // its scale

@@ -8,8 +8,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -93,6 +95,38 @@ TEST_CASE("pictures of the library look as they did", "[slow]") {
         // Other drivers round edges and text otherwise.
         CHECK(Pixels(folder.path / "frame_0001.png").share_unlike(Pixels(expected), 40) < 0.02);
     }
+}
+
+TEST_CASE("the fragments of a plan are in the picture, each in a colour of its own") {
+    if (!can_render()) return;
+    const Folder folder;
+    const Outcome outcome =
+        folder.tactus("render planning-trauma --seconds 0.05 --frames 1 --size 640x400 --out " + folder.path.string());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const Pixels seen(folder.path / "frame_0001.png");
+    // Light changes how bright a colour is, hardly which colour it is. The legend stands on the left.
+    const auto direction = [](double r, double g, double b) {
+        return glm::normalize(Vec3(r, g, b) - Vec3(0.8 * std::min({r, g, b})));
+    };
+    std::array<int, coupling::Scene::most_objects> count{};
+    for (int y = 0; y < seen.height; ++y)
+        for (int x = seen.width / 3; x < seen.width; ++x) {
+            const std::size_t at = 3 * static_cast<std::size_t>(y * seen.width + x);
+            const double r = seen.rgb[at], g = seen.rgb[at + 1], b = seen.rgb[at + 2];
+            if (std::max({r, g, b}) - std::min({r, g, b}) < 20.0) continue;
+            std::size_t best = 0;
+            double nearest = -1.0;
+            for (std::size_t i = 0; i < count.size(); ++i) {
+                const Vec3& c = picture::scene_colours::group_colours[i];
+                if (const double like = glm::dot(direction(r, g, b), direction(c.x, c.y, c.z)); like > nearest) {
+                    nearest = like;
+                    best = i;
+                }
+            }
+            ++count[best];
+        }
+    CHECK(std::ranges::count_if(count, [](int pixels) { return pixels > 40; }) >= 6);
 }
 
 TEST_CASE("frames come at even times, whole, and do not depend on threads", "[slow]") {

@@ -40,6 +40,7 @@ public:
 
     /// False when Xvfb is not installed.
     bool is_there() const { return !number_.empty(); }
+    const std::string& number() const { return number_; }
     /// What stands before a command that is to use it.
     /// The graphics driver keeps what it has allocated to the end, and is gone by then: in a sanitized build its leaks
     /// have no names.

@@ -2,6 +2,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/session/force_news.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
 #include "tools/session/stop_signals.hpp"
@@ -34,8 +35,16 @@ int run(const view::ViewedRunChoice& choice) {
             say(stderr, fmt::format("tactus: {}\n", losses[told]));
         }
     };
+    ForceNews news;
+    const auto tell_forces = [&] {
+        for (const std::string& text : news.next(session.engine())) {
+            line.clear();
+            say(stderr, text + "\n");
+        }
+    };
     const auto tend = [&] {
         tell_losses();
+        tell_forces();
         const auto now = std::chrono::steady_clock::now();
         if (choice.json || !line.is_terminal() || now < next_table) return;
         next_table = now + std::chrono::milliseconds(200);

@@ -4,7 +4,6 @@
 #include "assets/bone/bone.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/picture/scene/body_surface.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 
 #include <fmt/format.h>
@@ -114,6 +113,7 @@ display::Picture& SceneModel::update() {
     picture_.meshes.clear();
     picture_.points.clear();
     picture_.bounds = {};
+    parts_.clear();
     legend_ = {};
     legend_.title = outline_.title;
     notes_.vertices.clear();
@@ -124,6 +124,7 @@ display::Picture& SceneModel::update() {
     show_bones();
     show_still_bones();
     show_bodies();
+    show_targets();
     show_blades();
     show_balls();
     show_gripper();
@@ -137,6 +138,16 @@ display::Picture& SceneModel::update() {
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
     return picture_;
+}
+
+void SceneModel::show_part(const std::string& name, bool wanted) {
+    if (wanted) hidden_.erase(name);
+    else hidden_.insert(name);
+}
+
+bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
+    parts_.push_back({name, colour, !hidden_.contains(name)});
+    return parts_.back().is_shown;
 }
 
 void SceneModel::show_bones() {
@@ -156,6 +167,7 @@ void SceneModel::show_bones() {
             ++remeshed_;
         }
         bone.update = seen->update;
+        if (!is_part_shown(node_of(port), still_colour)) continue;
         show(bone.mesh, {}, bone.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
@@ -185,100 +197,9 @@ void SceneModel::show_still_bones() {
             legend_.warnings.push_back(known->second.problem);
             continue;
         }
+        if (!is_part_shown(name, still_colour)) continue;
         show(known->second.mesh, {}, known->second.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
-    }
-}
-
-SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t place) {
-    if (const auto known = bodies_.find(content); known != bodies_.end()) return &known->second;
-    for (const auto& body : observer_.bodies()) {
-        if (body->content_hash != content || body->distance.values.empty()) continue;
-        BodyMesh& mesh = bodies_[content];
-        mesh.body = body;
-        mesh.field = contact::make_voxmap(body->distance);
-        BodySurface surface =
-            make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
-        mesh.has_paint = surface.has_paint;
-        mesh.bounds = surface.bounds;
-        mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
-        renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
-        return &mesh;
-    }
-    return nullptr;
-}
-
-void SceneModel::show_bodies() {
-    shown_.clear();
-    bool has_paint = false;
-    // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
-    std::vector<const SceneOutline::Bodies*> scenes;
-    for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
-    std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
-    for (const SceneOutline::Bodies* scene : scenes) {
-        const auto seen = observer_.latest<observe::SeenScene>(scene->port);
-        if (!seen) continue;
-        for (std::size_t i = 0; i < seen->value.count; ++i) {
-            const auto& object = seen->value.objects[i];
-            if (object.body == 0 || !shown_.insert(object.body).second) continue;
-            BodyMesh* mesh = mesh_of(object.body, i);
-            if (!mesh) continue;
-            Pose pose = object.pose;
-            const SceneOutline::Held* held = nullptr;
-            for (const auto& candidate : outline_.held)
-                if (candidate.scene == scene->port &&
-                    std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
-                    held = &candidate;
-            // The pose from the node that holds a body takes precedence.
-            const auto hand = held ? pose_of(held->hand) : std::nullopt;
-            if (held)
-                if (const auto now = pose_of(held->pose)) pose = *now;
-            const std::string name = i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("body {}", i);
-            legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
-            if (!is_valid(pose)) {
-                legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
-                continue;
-            }
-            show(mesh->mesh, pose, mesh->bounds);
-            has_paint = has_paint || mesh->has_paint;
-            if (!held) continue;
-            if (hand) {
-                // The pose commanded by the hand, if it differs.
-                const Pose grip = held->grip.empty() ? held->grip_at : pose_of(held->grip).value_or(held->grip_at);
-                const Pose wanted = *hand * grip;
-                const double apart = glm::length(wanted.position - pose.position) +
-                                     mesh->bounds.radius() *
-                                         glm::length(glm::axis(glm::conjugate(pose.orientation) * wanted.orientation)) *
-                                         std::abs(glm::angle(glm::conjugate(pose.orientation) * wanted.orientation));
-                if (apart > 0.2e-3) show(mesh->mesh, wanted, mesh->bounds, 0.22, false, false);
-                show_force(held->wrench, hand->position);
-            } else {
-                show_force(held->wrench, pose.position);
-            }
-            show_penetration(*mesh, pose, i, seen->value);
-        }
-    }
-    if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
-}
-
-/// Points of the held body that penetrate another body.
-void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place,
-                                  const observe::SeenScene& scene) {
-    constexpr double worst = 0.5e-3;
-    for (std::size_t i = 0; i < scene.count; ++i) {
-        const auto other = bodies_.find(scene.objects[i].body);
-        if (i == place || other == bodies_.end() || !is_valid(scene.objects[i].pose)) continue;
-        const Pose into = scene.objects[i].pose.inverse() * pose;
-        for (const Vec3& point : held.body->points) {
-            const double depth = -other->second.field.sample(into.apply(point)).value;
-            if (!(depth > 2e-6)) continue;
-            deepest_ = std::max(deepest_, depth);
-            const Vec3 at = pose.apply(point);
-            const Vec3 colour = glm::mix(Vec3(1.0, 0.80, 0.10), Vec3(0.85, 0.05, 0.05), std::min(depth / worst, 1.0));
-            picture_.points.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
-                                       {},
-                                       geometry::packed_colour(colour)});
-        }
     }
 }
 

@@ -34,6 +34,19 @@ public:
 
     const SceneOutline& outline() const { return outline_; }
 
+    /// A bone or body of the last picture, also when it is hidden.
+    struct Part {
+        std::string name;
+        Vec3 colour{0.0};
+        bool is_shown = true;
+    };
+    const std::vector<Part>& parts() const { return parts_; }
+    /// Hides a part by name, or shows it, from the next picture on.
+    void show_part(const std::string& name, bool wanted);
+    /// Draws a part in the colour of chosen things; empty: none.
+    void choose_part(const std::string& name) { chosen_ = name; }
+    const std::string& chosen_part() const { return chosen_; }
+
     /// The colours, the current forces and depths, and what could not be drawn.
     const display::Legend& legend() const { return legend_; }
     /// Bounds of static bodies and of the initial tool poses, for fitting the camera.
@@ -67,11 +80,14 @@ private:
     void show_bones();
     void show_still_bones();
     void show_bodies();
+    void show_targets();
+    bool is_part_shown(const std::string& name, const Vec3& colour);
     void show_blades();
     void show_balls();
     void show_gripper();
     void show_force(const std::string& wrench, const Vec3& at);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
+    void mark(const BodyMesh& mesh, const Pose& pose);
     BodyMesh* mesh_of(std::uint64_t content, std::size_t place);
 
     SceneOutline outline_;
@@ -90,6 +106,9 @@ private:
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;
+    std::vector<Part> parts_;
+    std::unordered_set<std::string> hidden_;
+    std::string chosen_;
     display::Picture picture_;
     display::Legend legend_;
     display::Bounds bounds_;

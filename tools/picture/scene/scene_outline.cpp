@@ -97,6 +97,10 @@ void look_at(const NodeView& view, SceneOutline& outline) {
     }
     const std::string wrench = view.output("wrench", value::wrench), pose = view.source("pose");
     if (view.has_input("scene", scene_type) && view.param("held")) add_held(view, outline);
+    if (const std::string target = view.output("target", value::pose), fits = view.output("fits", value::boolean),
+        place = view.output("fragment", value::number), scene = view.source("scene");
+        !target.empty() && !fits.empty() && !place.empty() && !scene.empty())
+        outline.targets.push_back({scene, target, fits, place});
     if (view.has_input("bone", bone_type) && !pose.empty() && view.param("length") && view.param("height") &&
         view.param("thickness"))
         outline.blades.push_back(
@@ -162,6 +166,7 @@ std::vector<std::string> SceneOutline::ports() const {
     for (const auto& b : bones) all.insert(b.port);
     for (const auto& s : scenes) all.insert(s.port);
     for (const auto& h : held) all.insert({h.pose, h.hand, h.grip, h.place, h.wrench});
+    for (const auto& t : targets) all.insert({t.pose, t.fits, t.place});
     for (const auto& b : blades) all.insert({b.pose, b.wrench});
     for (const auto& b : balls) all.insert({b.pose, b.hand, b.wrench});
     for (const auto& f : fingers) all.insert({f.finger, f.thumb, f.force, f.hand});

@@ -39,6 +39,10 @@ struct SceneOutline {
         double held = 0.0;
         std::string wrench;
     };
+    /// Where a body of a scene would fit: a node with a scene and the outputs `target`, `fits` and `fragment`.
+    struct Target {
+        std::string scene, pose, fits, place;
+    };
     /// A saw blade: a node with a pose, a bone, and the size of a blade.
     struct Blade {
         std::string node, pose, wrench;
@@ -75,6 +79,7 @@ struct SceneOutline {
     std::vector<StillBone> still_bones;
     std::vector<Bodies> scenes;
     std::vector<Held> held;
+    std::vector<Target> targets;
     std::vector<Blade> blades;
     std::vector<Ball> balls;
     std::vector<FixedBall> fixed_balls;

@@ -115,17 +115,28 @@ void ScenePanel::tend_screens() {
 }
 
 void ScenePanel::steer(int width, int height) {
+    const bool is_hand = hand_.steer(camera, height);
     if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
     const ImGuiIO& io = ImGui::GetIO();
     const Point by = point(io.MouseDelta);
     const display::OrbitCamera before = camera;
-    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f) && !io.KeyShift)
+    if (is_hand) return steer_by_keys();
+    if (hand_.has_mouse() && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 2.0f))
+        camera.orbit(-by.x * 2.0 * std::numbers::pi / width, by.y * std::numbers::pi / height);
+    else if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f) && !io.KeyShift)
         camera.orbit(-by.x * 2.0 * std::numbers::pi / width, by.y * std::numbers::pi / height);
     else if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 2.0f) ||
              ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 2.0f) ||
              ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f))
         camera.pan(by.x / height, -by.y / height);
     if (io.MouseWheel != 0.0f) camera.zoom(std::pow(1.15, static_cast<double>(io.MouseWheel)));
+    steer_by_keys();
+    needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
+}
+
+void ScenePanel::steer_by_keys() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const display::OrbitCamera before = camera;
     if (!io.WantTextInput)
         for (int key = 1; key <= 7; ++key)
             if (ImGui::IsKeyPressed('0' + key, false)) look_from(*display::view_of_number(key));
@@ -200,6 +211,7 @@ void ScenePanel::rest() {
     for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
     watched_.clear();
     model_.reset();
+    hand_.forget();
     observer_.reset();
     motion_.forget();
     plan_version_ = -1;
@@ -221,6 +233,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
             else model_->follow(std::move(outline));
             sight_.follow(model_->outline());
+            hand_.follow(observer_, model_->outline());
             plan_version_ = bench_.plan_version();
             is_aimed_ = false;
         }
@@ -255,6 +268,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
                            sight_.display_file()->screens[i].name);
         }
         draw_marks(paint, corner, 1.0 / dense);
+        draw_hand(paint, corner, size, 1.0 / dense);
         if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);
     } catch (const Error& error) {
         if (problem_ != error.what()) bench_.tell(problem_ = error.what(), true);

@@ -8,6 +8,7 @@
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
 #include "tools/view/painter.hpp"
+#include "tools/view/scene/scene_hand.hpp"
 #include "tools/view/scene/scene_motion.hpp"
 #include "tools/view/scene/scene_screens.hpp"
 #include "tools/view/workbench.hpp"
@@ -31,6 +32,12 @@ public:
 
     /// Replaces `draw` while the patch has no scene: closes the windows and releases the run.
     void rest();
+
+    /// The bones and bodies as a list.
+    void draw_tree();
+
+    /// The hand that the mouse moves, in runs with the driver 'mouse'.
+    SceneHand& hand() { return hand_; }
 
     /// True when the patch has nothing to draw: no bone, body, tool or pose.
     bool is_empty();
@@ -60,12 +67,14 @@ private:
     void tools();
     void sight_tools();
     void steer(int width, int height);
+    void steer_by_keys();
     void render(int width, int height);
     void tend_screens();
     void watch_sight();
     display::Legend legend() const;
     void measure(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
+    void draw_hand(const Painter& paint, Point corner, Point size, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);
     void attempt(const std::function<void()>& what);
 
@@ -76,6 +85,7 @@ private:
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
     SceneMotion motion_;
+    SceneHand hand_;
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
     std::int64_t plan_version_ = -1, judged_version_ = -1;

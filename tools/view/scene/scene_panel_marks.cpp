@@ -70,6 +70,26 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
         }
 }
 
+/// Over the first view of the first screen.
+void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, double pixel) {
+    if (!hand_.is_there() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
+    const SceneScreens::Tile& tile = screens_.tiles().front();
+    const display::DrawnView& view = tile.views.front();
+    const double across = pixel * tile.width / std::max(tile.picture_width, 1),
+                 down = pixel * tile.height / std::max(tile.picture_height, 1);
+    const auto seen = [&](const Vec3& in_scene) -> std::optional<Point> {
+        const auto at = view.projection.seen(in_scene);
+        if (!at) return std::nullopt;
+        return corner + Point{pixel * tile.x + across * (view.x + 0.5 * (at->x + 1.0) * view.width),
+                              pixel * tile.y + down * 0.5 * (1.0 - at->y) * view.height};
+    };
+    double limit = 20.0;  // N, where the patch sets none
+    if (bench_.plan())
+        for (const compile::PlanNode& node : bench_.plan()->nodes)
+            if (const auto most = node.params.find("max_force"); most != node.params.end()) limit = most->second->value;
+    hand_.draw(paint, {corner.x, corner.y, corner.x + size.x, corner.y + size.y}, seen, limit);
+}
+
 display::Legend ScenePanel::legend() const {
     display::Legend legend = model_->legend();
     legend.warnings.insert(legend.warnings.end(), sight_.warnings().begin(), sight_.warnings().end());

@@ -7,12 +7,14 @@
 
 namespace tactus::view {
 
-/// Stays on the line if it fits, otherwise starts a new one.
-static bool next_button(const char* label) {
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float end =
-        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
+/// The next item stays on the line if it fits, otherwise it starts a new one.
+static void stay_on_line(float width) {
+    const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
     if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+
+static bool next_button(const char* label) {
+    stay_on_line(ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x);
     return ImGui::SmallButton(label);
 }
 
@@ -34,17 +36,19 @@ void ScenePanel::tools() {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
     sight_tools();
-    ImGui::SameLine();
     const float unit = ImGui::GetFontSize();
+    stay_on_line(6.0f * unit);
     static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z"};
     int axis = clip_axis_ + 1;
     ImGui::SetNextItemWidth(6.0f * unit);
     if (ImGui::Combo("##axis", &axis, axes, 4)) clip(axis - 1, clip_share_);
-    if (clip_axis_ < 0) return;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    auto share = static_cast<float>(clip_share_);
-    if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+    if (clip_axis_ >= 0) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(-1.0f);
+        auto share = static_cast<float>(clip_share_);
+        if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+    }
+    hand_.tools();
 }
 
 /// Stereo, head, display file, offset, windows.
@@ -58,7 +62,7 @@ void ScenePanel::sight_tools() {
                 use_stereo(std::string(display::stereo_names[i]));
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    stay_on_line(7.5f * unit);
     ImGui::SetNextItemWidth(7.5f * unit);
     if (ImGui::BeginCombo("##head", sight_.head.empty() ? "no head" : sight_.head.c_str())) {
         if (ImGui::Selectable("no head", sight_.head.empty())) use_head("");
@@ -69,8 +73,7 @@ void ScenePanel::sight_tools() {
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("pose output of the viewer's head; the picture follows it");
-    ImGui::SameLine();
-    if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
+    if (next_button("screens...")) ImGui::OpenPopup("screens");
     mark_spot("screens...");
     if (!ImGui::BeginPopup("screens")) return;
     static char file[512] = "";

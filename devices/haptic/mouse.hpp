@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Driver "mouse": a hand that follows the mouse and the keys of a window, held by a spring that yields to force.
+#pragma once
+
+#include "devices/haptic/replay.hpp"
+#include "devices/haptic/window_hand.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
+
+#include <memory>
+
+namespace tactus::haptic {
+
+/// A window that says nothing for this long has lost the hand: samples are late, which fades the force.
+inline constexpr std::int64_t longest_silence_of_window_ns = 100'000'000;
+
+/// Options: those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. `link` must outlive the device;
+/// `now_ns` is the clock of its stamps. Throws Error.
+std::unique_ptr<HapticDevice> open_mouse(Options& options, WindowHand& link, std::int64_t (*now_ns)());
+
+/// The same with the window of this process.
+std::unique_ptr<HapticDevice> open_mouse(Options& options, const PathResolver& resolve);
+
+}  // namespace tactus::haptic

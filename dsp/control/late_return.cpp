@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/control/late_return.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::control {
+
+namespace {
+
+// A second of ticks of 1 ms can sum to just under a second.
+constexpr double rounding = 1.0 - 1e-9;
+constexpr double most_at_once = 2.0;
+
+}  // namespace
+
+void LateReturn::prepare(double period_s, double at_least_s) noexcept {
+    *this = LateReturn{};
+    period_s_ = period_s;
+    wait_s_ = std::max(on_time_s, at_least_s);
+}
+
+void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
+    now_s_ += elapsed_s;
+    const double left_out = std::max(0.0, std::round(elapsed_s / period_s_) - 1.0);
+    left_out_ += static_cast<int>(std::min(left_out, 100.0));
+    if (is_late || left_out > most_at_once || left_out_ > most_left_out) {
+        on_time_ = 0.0;
+        left_out_ = 0;
+    } else on_time_ += elapsed_s;
+    quiet_ = is_quiet ? quiet_ + elapsed_s : 0.0;
+}
+
+void LateReturn::lose() noexcept {
+    const auto recent =
+        std::count_if(at_.begin(), at_.begin() + count_, [&](double t) { return now_s_ - t < window_s; });
+    needs_hand_ = needs_hand_ || recent >= most_returns;
+}
+
+bool LateReturn::returns() noexcept {
+    if (needs_hand_ || on_time_ < wait_s_ * rounding || quiet_ < quiet_s * rounding) return false;
+    if (count_ == most_returns) {
+        std::shift_left(at_.begin(), at_.end(), 1);
+        --count_;
+    }
+    at_[static_cast<std::size_t>(count_++)] = now_s_;
+    return true;
+}
+
+void LateReturn::forgive() noexcept {
+    count_ = 0;
+    needs_hand_ = false;
+}
+
+}  // namespace tactus::control

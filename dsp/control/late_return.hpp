@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// When forces come back by themselves after a tick was late. A late tick says nothing against the patch or the device:
+// the force was cut because the machine was busy.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace tactus::control {
+
+/// Of one hand. Real-time safe.
+class LateReturn {
+public:
+    static constexpr double quiet_s = 0.5;  ///< the hand was given no force for this long, and ...
+    static constexpr double on_time_s = 1.0;  ///< ... ticks were on time for this long, before forces come back
+    /// That may be left out in this time, one or two at once: a busy machine always leaves out some, and a force that is
+    /// held for 2 ms harms nobody.
+    static constexpr int most_left_out = 10;
+    static constexpr double ramp_s = 0.5;  ///< in which they then come in, at least
+    static constexpr int most_returns = 3;  ///< in `window_s`; the next loss waits for a person
+    static constexpr double window_s = 60.0;
+
+    /// `period_s`: nominal, of the ticks. `at_least_s`: forces stay away for this long, at least `on_time_s`.
+    void prepare(double period_s, double at_least_s) noexcept;
+
+    /// Each tick, whatever the state. `is_late`: the force of a tick came too late. `is_quiet`: the hand was given no force
+    /// since the last tick. `elapsed_s`: since that tick, more than a period when ticks were left out.
+    void tick(bool is_late, bool is_quiet, double elapsed_s) noexcept;
+
+    /// Forces were lost to a late tick.
+    void lose() noexcept;
+    /// True once when forces may come back; that counts as a return.
+    bool returns() noexcept;
+    /// Forces come back by themselves no more: they did so `most_returns` times within `window_s` before they were lost.
+    bool needs_hand() const noexcept { return needs_hand_; }
+    /// A person lets forces come back: earlier returns are forgotten.
+    void forgive() noexcept;
+
+private:
+    double period_s_ = 0.001, wait_s_ = on_time_s;
+    double now_s_ = 0.0, on_time_ = 0.0, quiet_ = 0.0;
+    std::array<double, most_returns> at_{};  // times of the last returns
+    int count_ = 0, left_out_ = 0;
+    bool needs_hand_ = false;
+};
+
+}  // namespace tactus::control

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What device_output does after a tick was late, and after other faults.
+#include "tests/support/catch.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+using namespace tactus;
+using test::NodeHarness;
+
+namespace {
+
+constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
+constexpr double asked = 4.0;  // N, from 300 ms on, for ever: the hand is deep inside of a body
+
+/// A device_output whose device is late at some ticks.
+struct LateOutput {
+    NodeHarness node{"device_output", servo};
+    std::set<std::int64_t> taken, late, invalid;
+
+    LateOutput() {
+        node.device_feed = [this](std::int64_t k, DevicePort& port) {
+            port.sample = {};
+            port.sample.counter = k;
+            port.sample.valid = !invalid.contains(k);
+            port.sample.taken = taken.contains(k);
+            port.sample.late = late.contains(k);
+        };
+        node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{asked, 0.0, 0.0}, {}}; });
+    }
+    void run(int ticks) {
+        node.prepare();
+        node.run(ticks);
+        const auto all = node.values<Wrench>("applied");
+        for (const Wrench& one : all) applied.push_back(one.force.x);
+    }
+    std::vector<double> applied;
+    const DevicePort& port() { return *node.host.devices.at(""); }
+};
+
+}  // namespace
+
+TEST_CASE("after a late tick the force comes back by itself, to a hand that stays in the body: 1 s later, over 0.5 s") {
+    LateOutput out;
+    const bool by_driver = GENERATE(false, true);
+    (by_driver ? out.late : out.taken).insert(600);
+    out.run(2600);
+    CHECK(out.applied[599] == Approx(asked));
+    CHECK(out.applied[615] == 0.0);
+    CHECK(out.applied[1590] == 0.0);
+    CHECK(out.applied[1850] == Approx(0.5 * asked).epsilon(0.1));
+    CHECK(out.applied[2200] == Approx(asked));
+    for (std::size_t k = 1600; k + 1 < out.applied.size(); ++k) {
+        REQUIRE(out.applied[k] - out.applied[k - 1] <= asked / 500.0 + 1e-9);
+        if (k < 2090) REQUIRE(out.applied[k] < asked);
+    }
+    CHECK(out.port().state == control::ForceState::on);
+    CHECK(out.port().fault == control::Fault::none);
+}
+
+TEST_CASE("while ticks go on being late the force stays away") {
+    LateOutput out;
+    for (int k = 600; k < 3000; k += 900) out.taken.insert(k);
+    out.run(3400);
+    for (std::size_t k = 615; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(out.port().state == control::ForceState::returns);
+}
+
+TEST_CASE("without an energy cap a force that is large already waits for the hand to leave the body") {
+    LateOutput out;
+    out.node.set("energy_cap", "false");
+    out.taken.insert(600);
+    out.run(3000);
+    CHECK(out.applied.back() == 0.0);
+    CHECK(out.port().state == control::ForceState::waits);
+}
+
+TEST_CASE("the fourth late tick in a minute takes the force away until a person lets it return") {
+    LateOutput out;
+    for (int n = 0; n < 4; ++n) out.taken.insert(600 + 2000 * n);
+    out.run(12000);
+    CHECK(out.applied[2500] == Approx(asked));
+    CHECK(out.applied[4500] == Approx(asked));
+    CHECK(out.applied[6500] == Approx(asked));
+    CHECK(out.applied.back() == 0.0);
+    CHECK(out.port().state == control::ForceState::by_hand);
+
+    // Somebody changes the number.
+    out.node.set("recover", "1");
+    out.node.run(2000);
+    CHECK(out.node.values<Wrench>("applied").back().force.x == Approx(asked));
+}
+
+TEST_CASE("nothing but lateness brings a force back to a hand that stays in the body") {
+    LateOutput out;
+    control::ForceState expected = control::ForceState::on;
+    SECTION("not a force that is no number") {
+        out.node.feed<Wrench>("wrench", [](std::int64_t k) {
+            return Wrench{{k == 600 ? std::numeric_limits<double>::quiet_NaN() : k < 300 ? 0.0 : asked, 0.0, 0.0}, {}};
+        });
+        expected = control::ForceState::never;
+    }
+    SECTION("not a force that is no number after a late tick") {
+        out.taken.insert(600);
+        out.node.feed<Wrench>("wrench", [](std::int64_t k) {
+            return Wrench{{k == 700 ? std::numeric_limits<double>::infinity() : k < 300 ? 0.0 : asked, 0.0, 0.0}, {}};
+        });
+        expected = control::ForceState::never;
+    }
+    SECTION("not a device that gave a bad sample") {
+        out.invalid.insert(600);
+        expected = control::ForceState::waits;
+    }
+    SECTION("not a device that gave a bad sample after a late tick") {
+        out.taken.insert(600);
+        out.invalid.insert(700);
+        expected = control::ForceState::waits;
+    }
+    SECTION("not lateness, where the patch says never") {
+        out.node.set("recover_after", "0 s");
+        out.taken.insert(600);
+        expected = control::ForceState::by_hand;
+    }
+    out.run(6000);
+    for (std::size_t k = 615; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(out.port().state == expected);
+}

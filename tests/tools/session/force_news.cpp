@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person is told about the forces on a hand.
+#include "tools/session/force_news.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/background_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
+using nlohmann::json;
+
+namespace {
+
+void wait(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+}  // namespace
+
+TEST_CASE("a state of the forces says what, since when, and how to go on") {
+    using control::ForceState;
+    session::HandForces forces{"hand", "hand_out", ForceState::on, 1.0, {}, 0.0};
+    CHECK(forces.text().empty());
+    forces.state = ForceState::waits;
+    CHECK(forces.text() == "forces return when the hand leaves the bone (since 1.00 s)");
+    forces = {"hand", "hand_out", ForceState::returns, 1.6, "no force arrived in time", 1.6};
+    CHECK(forces.text() ==
+          "no force arrived in time, since 1.60 s: forces return by themselves once ticks were on time for 1 s");
+    forces.state = ForceState::by_hand;
+    CHECK_THAT(forces.text(), ContainsSubstring("tactus set hand_out.recover="));
+    for (int n = 0; n <= static_cast<int>(ForceState::never); ++n)
+        CHECK(std::string(control::describe(static_cast<ForceState>(n))) != "unknown state");
+    CHECK(session::FaultOnRecord{"hand", "no force arrived in time", 1.6, 2.7, 4.25}.text() ==
+          "1.60 s to 2.70 s: hand: no force arrived in time, 4.2 N before");
+    CHECK_THAT((session::FaultOnRecord{"hand", "x", 1.6, -1.0, 0.0}.text()), ContainsSubstring("from 1.60 s on"));
+}
+
+TEST_CASE("a trainer that stood still for a moment tells it, and when its forces are on again", "[live]") {
+    // On a busy machine ticks may be late again and again: then nothing comes back, as it should be.
+    for (int attempt = 1;; ++attempt) {
+        const test::Folder folder;
+        const auto told = [&] { return test::slurp(folder.path / "run.err"); };
+        test::Run run(folder, "saw-training --audio none --no-edits --out " + (folder.path / "out").string());
+        const auto has = [&](const char* text) { return told().find(text) != std::string::npos; };
+        REQUIRE(test::wait_for([&] { return has("running Saw training"); }));
+        wait(6.0);
+        const bool was_calm = !has("no force on");
+        run.signal(SIGSTOP);
+        wait(0.1);
+        run.signal(SIGCONT);
+        wait(5.0);
+        REQUIRE(run.stop(SIGINT) == 0);
+        INFO(told());
+        const json summary = json::parse(test::slurp(folder.path / "out/summary.json"));
+        const json& faults = summary["faults"];
+        if ((!was_calm || faults.size() != 1) && attempt < 4) continue;
+        REQUIRE_FALSE(faults.empty());
+        CHECK(faults[0]["reason"] == "no force arrived in time");
+        const double began = faults[0]["time_s"], over = faults[0]["over_s"];
+        CHECK(over - began >= 1.0);
+        if (faults.size() == 1) CHECK(over - began < 1.5);
+        CHECK_THAT(told(), ContainsSubstring("no force on 'simulated' at ") &&
+                               ContainsSubstring("forces return by themselves once ticks were on time for 1 s") &&
+                               ContainsSubstring("forces are on again from "));
+        break;
+    }
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person with a mouse and a keyboard, and nothing else.
+#include "tests/support/catch.hpp"
+#include "tests/tools/view/person.hpp"
+
+#include <future>
+
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+std::future<Outcome> begin(const Display& display, const Folder& folder, const std::string& arguments) {
+    return std::async(std::launch::async, [&display, &folder, arguments] { return on(display, folder, arguments); });
+}
+
+#define NEEDS_PERSON(person, display)                                          \
+    NEEDS_DISPLAY(display)                                                     \
+    Person person(display);                                                    \
+    if (!person.is_there()) {                                                  \
+        tactus::test::skip("libXtst is not installed (apt install libxtst6)"); \
+        return;                                                                \
+    }
+
+}  // namespace
+
+TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {
+    NEEDS_PERSON(person, display)
+    const Folder folder;
+    folder.write("script", R"(size 800 600
+until 19
+screenshot sawn.png
+stop
+until over
+close
+)");
+    auto done = begin(display, folder,
+                      "run saw-training --view --view-script script --set hand.device=mouse --audio none --out out "
+                      "--record take --seconds 60 --json");
+    REQUIRE(person.sees_window("Saw training", 30.0));
+    Person::wait(3.0);
+    person.key("t", true);
+    // In the middle of the scene's picture, down through the bone.
+    person.drag(620.0, 180.0, 620.0, 300.0, 13.0);
+    person.key("t", false);
+    const Outcome outcome = done.get();
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const json summary = json::parse(outcome.out);
+    INFO(outcome.out);
+    CHECK(summary["carve"]["removed_mm3"].get<double>() > 20.0);
+    check_picture(folder.path / "sawn.png", 800, 600);
+    const Outcome again = on(display, folder, "replay take --json");
+    INFO(again.out << again.err);
+    CHECK(again.code == 0);
+}
+
+TEST_CASE("a mouse needs a window", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    for (const char* verb : {"run saw-training --seconds 1 --audio none", "render saw-training --seconds 1"}) {
+        const Outcome refused = on(display, folder, std::string(verb) + " --set hand.device=mouse --out out");
+        INFO(refused.err);
+        CHECK(refused.code == 2);
+        CHECK(refused.err.find("is a hand at a window; use 'tactus run PATCH --view'") != std::string::npos);
+    }
+    CHECK(on(display, folder, "check saw-training --set hand.device=mouse").code == 0);
+}

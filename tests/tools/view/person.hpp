@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person at a display without a screen: events of mouse and keyboard by the XTEST extension, as a device would give them,
+// and what the screen shows. The libraries are opened at run time, so that nothing needs their headers.
+#pragma once
+
+#include "tests/tools/view/on_display.hpp"
+
+#include <memory>
+#include <string>
+
+namespace tactus::test {
+
+class Person {
+public:
+    explicit Person(const Display& display);
+    ~Person();
+    Person(const Person&) = delete;
+    Person& operator=(const Person&) = delete;
+
+    /// False without libX11 and libXtst.
+    bool is_there() const;
+
+    /// Pixels of the screen.
+    void move(double x, double y);
+    /// 1 left, 2 middle, 3 right, 4 and 5 the wheel.
+    void button(int which, bool is_down);
+    void key(const std::string& name, bool is_down);
+    void click(double x, double y);
+    /// Drags with a button held, in so many seconds.
+    void drag(double x, double y, double to_x, double to_y, double seconds, int which = 1);
+    void tap(const std::string& name);
+    static void wait(double seconds);
+
+    /// The whole screen.
+    Picture look() const;
+    /// Waits until a window of that title is there; false after that time.
+    bool sees_window(const std::string& title, double most_s) const;
+
+private:
+    struct Libraries;
+    std::unique_ptr<Libraries> x_;
+};
+
+}  // namespace tactus::test

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies of a scene: free, held, chosen, and where they would fit.
+#include "devices/display/shapes.hpp"
+#include "tools/picture/scene/body_surface.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
+#include "tools/picture/scene/scene_model.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::picture {
+
+using namespace scene_colours;
+
+namespace {
+
+constexpr std::uint64_t most_in_legend = 6;
+
+std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
+
+}  // namespace
+
+SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t place) {
+    if (const auto known = bodies_.find(content); known != bodies_.end()) return &known->second;
+    for (const auto& body : observer_.bodies()) {
+        if (body->content_hash != content || body->distance.values.empty()) continue;
+        BodyMesh& mesh = bodies_[content];
+        mesh.body = body;
+        mesh.field = contact::make_voxmap(body->distance);
+        BodySurface surface =
+            make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
+        mesh.has_paint = surface.has_paint;
+        mesh.bounds = surface.bounds;
+        mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
+        renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
+        return &mesh;
+    }
+    return nullptr;
+}
+
+void SceneModel::show_bodies() {
+    shown_.clear();
+    bool has_paint = false;
+    // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
+    std::vector<const SceneOutline::Bodies*> scenes;
+    for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
+    std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
+    for (const SceneOutline::Bodies* scene : scenes) {
+        const auto seen = observer_.latest<observe::SeenScene>(scene->port);
+        if (!seen) continue;
+        for (std::size_t i = 0; i < seen->value.count; ++i) {
+            const auto& object = seen->value.objects[i];
+            if (object.body == 0 || !shown_.insert(object.body).second) continue;
+            BodyMesh* mesh = mesh_of(object.body, i);
+            if (!mesh) continue;
+            Pose pose = object.pose;
+            const SceneOutline::Held* held = nullptr;
+            for (const auto& candidate : outline_.held)
+                if (candidate.scene == scene->port &&
+                    std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
+                    held = &candidate;
+            // The pose from the node that holds a body takes precedence.
+            const auto hand = held ? pose_of(held->hand) : std::nullopt;
+            if (held)
+                if (const auto now = pose_of(held->pose)) pose = *now;
+            const std::string name =
+                i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("fragment {}", i + 1);
+            if (!is_part_shown(name, group_colours[i % group_colours.size()])) continue;
+            // A long legend would cover the scene.
+            if (held || seen->value.count <= most_in_legend)
+                legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
+            if (!is_valid(pose)) {
+                legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
+                continue;
+            }
+            show(mesh->mesh, pose, mesh->bounds);
+            if (name == chosen_) mark(*mesh, pose);
+            has_paint = has_paint || mesh->has_paint;
+            if (!held) continue;
+            if (hand) {
+                // The pose commanded by the hand, if it differs.
+                const Pose grip = held->grip.empty() ? held->grip_at : pose_of(held->grip).value_or(held->grip_at);
+                const Pose wanted = *hand * grip;
+                const double apart = glm::length(wanted.position - pose.position) +
+                                     mesh->bounds.radius() *
+                                         glm::length(glm::axis(glm::conjugate(pose.orientation) * wanted.orientation)) *
+                                         std::abs(glm::angle(glm::conjugate(pose.orientation) * wanted.orientation));
+                if (apart > 0.2e-3) show(mesh->mesh, wanted, mesh->bounds, 0.22, false, false);
+                show_force(held->wrench, hand->position);
+            } else {
+                show_force(held->wrench, pose.position);
+            }
+            show_penetration(*mesh, pose, i, seen->value);
+        }
+    }
+    if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
+}
+
+/// The bounding box of a chosen body.
+void SceneModel::mark(const BodyMesh& mesh, const Pose& pose) {
+    const std::array<Vec3, 8> corners = mesh.bounds.corners();
+    const double thick = 0.006 * mesh.bounds.radius();
+    for (std::size_t a = 0; a < corners.size(); ++a)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (const std::size_t b = a ^ (std::size_t{1} << axis); b > a) {
+                const Vec3 low = glm::min(corners[a], corners[b]) - Vec3(thick),
+                           high = glm::max(corners[a], corners[b]) + Vec3(thick);
+                display::add_box(notes_, low, high, hand_colour, pose);
+            }
+}
+
+/// Where the held fragment would fit, seen through.
+void SceneModel::show_targets() {
+    for (const auto& target : outline_.targets) {
+        const auto fits = observer_.latest<bool>(target.fits);
+        const auto scene = observer_.latest<observe::SeenScene>(target.scene);
+        const long place = std::lround(number_of(target.place, -1.0));
+        if (!fits || !fits->value || !scene || place < 0 || place >= static_cast<long>(scene->value.count)) continue;
+        const auto pose = pose_of(target.pose);
+        const auto body = bodies_.find(scene->value.objects[static_cast<std::size_t>(place)].body);
+        if (!pose || body == bodies_.end()) continue;
+        show(body->second.mesh, *pose, body->second.bounds, 0.35, false, false);
+        legend_.entries.push_back({fmt::format("see-through: where fragment {} fits", place + 1), hand_colour});
+    }
+}
+
+/// Points of the held body that penetrate another body.
+void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place,
+                                  const observe::SeenScene& scene) {
+    constexpr double worst = 0.5e-3;
+    for (std::size_t i = 0; i < scene.count; ++i) {
+        const auto other = bodies_.find(scene.objects[i].body);
+        if (i == place || other == bodies_.end() || !is_valid(scene.objects[i].pose)) continue;
+        const Pose into = scene.objects[i].pose.inverse() * pose;
+        for (const Vec3& point : held.body->points) {
+            const double depth = -other->second.field.sample(into.apply(point)).value;
+            if (!(depth > 2e-6)) continue;
+            deepest_ = std::max(deepest_, depth);
+            const Vec3 at = pose.apply(point);
+            const Vec3 colour = glm::mix(Vec3(1.0, 0.80, 0.10), Vec3(0.85, 0.05, 0.05), std::min(depth / worst, 1.0));
+            picture_.points.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+                                       {},
+                                       geometry::packed_colour(colour)});
+        }
+    }
+}
+
+}  // namespace tactus::picture

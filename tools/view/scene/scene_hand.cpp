@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/scene/scene_hand.hpp"
+
+#include "devices/hosted/clocks.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::view {
+
+namespace {
+
+constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
+constexpr std::int64_t ticking_ns = 500'000'000;  // the run is under way
+constexpr int first_pictures = 6;
+constexpr double radians_per_pixel = 0.006;
+constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3;
+
+/// Bits of DeviceSample::buttons; bit 1 marks gaps of recordings.
+struct HandButton {
+    const char* name;
+    char key;
+    std::int64_t bit;
+};
+constexpr std::array<HandButton, 4> hand_buttons{
+    {{"trigger (T)", 'T', 1}, {"second (Y)", 'Y', 4}, {"third (U)", 'U', 8}, {"fourth (I)", 'I', 16}}};
+
+}  // namespace
+
+void SceneHand::begin_picture() {
+    const std::int64_t now = hosted::steady_ns();
+    interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
+    picture_ns_ = now;
+    if (now - felt_.at_ns < ticking_ns) pictures_ = std::min(pictures_ + 1, first_pictures);
+    beat();
+}
+
+void SceneHand::beat() {
+    haptic::WindowHand& link = haptic::window_hand();
+    const std::int64_t now = hosted::steady_ns();
+    std::uint64_t number = 0;
+    if (!link.felt.read(felt_, number)) return;
+    is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
+    if (!is_there_) return;
+    if (felt_.run != run_) {
+        run_ = felt_.run;
+        cursor_.begin(felt_.pose);
+        latched_ = keys_ = 0;
+        pictures_ = 0;
+    }
+    if (pictures_ < first_pictures) return;
+    cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));
+    link.wanted.write({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
+}
+
+std::int64_t SceneHand::held_buttons() const {
+    std::int64_t held = 0;
+    for (std::size_t i = 0; i < hand_buttons.size(); ++i)
+        if (((keys_ | latched_) >> i & 1u) != 0) held |= hand_buttons[i].bit;
+    return held;
+}
+
+void SceneHand::follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline) {
+    forget();
+    observer_ = observer;
+    if (outline.places.empty()) return;
+    frame_port_ = outline.places.front().frame;
+    scale_port_ = outline.places.front().scale;
+    for (const std::string& port : {frame_port_, scale_port_}) observer_->watch(port, observe::Watch::latest, this);
+}
+
+void SceneHand::forget() {
+    if (observer_)
+        for (const std::string& port : {frame_port_, scale_port_})
+            if (!port.empty()) observer_->watch(port, observe::Watch::nothing, this);
+    observer_.reset();
+    frame_port_.clear();
+    scale_port_.clear();
+}
+
+HandPlace SceneHand::place() const {
+    HandPlace place{{1.0, 0.0, 0.0, 0.0}, 1.0, felt_.pose.position};
+    if (!observer_ || frame_port_.empty()) return place;
+    if (const auto frame = observer_->latest<Pose>(frame_port_); frame && is_valid(frame->value)) {
+        place.to_scene = glm::normalize(frame->value.orientation);
+        place.handle = frame->value.position;
+    }
+    if (const auto scale = observer_->latest<double>(scale_port_); scale && scale->value > 0.0)
+        place.scale = scale->value;
+    return place;
+}
+
+void SceneHand::tools() {
+    if (!is_there_) return;
+    if (ImGui::SmallButton(is_on_ ? "mouse: hand (H)" : "mouse: view (H)")) is_on_ = !is_on_;
+    mark_spot("mouse");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "left button: move; with Shift, or the wheel: nearer and farther\nright button: turn; with Shift: roll\n"
+            "middle button: turn the view\narrows, Page Up, Page Down: small steps\nH: mouse for the hand or the view");
+    for (std::size_t i = 0; i < hand_buttons.size(); ++i) {
+        const float end = ImGui::GetItemRectMax().x + 2.0f * ImGui::GetStyle().ItemSpacing.x +
+                          ImGui::CalcTextSize(hand_buttons[i].name).x;
+        if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+        const bool is_held = ((keys_ | latched_) >> i & 1u) != 0;
+        if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
+        if (ImGui::SmallButton(hand_buttons[i].name)) latched_ ^= 1u << i;
+        if (is_held) ImGui::PopStyleColor();
+        mark_spot(hand_buttons[i].name);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("press: stays held until pressed again; the key: while it is held");
+    }
+}
+
+void SceneHand::press_keys() {
+    keys_ = 0;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || io.KeyCtrl) return;
+    for (std::size_t i = 0; i < hand_buttons.size(); ++i)
+        if (ImGui::IsKeyDown(hand_buttons[i].key)) {
+            keys_ |= 1u << i;
+            latched_ &= ~(1u << i);
+        }
+    if (ImGui::IsKeyPressed('H', false)) is_on_ = !is_on_;
+}
+
+bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
+    if (!is_there_) return false;
+    press_keys();
+    is_hovered_ = ImGui::IsItemHovered() || ImGui::IsItemActive();
+    if (!is_on_ || !is_hovered_) return false;
+    const ImGuiIO& io = ImGui::GetIO();
+    const HandPlace place = this->place();
+    const Vec3 right = camera.orientation * Vec3(1.0, 0.0, 0.0), up = camera.orientation * Vec3(0.0, 1.0, 0.0),
+               forward = camera.orientation * Vec3(0.0, 0.0, -1.0);
+    // A pixel at the depth of the hand.
+    const double depth = std::max(glm::dot(place.handle - camera.eye(), forward), 1e-3);
+    const double per_pixel = 2.0 * depth * std::tan(0.5 * camera.vertical_field_of_view_rad) / std::max(height, 1);
+    const Point by = point(io.MouseDelta);
+    if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+        if (io.KeyShift) cursor_.move(forward * (-by.y * per_pixel), place);
+        else cursor_.move((right * by.x - up * by.y) * per_pixel, place);
+    } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+        if (io.KeyShift) cursor_.turn(forward * (by.x * radians_per_pixel), place);
+        else cursor_.turn((up * by.x + right * by.y) * radians_per_pixel, place);
+    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) return false;
+    if (io.MouseWheel != 0.0f) cursor_.move(forward * (static_cast<double>(io.MouseWheel) * wheel_step_m), place);
+    const auto step = [&](ImGuiKey key, const Vec3& along) {
+        if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(key))) cursor_.move(along * key_step_m, place);
+    };
+    step(ImGuiKey_LeftArrow, -right);
+    step(ImGuiKey_RightArrow, right);
+    step(ImGuiKey_UpArrow, up);
+    step(ImGuiKey_DownArrow, -up);
+    step(ImGuiKey_PageUp, forward);
+    step(ImGuiKey_PageDown, -forward);
+    return true;
+}
+
+void SceneHand::draw(const Painter& paint, const Box& picture,
+                     const std::function<std::optional<Point>(const Vec3&)>& seen, double limit_N) const {
+    if (!is_there_) return;
+    const HandPlace place = this->place();
+    const auto hand = seen(place.handle), cursor = seen(cursor_.in_scene(felt_.pose, place));
+    const double force = glm::length(felt_.force.force);
+    const double share = std::clamp(force / std::max(limit_N, 0.1), 0.0, 1.0);
+    const ImU32 ink = share > 0.8 ? tone::bad : share > 0.4 ? tone::warm : tone::good;
+    if (hand && cursor) {
+        // A spring of eight turns, which its stretch makes flat.
+        constexpr int turns = 16;
+        const Point along = *cursor - *hand;
+        const double length = std::hypot(along.x, along.y);
+        Point before = *hand;
+        for (int i = 1; i <= turns && length > 3.0; ++i) {
+            const double side = i == turns ? 0.0 : (i % 2 == 0 ? -4.0 : 4.0);
+            const Point at = *hand + along * (i / static_cast<double>(turns)) +
+                             Point{-along.y / length * side, along.x / length * side};
+            paint.line(before, at, ink, 2.0);
+            before = at;
+        }
+        paint.dot(*cursor, 6.0, ink);
+        paint.dot(*hand, 3.0, colour(0x1e293b));
+    }
+    const double high = 0.4 * picture.height(), wide = 14.0, right = picture.right - 14.0;
+    const Box bar{right - wide, picture.bottom - 34.0 - high, right, picture.bottom - 34.0};
+    paint.box({bar.left - 4.0, bar.top - 4.0, bar.right + 4.0, picture.bottom - 8.0}, colour(0xffffff, 215), 4.0);
+    paint.frame(bar, colour(0x1e293b), 2.0);
+    paint.box({bar.left, bar.bottom - share * high, bar.right, bar.bottom}, ink, 2.0);
+    const double size = static_cast<double>(ImGui::GetFontSize()) * 0.85;
+    const std::string text = fmt::format("{:.1f} N", force);
+    const double text_wide = paint.width_of(text, size);
+    paint.box({right - text_wide - 6.0, picture.bottom - 30.0, right + 4.0, picture.bottom - 8.0},
+              colour(0xffffff, 215), 4.0);
+    paint.text({right - text_wide, picture.bottom - 28.0}, size, colour(0x1e293b), text);
+    if (felt_.is_silent != 0)
+        paint.text({picture.left + 12.0, picture.top + 12.0}, size, tone::bad,
+                   "the hand was let go: pictures came too late");
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mouse and the keys as a hand in the scene, for the driver 'mouse'.
+#pragma once
+
+#include "devices/haptic/window_hand.hpp"
+#include "dsp/display/camera.hpp"
+#include "engine/observe/observer.hpp"
+#include "tools/picture/scene/scene_outline.hpp"
+#include "tools/view/painter.hpp"
+#include "tools/view/scene/hand_cursor.hpp"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+class SceneHand {
+public:
+    /// Once per picture, and while there are none because the window is minimised.
+    void begin_picture();
+    /// Tells the driver where the hand is wanted, and that the window is alive; several times in a picture, which may take
+    /// long without a graphics card.
+    void beat();
+    /// A device of the run is moved by the window.
+    bool is_there() const { return is_there_; }
+    /// The mouse in the scene moves the hand, not the view.
+    bool has_mouse() const { return is_there_ && is_on_; }
+
+    /// Watches where the device lies in the scene; null: no run.
+    void follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline);
+    void forget();
+    /// The buttons above the scene.
+    void tools();
+    /// Mouse and keys over the scene, whose picture is so high, pixels. True when the mouse is the hand's.
+    bool steer(const display::OrbitCamera& camera, int height);
+    /// Cursor, spring and the bar of the force. `seen`: where a point of the scene is on the screen.
+    void draw(const Painter& paint, const Box& picture, const std::function<std::optional<Point>(const Vec3&)>& seen,
+              double limit_N) const;
+
+private:
+    HandPlace place() const;
+    std::int64_t held_buttons() const;
+    void press_keys();
+
+    std::shared_ptr<observe::Observer> observer_;
+    std::string frame_port_, scale_port_;
+    haptic::FeltHand felt_;
+    HandCursor cursor_;
+    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0;
+    int pictures_ = 0;  // of this run; the first ones make meshes and take long
+    bool is_there_ = false, is_on_ = true, is_hovered_ = false;
+    unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit
+};
+
+}  // namespace tactus::view

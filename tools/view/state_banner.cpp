@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/state_banner.hpp"
+
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::view {
+
+namespace {
+
+// A hand that passes through a bone at the start, or a ramp, is not told.
+constexpr double told_after_s = 0.5;
+
+bool is_told(const session::HandForces& forces, double now_s) {
+    using control::ForceState;
+    if (forces.state <= ForceState::ramps) return false;
+    return control::is_off(forces.state) || now_s - forces.since_s > told_after_s;
+}
+
+}  // namespace
+
+void state_banner(Workbench& bench, Point corner, const Fonts& fonts) {
+    const auto status = bench.status();
+    const bool runs = status->state == RunStatus::State::runs;
+    bool is_needed = false;
+    for (const session::HandForces& forces : status->forces)
+        is_needed = is_needed || (runs && is_told(forces, status->time));
+    if (!is_needed) return;
+    const auto gap = static_cast<float>(8.0 * fonts.scale);
+    const ImVec2 screen = ImGui::GetMainViewport()->Size;
+    ImGui::SetNextWindowPos(vec(corner));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(screen.x - 2.0f * gap, screen.y));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(gap, 0.6f * gap));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour(0x3a1d22, 240));
+    ImGui::Begin("state", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(screen.x - 4.0f * gap);
+    for (const session::HandForces& forces : status->forces) {
+        if (!is_told(forces, status->time)) continue;
+        const std::string text =
+            status->forces.size() > 1 ? fmt::format("{}: {}", forces.device, forces.text()) : forces.text();
+        ImGui::PushStyleColor(ImGuiCol_Text, control::is_off(forces.state) ? tone::bad : tone::warm);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopStyleColor();
+        if (forces.state != control::ForceState::by_hand || forces.node.empty()) continue;
+        ImGui::PushID(forces.device.c_str());
+        if (ImGui::Button("Let forces return")) bench.running()->recover(forces.node);
+        mark_spot("Let forces return");
+        ImGui::PopID();
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar();
+}
+
+}  // namespace tactus::view
