@@ -24,7 +24,8 @@ void with_function(Operation operation, Run&& run) noexcept {
             return run([](double a, double b, double) {
                 // The sign of the divisor, as in mathematics.
                 const double rest = std::fmod(a, b);
-                return rest != 0.0 && (rest < 0.0) != (b < 0.0) ? rest + b : rest;
+                if (rest == 0.0) return std::copysign(0.0, b);
+                return (rest < 0.0) != (b < 0.0) ? rest + b : rest;
             });
         case Operation::less: return run([=](double a, double b, double) { return truth(a < b); });
         case Operation::less_equal: return run([=](double a, double b, double) { return truth(a <= b); });

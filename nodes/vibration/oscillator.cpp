@@ -2,6 +2,8 @@
 #include "dsp/signal/filter/band_limited.hpp"
 #include "graph/node/node.hpp"
 
+#include <algorithm>
+
 namespace tactus::nodes {
 
 struct Oscillator {
@@ -11,7 +13,7 @@ struct Oscillator {
         "(PolyBLEP, Välimäki and Huovilainen 2007). The phase is continuous when the frequency changes.";
 
     Out<Signal> signal{"the wave"};
-    Out<Signal> phase{"from 0 to 1 in each cycle"};
+    Out<Signal> phase{"rises from 0 to below 1 in each cycle (phasor)"};
     Param frequency{"100 Hz", "0 Hz", "1 MHz", "cycles per second; above a quarter of the rate it acts as that"};
     Param amplitude{"1", "-1e6", "1e6", "peak value"};
     Param width{"50 %", "1 %", "99 %", "share of a pulse's cycle in which it is high"};
@@ -23,7 +25,8 @@ struct Oscillator {
         constexpr Shape shapes[] = {Shape::sawtooth, Shape::pulse, Shape::triangle};
         const double a = amplitude;
         for (int i = 0; i < tick.frames; ++i) {
-            phase[i] = static_cast<float>(wave_.phase());
+            // The last phases of a cycle would round up to 1.
+            phase[i] = std::min(static_cast<float>(wave_.phase()), 0x1.fffffep-1f);
             signal[i] = static_cast<float>(a * wave_(shapes[shape.index], frequency, width));
         }
     }

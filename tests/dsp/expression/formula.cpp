@@ -175,3 +175,25 @@ TEST_CASE("a long formula with many parts keeps them apart") {
     }
     CHECK(value_of(nested, 0.0, 0.0, 0.5) == Approx(value));
 }
+
+TEST_CASE("a declared name behind a number's unit is a factor, and a name that is a unit too is refused") {
+    const auto with = [](std::string_view inputs, std::string_view text) {
+        const auto names = parse_variables(inputs);
+        Machine machine(compile_formula(text, names, {}).program);
+        *machine.variable(0) = 3.0;
+        return machine.run();
+    };
+    CHECK(with("x m", "2 N/mm*x") == 6000.0);
+    CHECK(with("x m", "6 N/x") == 2.0);
+    CHECK(with("x m", "6 N/m*x/x") == 6.0);
+    CHECK(with("s s", "6 m / s") == 2.0);
+    CHECK(with("x m", "6 m/s") == 6.0);
+    CHECK_THROWS_WITH(with("s s", "6 m/s"), ContainsSubstring("'s' is a unit and a name"));
+    CHECK_THROWS_WITH(with("m m", "6 N*m"), ContainsSubstring("around the '*'"));
+}
+
+TEST_CASE("a remainder of zero has the sign of the divisor, as in Python") {
+    CHECK_FALSE(std::signbit(value_of("n % 3", 0.0, 0.0, -6.0)));
+    CHECK(std::signbit(value_of("n % -3", 0.0, 0.0, 6.0)));
+    CHECK(value_of("n % 3", 0.0, 0.0, -7.0) == 2.0);
+}
