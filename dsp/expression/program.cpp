@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tactus::expression {
@@ -55,6 +56,9 @@ void with_function(Operation operation, Run&& run) noexcept {
         case Operation::sign: return run([](double a, double, double) { return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0; });
         case Operation::clip: return run([](double a, double b, double c) { return std::min(a > b ? a : b, c); });
         case Operation::choose: return run([](double a, double b, double c) { return a != 0.0 ? b : c; });
+        case Operation::multiply_add: return run([](double a, double b, double c) { return a * b + c; });
+        case Operation::multiply_subtract: return run([](double a, double b, double c) { return a * b - c; });
+        case Operation::subtract_product: return run([](double a, double b, double c) { return c - a * b; });
     }
 }
 
@@ -86,22 +90,34 @@ double Machine::run() noexcept {
     return at(program_.result);
 }
 
-std::span<const double> Machine::run(int count) noexcept {
-    for (const Instruction& i : program_.instructions) {
-        // A result may take the place of an operand, value by value, but never overlaps it otherwise: the loops need not
-        // look for that before they take several values at once.
-        double* const to = variable(i.to);
-        const double *const a = variable(i.a), *const b = variable(i.b), *const c = variable(i.c);
-        with_function(i.operation, [&](auto function) {
+void run_instruction(const Instruction& i, double* registers, int count) noexcept {
+    const auto at = [=](std::uint8_t index) { return registers + index * static_cast<std::size_t>(Machine::block); };
+    // A result may take the place of an operand, value by value, but never overlaps it otherwise: the loops need not look
+    // for that before they take several values at once.
+    double* const to = at(i.to);
+    const double *const a = at(i.a), *const b = at(i.b), *const c = at(i.c);
+    with_function(i.operation, [&](auto function) {
 #if defined(__clang__)
 #pragma clang loop vectorize(assume_safety)
 #else
 #pragma GCC ivdep
 #endif
-            for (int k = 0; k < count; ++k) to[k] = function(a[k], b[k], c[k]);
-        });
-    }
+        for (int k = 0; k < count; ++k) to[k] = function(a[k], b[k], c[k]);
+    });
+}
+
+std::span<const double> Machine::run(int count) noexcept {
+    for (const Instruction& i : program_.instructions) run_instruction(i, registers_.data(), count);
     return {variable(program_.result), static_cast<std::size_t>(count)};
+}
+
+void Machine::run(const float* const* inputs, float* out, int count) noexcept {
+    if (count > 1) return loop_(program_, registers_.data(), inputs, out, count);
+    for (std::size_t i = 0; i < program_.variables; ++i)
+        if (inputs[i]) *variable(i) = static_cast<double>(*inputs[i]);
+    constexpr double largest = std::numeric_limits<float>::max();
+    const double y = run();
+    *out = std::isfinite(y) ? static_cast<float>(std::clamp(y, -largest, largest)) : 0.0f;
 }
 
 }  // namespace tactus::expression

@@ -44,6 +44,9 @@ enum class Operation : std::uint8_t {
     sign,
     clip,
     choose,
+    multiply_add,       ///< a·b + c, rounded twice as the formula says
+    multiply_subtract,  ///< a·b − c
+    subtract_product,   ///< c − a·b
 };
 
 /// registers[to] = operation(registers[a], registers[b], registers[c]).
@@ -51,6 +54,12 @@ struct Instruction {
     Operation operation;
     std::uint8_t to = 0, a = 0, b = 0, c = 0;
 };
+
+/// Runs one instruction on `count` values. Of `samples.cpp`, for what has no loop of its own there.
+void run_instruction(const Instruction& instruction, double* registers, int count) noexcept;
+/// The loops of samples: for this processor.
+using SampleLoop = void (*)(const struct Program&, double*, const float* const*, float*, int) noexcept;
+SampleLoop sample_loop() noexcept;
 
 /// The value of one operation. IEEE 754; comparisons give 1 or 0, and 0 counts as false.
 double apply(Operation operation, double a, double b, double c) noexcept;
@@ -83,10 +92,14 @@ public:
     double run() noexcept;
     /// The values for the first `count` ≤ block values of each variable.
     std::span<const double> run(int count) noexcept;
+    /// Samples in, samples out: `inputs` has a place for each variable, null for one that the formula does not name. A
+    /// result that is not finite becomes 0, one beyond the range of a float its end. The same bits as `run`.
+    void run(const float* const* inputs, float* out, int count) noexcept;
 
 private:
     Program program_;
     std::vector<double> registers_;  ///< `block` values each
+    SampleLoop loop_ = sample_loop();
 };
 
 }  // namespace tactus::expression

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/expression/formula.hpp"
-#include "dsp/signal/filter/sample.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
@@ -63,8 +62,8 @@ struct Expression {
 
     void process(const Tick& tick) noexcept {
         if (is_signal_) return process_signal(tick);
-        const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
-        for (std::size_t i = 0; i < count_; ++i) *machine_.variable(i) = *ports[i]->as<double>();
+        for (std::size_t i = 0; i < count_; ++i)
+            if (used_[i]) *machine_.variable(i) = *used_[i]->as<double>();
         const double result = machine_.run();
         *out.as<double>() = std::isfinite(result) ? result : 0.0;
     }
@@ -80,26 +79,23 @@ private:
             const std::string port = "in" + std::to_string(i + 1);
             if (i < count_ && !ports[i]->connected && program.uses(i))
                 setup.fail("'" + names[i].name + "' needs a wire to '" + port + "'");
+            used_[i] = i < count_ && program.uses(i) ? ports[i] : nullptr;
             if (i >= count_ && ports[i]->connected) setup.fail("'" + port + "' has a wire but no name in 'inputs'");
         }
     }
 
     void process_signal(const Tick& tick) noexcept {
-        const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
+        const float* places[most_inputs];
         for (int from = 0; from < tick.frames; from += expression::Machine::block) {
             const int frames = std::min(tick.frames - from, expression::Machine::block);
-            for (std::size_t i = 0; i < count_; ++i)
-                std::copy_n(ports[i]->as<float>() + from, frames, machine_.variable(i));
-            const auto results = machine_.run(frames);
-            for (int k = 0; k < frames; ++k) {
-                const double y = results[static_cast<std::size_t>(k)];
-                out.as<float>()[from + k] = std::isfinite(y) ? signal::to_sample(y) : 0.0f;
-            }
+            for (std::size_t i = 0; i < count_; ++i) places[i] = used_[i] ? used_[i]->as<float>() + from : nullptr;
+            machine_.run(places, out.as<float>() + from, frames);
         }
     }
 
     expression::Machine machine_;
     std::size_t count_ = 0;
+    const AnyIn* used_[most_inputs] = {};  ///< the port of each name that the formula has
     bool is_signal_ = false;
 };
 

@@ -24,7 +24,12 @@ struct Filter {
 
     void process(const Tick& tick) noexcept {
         if (frequency != frequency_ || q != q_ || boost != boost_) design();
-        for (int i = 0; i < tick.frames; ++i) out[i] = signal::to_sample(section_(signal::finite_or_zero(in[i])));
+        // Held in registers: what is written to the output might be a member, for all that the compiler knows.
+        signal::Biquad section = section_;
+        const float* const x = &in[0];
+        float* const y = &out[0];
+        for (int i = 0; i < tick.frames; ++i) y[i] = signal::to_sample(section(signal::finite_or_zero(x[i])));
+        section_ = section;
     }
 
 private:
