@@ -324,7 +324,7 @@ TEST_CASE("touches are counted and timed") {
 
 TEST_CASE("every small patch is short, drawn without an error, and named on its page") {
     const std::filesystem::path folder = tactus::test::source_folder() / "docs/how-to";
-    const std::string page = tactus::test::slurp(folder / "compute-with-values.md");
+    const std::string page = tactus::test::slurp(folder / "gallery.md");
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "patches")) {
         const std::string text = tactus::test::slurp(entry.path());
@@ -332,6 +332,9 @@ TEST_CASE("every small patch is short, drawn without an error, and named on its 
         CHECK(std::ranges::count(text, '\n') <= 25);
         CHECK(text.starts_with("# "));
         CHECK(page.find("patches/" + entry.path().filename().string()) != std::string::npos);
+        const std::string picture = "pictures/gallery/" + entry.path().stem().string() + ".svg";
+        CHECK(page.find(picture) != std::string::npos);
+        CHECK(std::filesystem::exists(folder.parent_path() / picture));
         const Folder scratch;
         CHECK(scratch.tactus("draw " + entry.path().string() + " -o " + scratch.path.string() + "/p.svg").code == 0);
         ++count;
