@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tactus::expression {
@@ -77,26 +76,35 @@ bool Program::uses(std::size_t variable) const noexcept {
     return result == variable || std::ranges::any_of(instructions, reads);
 }
 
-Machine::Machine(Program program) : program_(std::move(program)), registers_(program_.registers * block) {
-    for (std::size_t k = 0; k < program_.constants.size(); ++k)
+Machine::Machine(Program program)
+    : program_(std::move(program)), registers_(program_.registers * block), singles_(program_.registers) {
+    for (std::size_t k = 0; k < program_.constants.size(); ++k) {
         std::fill_n(variable(program_.variables + k), block, program_.constants[k]);
+        single(program_.variables + k) = program_.constants[k];
+    }
 }
 
 double Machine::run() noexcept {
-    double* const first = registers_.data();
-    const auto at = [first](std::uint8_t index) -> double& { return first[index * static_cast<std::size_t>(block)]; };
-    for (const Instruction& i : program_.instructions)
-        with_function(i.operation, [&](auto function) { at(i.to) = function(at(i.a), at(i.b), at(i.c)); });
-    return at(program_.result);
+    for (std::size_t i = 0; i < program_.variables; ++i) single(i) = *variable(i);
+    return run_one();
 }
 
-void run_instruction(const Instruction& i, double* registers, int count) noexcept {
-    const auto at = [=](std::uint8_t index) { return registers + index * static_cast<std::size_t>(Machine::block); };
+double Machine::run_one() noexcept {
+    double* const at = singles_.data();
+    double value = at[program_.result];
+    // The last instruction makes the result: it need not be read again.
+    for (const Instruction& i : program_.instructions) {
+        with_function(i.operation, [&](auto function) { value = function(at[i.a], at[i.b], at[i.c]); });
+        at[i.to] = value;
+    }
+    return value;
+}
+
+void run_instruction(Operation operation, double* to, const double* a, const double* b, const double* c,
+                     int count) noexcept {
     // A result may take the place of an operand, value by value, but never overlaps it otherwise: the loops need not look
     // for that before they take several values at once.
-    double* const to = at(i.to);
-    const double *const a = at(i.a), *const b = at(i.b), *const c = at(i.c);
-    with_function(i.operation, [&](auto function) {
+    with_function(operation, [&](auto function) {
 #if defined(__clang__)
 #pragma clang loop vectorize(assume_safety)
 #else
@@ -107,17 +115,13 @@ void run_instruction(const Instruction& i, double* registers, int count) noexcep
 }
 
 std::span<const double> Machine::run(int count) noexcept {
-    for (const Instruction& i : program_.instructions) run_instruction(i, registers_.data(), count);
+    for (const Instruction& i : program_.instructions)
+        run_instruction(i.operation, variable(i.to), variable(i.a), variable(i.b), variable(i.c), count);
     return {variable(program_.result), static_cast<std::size_t>(count)};
 }
 
 void Machine::run(const float* const* inputs, float* out, int count) noexcept {
-    if (count > 1) return loop_(program_, registers_.data(), inputs, out, count);
-    for (std::size_t i = 0; i < program_.variables; ++i)
-        if (inputs[i]) *variable(i) = static_cast<double>(*inputs[i]);
-    constexpr double largest = std::numeric_limits<float>::max();
-    const double y = run();
-    *out = std::isfinite(y) ? static_cast<float>(std::clamp(y, -largest, largest)) : 0.0f;
+    loop_(program_, registers_.data(), inputs, out, count);
 }
 
 }  // namespace tactus::expression

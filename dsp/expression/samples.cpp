@@ -3,7 +3,6 @@
 // fused or reordered.
 #include "dsp/expression/program.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -21,17 +20,24 @@ namespace {
 
 [[gnu::always_inline]] inline void run_samples(const Program& program, double* registers, const float* const* inputs,
                                                float* out, int count) noexcept {
-    constexpr std::size_t block = Machine::block;
-    for (std::size_t i = 0; i < program.variables; ++i) {
+    constexpr std::size_t block = Machine::block, most_near = 16;
+    // What a small formula computes lies on the stack, which is in the cache; its constants stay where they are.
+    alignas(64) double near[most_near * block];
+    const std::size_t variables = program.variables, constants = variables + program.constants.size();
+    const bool is_small = program.registers - program.constants.size() <= most_near;
+    const auto place = [&](std::size_t index) -> double* {
+        if (!is_small || (index >= variables && index < constants)) return registers + index * block;
+        return near + (index < variables ? index : index - program.constants.size()) * block;
+    };
+    for (std::size_t i = 0; i < variables; ++i) {
         if (!inputs[i]) continue;
         const float* const in = inputs[i];
-        double* const to = registers + i * block;
+        double* const to = place(i);
         TACTUS_EACH_SAMPLE to[k] = static_cast<double>(in[k]);
     }
     for (const Instruction& i : program.instructions) {
-        double* const to = registers + i.to * block;
-        const double *const a = registers + i.a * block, *const b = registers + i.b * block,
-                            *const c = registers + i.c * block;
+        double* const to = place(i.to);
+        const double *const a = place(i.a), *const b = place(i.b), *const c = place(i.c);
         switch (i.operation) {
             case Operation::negate: TACTUS_EACH_SAMPLE to[k] = -a[k]; break;
             case Operation::add: TACTUS_EACH_SAMPLE to[k] = a[k] + b[k]; break;
@@ -69,10 +75,10 @@ namespace {
                     to[k] = greatest < low ? greatest : low;
                 }
                 break;
-            default: run_instruction(i, registers, count);
+            default: run_instruction(i.operation, to, a, b, c, count);
         }
     }
-    const double* const result = registers + program.result * block;
+    const double* const result = place(program.result);
     // The top bit of the sum is set where the size, as an integer, is above that of the largest float. Rarely.
     constexpr double largest = std::numeric_limits<float>::max();
     constexpr std::uint64_t sign = std::uint64_t{1} << 63, room = sign - std::bit_cast<std::uint64_t>(largest) - 1;
@@ -82,8 +88,7 @@ namespace {
         beyond |= (std::bit_cast<std::uint64_t>(result[k]) & ~sign) + room;
     }
     if ((beyond & sign) != 0)
-        for (int k = 0; k < count; ++k)
-            out[k] = std::isfinite(result[k]) ? static_cast<float>(std::clamp(result[k], -largest, largest)) : 0.0f;
+        for (int k = 0; k < count; ++k) out[k] = sample_of(result[k]);
 }
 
 void run_anywhere(const Program& program, double* registers, const float* const* inputs, float* out,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -63,9 +64,9 @@ struct Expression {
     void process(const Tick& tick) noexcept {
         if (is_signal_) return process_signal(tick);
         for (std::size_t i = 0; i < count_; ++i)
-            if (used_[i]) *machine_.variable(i) = *used_[i]->as<double>();
-        const double result = machine_.run();
-        *out.as<double>() = std::isfinite(result) ? result : 0.0;
+            if (used_[i]) machine_.single(i) = *used_[i]->as<double>();
+        const double result = machine_.run_one();
+        *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
     }
 
 private:
@@ -85,6 +86,12 @@ private:
     }
 
     void process_signal(const Tick& tick) noexcept {
+        if (tick.frames == 1) {
+            for (std::size_t i = 0; i < count_; ++i)
+                if (used_[i]) machine_.single(i) = static_cast<double>(*used_[i]->as<float>());
+            *out.as<float>() = expression::sample_of(machine_.run_one());
+            return;
+        }
         const float* places[most_inputs];
         for (int from = 0; from < tick.frames; from += expression::Machine::block) {
             const int frames = std::min(tick.frames - from, expression::Machine::block);
