@@ -2,9 +2,12 @@
 // Writes volumes in formats of other programs.
 #pragma once
 
+#include "assets/volume/scan_volume.hpp"
 #include "dsp/volume/grid.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace tactus::volume {
@@ -17,5 +20,12 @@ enum class WrittenType { int16, float32 };
 /// Error for other extensions, for more than 32767 samples along an axis of a NIfTI file, and when the file cannot be
 /// written.
 void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path);
+
+/// Writes a label map as NRRD (.nrrd: LPS, mm, gzip, one byte per sample), with names and colours of its segments as
+/// 3D Slicer stores them, so that it reads a file .seg.nrrd as a segmentation. `layout`: size, origin and spacing; its
+/// values are not read. A segment without colour is written without one. Written atomically. Throws Error for other
+/// extensions, for a name with a line break, and when the file cannot be written.
+void write_labels(const Grid& layout, std::span<const std::uint8_t> labels, std::span<const Segment> segments,
+                  const std::filesystem::path& path);
 
 }  // namespace tactus::volume

@@ -31,5 +31,6 @@ Verb device_verb();
 Verb saw_verb();
 Verb fits_verb();
 Verb assembly_verb();
+Verb segment_verb();
 
 }  // namespace tactus::bench

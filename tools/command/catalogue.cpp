@@ -24,6 +24,7 @@
     X(exposure, vibration, vibrations)    \
     X(import, bones, bones)               \
     X(info, bones, bones)                 \
+    X(segment, bones, bones)              \
     X(export, bones, bones)               \
     X(register, bones, bones)             \
     X(fracture, bones, fractures)         \

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seeds of a segmentation as brush strokes, in a file that can be written by hand.
+#pragma once
+
+#include "dsp/core/types.hpp"
+#include "dsp/segment/strokes.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::segment {
+
+/// The strokes of one fragment.
+struct SeedLabel {
+    std::string name;              ///< unique in the file, not empty
+    std::optional<Vec3> colour{};  ///< sRGB, 0 to 1; none: from a palette
+    std::vector<Stroke> strokes;
+};
+
+inline constexpr std::size_t most_labels = 100;
+
+/// Reads {"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]},
+/// ...]}; positions in LPS. Throws Error that names the label and the stroke; for fewer than two labels, too.
+std::vector<SeedLabel> read_seeds(const std::filesystem::path& path);
+/// The same from the text of a file; `file` is its name in messages.
+std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file);
+
+/// Writes such a file; lengths are rounded to 0.001 mm. Throws Error.
+void write_seeds(std::span<const SeedLabel> labels, const std::filesystem::path& path);
+
+}  // namespace tactus::segment

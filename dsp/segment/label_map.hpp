@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Labels on the voxels of a volume: where they meet, and voxels beside the graph that take the label of their bone.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus::segment {
+
+/// One label per voxel, x fastest; 0: none.
+struct LabelMap {
+    std::array<int, 3> size{0, 0, 0};
+    std::vector<std::uint8_t> label;
+};
+
+/// Gives the voxels where `open` is not 0 and that have no label the label of the nearest one, by steps across faces
+/// through such voxels; of equally near ones, the one that was reached first. Voxels that no label reaches stay 0.
+/// Returns the number of voxels that took a label.
+std::size_t spread(LabelMap& map, std::span<const std::uint8_t> open);
+
+/// Marks the voxels without a label that are in a closing of one label by a ball of `radius` (m), or in a hollow of that
+/// closing: marrow behind thin cortex. Voxels between two labels, such as those of a fracture gap, are in the closing of
+/// neither and are not marked, if the gap of each is wider than its own closing.
+std::vector<std::uint8_t> marrow_of(const LabelMap& map, const Vec3& spacing, double radius);
+
+/// Faces between voxels of two labels, `a` less than `b`.
+struct TouchingLabels {
+    std::uint8_t a = 0, b = 0;
+    std::size_t faces = 0;
+    double area = 0.0;  ///< m²
+};
+std::vector<TouchingLabels> touching_labels(const LabelMap& map, const Vec3& spacing);
+
+}  // namespace tactus::segment

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus segment: separates the fragments of a scan by random walks from painted seeds.
+#include "assets/bone/bone.hpp"
+#include "assets/bone/import_steps.hpp"
+#include "assets/bone/labels.hpp"
+#include "assets/file/json.hpp"
+#include "assets/volume/length_unit.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
+#include "tools/command/bones/scan_options.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/study/segment/segment_scan.hpp"
+#include "tools/study/workers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using file::Json;
+
+struct SegmentChoice {
+    study::SegmentSettings settings;
+    std::filesystem::path seeds, propose, certainty;
+    std::vector<std::filesystem::path> out;
+    double marrow = 2.0;  // mm
+    bool json = false;
+};
+
+Json place_json(const Vec3& m) {
+    const Vec3 p = m * 1e3;
+    return Json::array({p.x, p.y, p.z});
+}
+
+bool is_bones(const std::filesystem::path& path) { return path.extension() == ".vdb"; }
+
+void check_outputs(const SegmentChoice& choice) {
+    if (choice.out.empty() && choice.propose.empty())
+        throw Error("name the result: -o LABELS.nrrd, LABELS.seg.nrrd or BONES.vdb, or --propose SEEDS.json");
+    if (!choice.propose.empty() && (!choice.seeds.empty() || !choice.out.empty() || !choice.certainty.empty()))
+        throw Error("--propose writes seeds only; run segment again with --seeds");
+    if (choice.propose.empty() && choice.seeds.empty())
+        throw Error("give the seeds: --seeds SEEDS.json; --propose SEEDS.json writes a first version of them");
+    bone::ImportOptions source;
+    source.input = choice.settings.scan;
+    for (std::filesystem::path out : choice.out) {
+        if (out.extension() != ".nrrd" && !is_bones(out))
+            throw Error(fmt::format("{}: segment writes .nrrd and .seg.nrrd (labels) and .vdb (a bone per label)",
+                                    out.string()));
+        bone::check_output(source, out);
+    }
+    for (const auto& out : {choice.certainty, choice.propose})
+        if (!out.empty()) bone::check_output(source, out);
+}
+
+void write_bones(const study::ScanGraph& scan, const study::SegmentedScan& found,
+                 const std::vector<volume::Segment>& segments, const SegmentChoice& choice,
+                 const std::filesystem::path& path) {
+    volume::Grid labels{scan.scan.size, scan.scan.origin, scan.scan.spacing,
+                        std::vector<float>(found.map.label.begin(), found.map.label.end())};
+    bone::LabelBone how;
+    // Scanner values are no densities.
+    if (scan.hu != volume::HuKind::scanner) how.hu = &scan.scan;
+    how.hu_is_masked = scan.hu == volume::HuKind::masked;
+    bone::ImportOptions options;
+    options.input = choice.settings.scan;
+    bone::ImportSummary summary;
+    summary.frame = "LPS";
+    summary.hu = volume::name_of(how.hu ? scan.hu : volume::HuKind::none);
+    summary.notes = scan.notes;
+    const std::string hash = bone::hash_of_source(choice.settings.scan);
+    std::vector<bone::Bone> bones;
+    for (const volume::Segment& segment : segments) {
+        bones.push_back(bone::bone_of_label(labels, segment, how, choice.settings.run));
+        bone::add_provenance(bones.back(), options, summary, hash);
+        bones.back().provenance["seeds"] = choice.seeds.filename().string();
+    }
+    bone::save_bones(bones, path);
+}
+
+Json json_of(const study::ScanGraph& scan, const study::SegmentedScan& found, const SegmentChoice& choice) {
+    Json json = Json::object();
+    Json labels = Json::array(), islands = Json::array(), uncertain = Json::array(), touching = Json::array();
+    for (const study::SegmentedLabel& l : found.labels)
+        labels.push_back({{"name", l.name}, {"voxels", l.voxels}, {"volume_mm3", l.volume * 1e9}});
+    for (const study::UnseededIsland& i : found.islands)
+        islands.push_back({{"voxels", i.voxels}, {"centre_mm", place_json(i.centre)}});
+    for (const study::UncertainPlace& u : found.uncertain)
+        uncertain.push_back({{"voxels", u.voxels}, {"deepest_mm", place_json(u.deepest)}});
+    for (const study::TouchingFace& t : found.touching)
+        touching.push_back({{"labels", Json::array({t.a, t.b})}, {"area_mm2", t.area * 1e6}, {"as_scanned", true}});
+    Json out = Json::array();
+    for (const auto& path : choice.out) out.push_back(path.string());
+    json["files"] = out;
+    json["labels"] = labels;
+    json["unseeded_islands"] = islands;
+    json["uncertain"] = uncertain;
+    json["touching"] = touching;
+    json["marrow_voxels"] = found.marrow_voxels;
+    json["metal_voxels"] = scan.metal_voxels;
+    json["threshold"] = {{"value", scan.threshold}, {"from", scan.threshold_from}};
+    json["gap_law"] = {{"bright", scan.law.bright}, {"width", scan.law.width}};
+    json["residual"] = found.residual;
+    json["iterations"] = found.iterations;
+    json["seconds"] = found.seconds;
+    json["certainty_p05"] = found.certainty_p05;
+    json["notes"] = scan.notes;
+    return json;
+}
+
+constexpr std::size_t shown = 3;  // of a list; JSON has all
+
+void print_touching(const std::vector<study::TouchingFace>& touching) {
+    for (std::size_t n = 0; n < std::min(shown, touching.size()); ++n)
+        fmt::print("  {} and {} touch over {:.0f} mm²\n", touching[n].a, touching[n].b, touching[n].area * 1e6);
+    if (touching.size() > shown) fmt::print("  {} more pairs touch\n", touching.size() - shown);
+    if (!touching.empty())
+        fmt::print("  where fragments touch in the scan their faces are as scanned, and do not show where they fit\n");
+}
+
+void print_islands(const std::vector<study::UnseededIsland>& islands) {
+    std::size_t rest = 0;
+    for (std::size_t n = 0; n < islands.size(); ++n) {
+        const Vec3 p = islands[n].centre * 1e3;
+        if (n < shown)
+            fmt::print("  no seed in an island of {} voxels about {:.1f} {:.1f} {:.1f} mm\n", islands[n].voxels, p.x,
+                       p.y, p.z);
+        else rest += islands[n].voxels;
+    }
+    if (rest > 0) fmt::print("  no seed in {} more islands, {} voxels in all\n", islands.size() - shown, rest);
+}
+
+void print(const study::ScanGraph& scan, const study::SegmentedScan& found) {
+    const bool is_hu = scan.hu != volume::HuKind::scanner;
+    fmt::print("bone from {:g}{} ({}), {} voxels\n", scan.threshold, is_hu ? " HU" : "", scan.threshold_from,
+               scan.graph.nodes());
+    for (const study::SegmentedLabel& l : found.labels)
+        fmt::print("  {:<20} {:>9} voxels  {:>9.1f} mm³\n", l.name, l.voxels, l.volume * 1e9);
+    print_touching(found.touching);
+    print_islands(found.islands);
+    if (!found.uncertain.empty()) {
+        const Vec3 p = found.uncertain.front().deepest * 1e3;
+        fmt::print("  least certain at {:.1f} {:.1f} {:.1f} mm ({} voxels below 0.4): paint there first\n", p.x, p.y,
+                   p.z, found.uncertain.front().voxels);
+    }
+    for (const std::string& note : scan.notes) fmt::print("  {}\n", note);
+    fmt::print(
+        "residual {:.1e} after {} iterations, {:.2f} s of processor time; 95 % of the voxels are more certain than "
+        "{:.2f}\n",
+        found.residual, found.iterations, found.seconds, found.certainty_p05);
+}
+
+int segment_bone(const SegmentChoice& choice) {
+    check_outputs(choice);
+    study::SegmentSettings settings = choice.settings;
+    settings.marrow = choice.marrow * 1e-3;
+    settings.run = study::on_threads();
+    std::vector<segment::SeedLabel> seeds;
+    if (choice.propose.empty()) seeds = segment::read_seeds(choice.seeds);
+    const study::ScanGraph scan = study::scan_graph(settings);
+    if (!choice.propose.empty()) {
+        seeds = study::proposed_seeds(scan);
+        segment::write_seeds(seeds, choice.propose);
+        if (choice.json)
+            fmt::print("{}\n", Json{{"file", choice.propose.string()}, {"fragments", seeds.size()}}.dump(2));
+        else
+            fmt::print("{}: seeds of {} fragments; look at them, correct and name them\n", choice.propose.string(),
+                       seeds.size());
+        return done;
+    }
+    const study::SegmentedScan found = study::segment_scan(scan, seeds, settings, choice.seeds.string());
+    std::vector<volume::Segment> segments;
+    for (std::size_t l = 0; l < found.labels.size(); ++l)
+        segments.push_back({static_cast<int>(l) + 1, found.labels[l].name, found.labels[l].colour});
+    for (const auto& path : choice.out)
+        if (is_bones(path)) write_bones(scan, found, segments, choice, path);
+        else volume::write_labels(scan.scan, found.map.label, segments, path);
+    if (!choice.certainty.empty())
+        volume::write_volume(found.certainty, volume::WrittenType::float32, choice.certainty);
+    if (choice.json) fmt::print("{}\n", json_of(scan, found, choice).dump(2));
+    else print(scan, found);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SegmentChoice>();
+    study::SegmentSettings& settings = choice->settings;
+    verb.add("scan", settings.scan, "a CT: DICOM folder or zip, NRRD, NIfTI, InVesalius").required();
+    verb.add("--seeds", choice->seeds, "brush strokes per fragment (.json); see docs/how-to/segment.md");
+    verb.add("-o,--out", choice->out,
+             ".nrrd or .seg.nrrd: a label per fragment; .vdb: a bone per fragment; may be given several times")
+        .one_each();
+    verb.add("--propose", choice->propose, "write a first version of the seeds (.json) for correction by hand");
+    verb.add("--certainty", choice->certainty,
+             "write how certain each voxel is (.nrrd): 1 - second largest / largest probability");
+    verb.add("--threshold", settings.threshold,
+             "value at and above which a voxel is bone, HU (default: the one that info suggests)")
+        .unit("HU");
+    verb.add("--metal", settings.metal, "HU at and above which a voxel is metal and takes no part")
+        .unit("HU")
+        .shows_default();
+    verb.add("--marrow", choice->marrow,
+             "take in marrow behind cortex that is open by less than twice this, mm; 0: none")
+        .unit("mm")
+        .range(0.0, 20.0)
+        .shows_default();
+    verb.add("--series", settings.read.series, "DICOM: the series to take, by its UID or the end of it");
+    add_unit(verb, settings.read.unit);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return segment_bone(*choice); };
+}
+
+}  // namespace
+
+Verb segment_verb() { return {"segment", "separate the fragments of a CT by random walks from painted seeds", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/segment/segment_scan.hpp"
+
+#include "assets/bone/labels.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/segment/random_walk.hpp"
+#include "dsp/segment/strokes.hpp"
+#include "dsp/segment/uncertain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace tactus::study {
+
+namespace {
+
+double processor_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segment::SeedLabel> labels,
+                                   const std::string& file) {
+    std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
+    for (std::size_t l = 0; l < labels.size(); ++l)
+        for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)
+            if (segment::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s], static_cast<std::uint8_t>(l + 1),
+                               seed) == 0)
+                throw Error(
+                    fmt::format("{}: label '{}', stroke {}: it touches no voxel of bone (values from {:g} on); "
+                                "move it, or make it wider",
+                                file, labels[l].name, s + 1, scan.threshold));
+    for (std::size_t l = 0; l < labels.size(); ++l)
+        if (std::find(seed.begin(), seed.end(), static_cast<std::uint8_t>(l + 1)) == seed.end())
+            throw Error(
+                fmt::format("{}: later labels are painted over all strokes of label '{}'", file, labels[l].name));
+    return seed;
+}
+
+std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const std::uint8_t> label) {
+    const segment::GraphParts parts = segment::parts_of(scan.graph);
+    std::vector<UnseededIsland> of_part(parts.nodes.size());
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] != 0) continue;
+        UnseededIsland& island = of_part[static_cast<std::size_t>(parts.part[n])];
+        const auto at = scan.graph.place(n);
+        ++island.voxels;
+        island.centre += scan.box.position(at[0], at[1], at[2]);
+    }
+    std::erase_if(of_part, [](const UnseededIsland& island) { return island.voxels == 0; });
+    for (UnseededIsland& island : of_part) island.centre /= static_cast<double>(island.voxels);
+    std::stable_sort(of_part.begin(), of_part.end(),
+                     [](const UnseededIsland& a, const UnseededIsland& b) { return a.voxels > b.voxels; });
+    return of_part;
+}
+
+double share_below(std::vector<float> values, double share) {
+    if (values.empty()) return 0.0;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return static_cast<double>(*at);
+}
+
+/// Voxels beside the bone that take the label of the nearest bone: marrow, and in a masked scan all that are not 0.
+std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::LabelMap& map, double marrow) {
+    std::vector<std::uint8_t> open(map.label.size(), 0);
+    if (marrow > 0.0) open = segment::marrow_of(map, scan.scan.spacing, marrow);
+    if (scan.hu == volume::HuKind::masked)
+        for (std::size_t v = 0; v < open.size(); ++v) open[v] |= scan.scan.values[v] != 0.0f;
+    return open;
+}
+
+}  // namespace
+
+SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,
+                           const SegmentSettings& settings, const std::string& seeds_file) {
+    const std::vector<std::uint8_t> seed = seeds_in(scan, seeds, seeds_file);
+    const double begin = processor_seconds();
+    const segment::Walks walks =
+        segment::random_walks(scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
+    SegmentedScan out;
+    out.seconds = processor_seconds() - begin;
+    out.residual = walks.residual;
+    out.iterations = walks.iterations;
+    const std::vector<std::uint8_t> label = segment::labels_of(walks);
+    const std::vector<float> certainty = segment::certainty_of(walks);
+
+    out.map = {scan.scan.size, std::vector<std::uint8_t>(scan.scan.count(), 0)};
+    out.certainty = {scan.scan.size, scan.scan.origin, scan.scan.spacing, std::vector<float>(scan.scan.count(), 0.0f)};
+    std::vector<float> labelled;
+    // Outside of the labels no region is uncertain: islands are reported by themselves.
+    std::vector<float> of_labelled(certainty.size(), 1.0f);
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        const auto at = scan.graph.place(n);
+        const std::size_t v = scan.scan.index(at[0] + scan.box_at[0], at[1] + scan.box_at[1], at[2] + scan.box_at[2]);
+        out.map.label[v] = label[n];
+        out.certainty.values[v] = certainty[n];
+        if (label[n] == 0) continue;
+        labelled.push_back(certainty[n]);
+        of_labelled[n] = certainty[n];
+    }
+    out.certainty_p05 = share_below(std::move(labelled), 0.05);
+    out.islands = islands_of(scan, label);
+    for (const segment::UncertainRegion& region : segment::uncertain_regions(scan.graph, of_labelled))
+        out.uncertain.push_back(
+            {region.nodes, scan.box.position(region.deepest[0], region.deepest[1], region.deepest[2])});
+    const std::vector<std::uint8_t> open = open_voxels(scan, out.map, settings.marrow);
+    for (const segment::TouchingLabels& t : segment::touching_labels(out.map, scan.scan.spacing))
+        out.touching.push_back({seeds[t.a - 1u].name, seeds[t.b - 1u].name, t.area});
+    std::stable_sort(out.touching.begin(), out.touching.end(),
+                     [](const TouchingFace& a, const TouchingFace& b) { return a.area > b.area; });
+    out.marrow_voxels = segment::spread(out.map, open);
+
+    const Vec3& h = scan.scan.spacing;
+    for (std::size_t l = 0; l < seeds.size(); ++l)
+        out.labels.push_back(
+            {seeds[l].name, seeds[l].colour.value_or(bone::label_colour(static_cast<int>(l) + 1)), 0, 0.0});
+    for (const std::uint8_t l : out.map.label)
+        if (l != 0) ++out.labels[l - 1u].voxels;
+    for (SegmentedLabel& l : out.labels) l.volume = static_cast<double>(l.voxels) * h.x * h.y * h.z;
+    return out;
+}
+
+}  // namespace tactus::study

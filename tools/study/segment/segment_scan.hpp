@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Separates the fragments of a scan by random walks from painted seeds.
+#pragma once
+
+#include "assets/segment/seeds_file.hpp"
+#include "assets/volume/scan_volume.hpp"
+#include "dsp/core/jobs.hpp"
+#include "dsp/segment/label_map.hpp"
+#include "dsp/segment/voxel_graph.hpp"
+#include "dsp/volume/grid.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+struct SegmentSettings {
+    std::filesystem::path scan;      ///< as for volume::read_volume
+    volume::ReadOptions read;
+    std::optional<double> threshold;  ///< values at and above it are bone; none: bone::suggested_threshold
+    double metal = 2500.0;           ///< HU; values at and above it take no part; no meaning for uncalibrated values
+    double marrow = 2e-3;            ///< m: radius of the closing that takes in marrow; 0: none
+    RunJobs run = run_in_turn;
+};
+
+/// The bone of a scan as a graph.
+struct ScanGraph {
+    volume::Grid scan;               ///< values on LPS axes
+    volume::HuKind hu = volume::HuKind::calibrated;
+    std::vector<std::string> notes;  ///< corrections while reading, and what was left out; one sentence each
+    double threshold = 0.0;
+    std::string threshold_from;      ///< "given", or the method
+    std::size_t metal_voxels = 0;
+    segment::GapLaw law;
+
+    volume::Grid box;                ///< the part of the scan around the bone; values are those of the scan
+    std::array<int, 3> box_at{0, 0, 0};  ///< its first sample in the scan
+    segment::VoxelGraph graph;       ///< of `box`
+    std::vector<std::int32_t> node_of_voxel;  ///< of `box`
+};
+/// Reads a scan and makes its graph. Throws Error for scans without bone and for label maps.
+ScanGraph scan_graph(const SegmentSettings& settings);
+
+/// Strokes that segment::propose_seeds finds, named "fragment 1" and on. Throws Error when there are fewer than two.
+std::vector<segment::SeedLabel> proposed_seeds(const ScanGraph& scan);
+
+struct SegmentedLabel {
+    std::string name;
+    Vec3 colour{0.0};        ///< sRGB, 0 to 1
+    std::size_t voxels = 0;
+    double volume = 0.0;     ///< m³
+};
+struct UnseededIsland {
+    std::size_t voxels = 0;
+    Vec3 centre{0.0};  ///< m, mean of its voxels
+};
+struct UncertainPlace {
+    std::size_t voxels = 0;
+    Vec3 deepest{0.0};  ///< m
+};
+struct TouchingFace {
+    std::string a, b;
+    double area = 0.0;  ///< m²
+};
+
+struct SegmentedScan {
+    segment::LabelMap map;            ///< of the whole scan
+    volume::Grid certainty;           ///< of the whole scan, 0 where there is no bone
+    std::vector<SegmentedLabel> labels;
+    std::vector<UnseededIsland> islands;     ///< largest first
+    std::vector<UncertainPlace> uncertain;   ///< regions with certainty below 0.4, largest first
+    std::vector<TouchingFace> touching;  ///< labels that meet without a gap, widest first: their faces are as scanned
+    std::size_t marrow_voxels = 0;  ///< took the label of the nearest bone
+    double residual = 0.0;
+    int iterations = 0;
+    double certainty_p05 = 0.0;  ///< 5 % of the bone voxels with a label are less certain
+    double seconds = 0.0;  ///< processor time of the solver
+};
+/// Throws Error for strokes that touch no bone, and for labels whose strokes are all painted over by later ones;
+/// `seeds_file` is the name in the message.
+SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,
+                           const SegmentSettings& settings, const std::string& seeds_file);
+
+}  // namespace tactus::study
