@@ -13,7 +13,7 @@ namespace tactus::nodes {
 #define TACTUS_GUIDE_ABOUT                                                                                           \
     " Conservative spring, damper, and both within 'max_force': passive but for sampling, which gives at most half " \
     "of "                                                                                                            \
-    "stiffness times squared step per tick. A damping above stiffness × (half a period + delay) takes that again "  \
+    "stiffness times squared step per tick. A damping above stiffness × (half a period + delay) takes that again "   \
     "where "                                                                                                         \
     "the velocity is known in time; the energy cap of device_output does so always."
 
