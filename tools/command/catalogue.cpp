@@ -61,7 +61,8 @@
     X(plan_mirror, planning)      \
     X(plan_gap, planning)         \
     X(plan_export, planning)      \
-    X(plan_report, planning)
+    X(plan_report, planning)      \
+    X(plan_fibula, planning)
 
 namespace tactus::command {
 

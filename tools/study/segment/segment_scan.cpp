@@ -8,6 +8,7 @@
 #include "dsp/segment/uncertain.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <ctime>
@@ -22,8 +23,33 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Throws Error when painting would take minutes: many wide strokes.
+void check_work(const ScanGraph& scan, std::span<const segment::SeedLabel> labels, const std::string& file) {
+    constexpr double most_voxels = 5e9;
+    const Vec3& h = scan.box.spacing;
+    double voxels = 0.0;
+    for (const segment::SeedLabel& label : labels)
+        for (const segment::Stroke& stroke : label.strokes)
+            for (std::size_t n = 0; n < stroke.points.size(); ++n) {
+                const Vec3 reach =
+                    glm::abs(stroke.points[std::min(n + 1, stroke.points.size() - 1)] - stroke.points[n]) +
+                    2.0 * stroke.radius;
+                double box = 1.0;
+                for (int axis = 0; axis < 3; ++axis)
+                    box *= std::min(reach[axis] / h[axis] + 1.0,
+                                    static_cast<double>(scan.box.size[static_cast<std::size_t>(axis)]));
+                voxels += box;
+            }
+    if (voxels > most_voxels)
+        throw Error(
+            fmt::format("{}: the strokes cover {:.0f} million voxels, counted each time; use fewer points, or "
+                        "narrower strokes",
+                        file, voxels * 1e-6));
+}
+
 std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segment::SeedLabel> labels,
                                    const std::string& file) {
+    check_work(scan, labels, file);
     std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
     for (std::size_t l = 0; l < labels.size(); ++l)
         for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)

@@ -192,6 +192,12 @@ TEST_CASE("segment refuses what it cannot use with one line and writes nothing",
                  R"({"labels": [{"name": "a", "strokes": [{"radius_mm": 1, "points_mm": [[25.5, 166, 418]]}]},
         {"name": "b", "strokes": [{"points_mm": [[25.5, 166, 418]]}]}]})");
     refused(ct + " --threshold 200 --seeds " + folder / "over.json" + out, "painted over all strokes of label 'a'");
+    std::string points = "[25.5, 166, 418]";
+    for (int n = 0; n < 300000; ++n) points += ", [25.5, 166, 418]";
+    folder.write("wide.json", R"({"labels": [{"name": "a", "strokes": [{"points_mm": [[-16.0, 166, 418]]}]},
+        {"name": "b", "strokes": [{"radius_mm": 100, "points_mm": [)" +
+                                  points + "]}]}]}");
+    refused(ct + " --threshold 200 --seeds " + folder / "wide.json" + out, "use fewer points");
     volume::Grid empty = two_bones();
     std::fill(empty.values.begin(), empty.values.end(), 0.0f);
     empty.values[0] = std::nanf("");

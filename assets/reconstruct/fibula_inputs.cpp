@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/reconstruct/fibula_inputs.hpp"
+
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::reconstruct {
+
+namespace {
+
+using file::Json;
+
+constexpr double mm = 1e-3, farthest_mm = 1e5;
+constexpr std::size_t most_planes = 6;
+
+Vec3 vector_of(const Json& json, const char* key, const std::string& where) {
+    const Json* found = json.find(key);
+    const bool is_vector = found && found->is_array() && found->size() == 3 &&
+                           std::all_of(found->begin(), found->end(), [](const Json& x) { return x.is_number(); });
+    if (!is_vector) throw Error(fmt::format("{}: '{}' must be a list of three numbers", where, key));
+    const Vec3 v((*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>());
+    if (!is_finite(v) || std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > farthest_mm)
+        throw Error(fmt::format("{}: '{}' has a number beyond {:.0f}", where, key, farthest_mm));
+    return v;
+}
+
+double length_of(const Json& json, const char* key, double otherwise, double most_mm, const std::string& file) {
+    const Json* found = json.find(key);
+    if (!found) return otherwise;
+    const double value = found->is_number() ? found->get<double>() : -1.0;
+    if (!(value >= 0.0 && value <= most_mm))
+        throw Error(fmt::format("{}: '{}' must be a number from 0 to {:.0f}", file, key, most_mm));
+    return value * mm;
+}
+
+}  // namespace
+
+FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor) {
+    Json json;
+    try {
+        json = Json::parse(text);
+    } catch (const file::JsonSyntaxError& error) {
+        throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
+    }
+    if (!json.is_object() || !json.contains("mandible_planes") || !json["mandible_planes"].is_array() ||
+        !json.contains("fibula_line") || !json["fibula_line"].is_object())
+        throw Error(fmt::format("{}: expected an object with 'mandible_planes' (a list) and 'fibula_line'", file));
+    if (const Json* units = json.find("units"); units && !(units->is_string() && units->as_text() == "mm"))
+        throw Error(fmt::format("{}: 'units' must be \"mm\"", file));
+    const Json& planes = json["mandible_planes"];
+    if (planes.size() < 2 || planes.size() > most_planes)
+        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
+    FibulaInputs inputs;
+    for (const Json& one : planes) {
+        const std::string where = fmt::format("{}: plane {}", file, inputs.planes.size() + 1);
+        if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
+        JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
+        if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
+        if (one.contains("y")) plane.y = vector_of(one, "y", where);
+        inputs.planes.push_back(plane);
+    }
+    const std::string line = file + ": fibula_line";
+    inputs.line_point = vector_of(json["fibula_line"], "point", line) * mm;
+    inputs.line_direction = vector_of(json["fibula_line"], "direction", line);
+    if (const Json* leg = json.find("leg")) {
+        const std::string text_of_leg = leg->is_string() ? leg->as_text() : "";
+        if (text_of_leg != "left" && text_of_leg != "right")
+            throw Error(fmt::format("{}: 'leg' must be \"left\" or \"right\"", file));
+        inputs.leg = text_of_leg == "left" ? Leg::left : Leg::right;
+    }
+    // The name that the published inputs use, too.
+    inputs.between = length_of(json, "additional_between_space_mm_default", inputs.between, 100.0, file);
+    inputs.between = length_of(json, "between_space_mm", inputs.between, 100.0, file);
+    inputs.distal_margin = length_of(json, "distal_margin_mm", inputs.distal_margin, 1000.0, file);
+    inputs.proximal_margin = length_of(json, "proximal_margin_mm", inputs.proximal_margin, 1000.0, file);
+    if (const Json* along = json.find("along_line_mm")) {
+        const bool is_list = along->is_array() && along->size() + 1 == planes.size() &&
+                             std::all_of(along->begin(), along->end(), [](const Json& x) {
+                                 return x.is_number() && std::abs(x.get<double>()) <= farthest_mm;
+                             });
+        if (!is_list)
+            throw Error(fmt::format("{}: 'along_line_mm' must be a list of {} numbers, one per segment", file,
+                                    planes.size() - 1));
+        for (const Json& start : *along) inputs.along_line.push_back(start.get<double>() * mm);
+    }
+    if (const Json* mesh = json.find("donor")) {
+        if (!mesh->is_string() || mesh->as_text().empty())
+            throw Error(fmt::format("{}: 'donor' must be the path of a mesh", file));
+        if (donor) *donor = mesh->as_text();
+    }
+    return inputs;
+}
+
+FibulaInputs read_fibula_inputs(const std::filesystem::path& path) {
+    std::string donor;
+    FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor);
+    if (!donor.empty()) inputs.donor = mesh::load_mesh(path.parent_path() / donor, mm);
+    return inputs;
+}
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is planned for a fibula free flap, in a file.
+#pragma once
+
+#include "dsp/reconstruct/fibula_plan.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tactus::reconstruct {
+
+/// Reads
+///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],
+///      "fibula_line": {"point": [...], "direction": [...]}, "leg": "left", "between_space_mm": 1.5,
+///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "donor": "fibula.stl"}
+/// in LPS; all from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
+/// read. The donor's path is relative to the file. Throws Error.
+FibulaInputs read_fibula_inputs(const std::filesystem::path& path);
+
+/// The same from the text of a file, without the donor, whose path is returned in `donor` (empty: none); `file` is the
+/// name in messages.
+FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor = nullptr);
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A fibula free flap: where a straight donor bone is cut so that its segments fill a gap between planes of a jaw.
+#pragma once
+
+#include "dsp/core/types.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/reconstruct/section.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::reconstruct {
+
+/// A planned cut of the jaw, or a joint between two segments.
+struct JawPlane {
+    Vec3 origin{0.0};             ///< on the axis of the segments, m
+    std::optional<Vec3> normal;   ///< none: the plane bisects the angle between its two segments (not at the ends)
+    std::optional<Vec3> y;  ///< a direction in the plane; the segment after it turns about its axis with it; none:
+        ///< superior, projected into the plane
+};
+
+enum class Leg { left, right };
+
+/// What is planned. Frame LPS for jaw and donor; they need not share an origin.
+struct FibulaInputs {
+    std::vector<JawPlane> planes;  ///< 2 to 6, in order along the jaw
+    Vec3 line_point{0.0};  ///< on the donor's axis
+    Vec3 line_direction{0.0, 0.0, 1.0};  ///< from distal to proximal
+    Leg leg = Leg::left;  ///< tells medial from lateral
+    double between =
+        1.5e-3;  ///< m: wanted space between osteotomies along the line (BoneReconstructionPlanner's default)
+    double distal_margin = 75e-3;  ///< m of donor left at the ankle (BoneReconstructionPlanner's default)
+    double proximal_margin = 60e-3;  ///< m left at the knee: a placeholder, not from a source
+    double farthest_from_line = 15e-3;  ///< m: sections of a straight donor have their centre nearer to the line
+    double short_segment = 20e-3;  ///< m: contains a periosteal branch in 94 % (Laugharne 2015)
+    double very_short_segment = 15e-3;  ///< m: in 83 %
+    /// Where the line meets the first plane of each segment, from line_point, m; empty: placed from the distal margin
+    /// (without a donor: from line_point) with the wanted space between.
+    std::vector<double> along_line;
+    std::optional<geometry::TriangleSurface> donor;  ///< its surface; gaps and margins need it
+};
+
+struct FibulaSegment {
+    double length_centre = 0.0;  ///< m, between the origins of its planes
+    std::optional<double> length_shortest, length_longest;  ///< m, along the line between the outlines of its sections
+    std::array<double, 2> tilt{};  ///< rad, between each plane's normal and the axis
+    double end_angle = 0.0;  ///< rad, between its two planes
+    std::array<double, 2> along_line{};  ///< m, where the line meets its planes, from line_point
+    std::array<Plane, 2> donor_plane;  ///< normals along the line
+    Pose donor_to_target;
+};
+
+enum class PlanWarning {
+    short_segment,  ///< may be without blood supply
+    very_short_segment,
+    close_osteotomies,  ///< less space between two segments than wanted
+    distal_margin,
+    proximal_margin,
+    section_mismatch  ///< a joint does not bisect: its two sections differ
+};
+const char* name_of(PlanWarning warning);  ///< "short-segment", ...
+
+struct FibulaWarning {
+    PlanWarning code;
+    std::string text;
+    int segment = 0;  ///< from 0; of a joint: the segment before it
+};
+
+struct FibulaPlan {
+    std::vector<FibulaSegment> segments;
+    std::vector<double> wedges;  ///< rad, at each joint: the angle of the wedge between two segments in the donor
+    std::vector<std::optional<double>> clearances;  ///< m, along the line between neighbouring segments; none: no donor
+    std::vector<FibulaWarning> warnings;
+};
+
+/// Each segment's axis runs from one plane's origin to the next one's. The frame of a segment in the jaw has z along its
+/// axis and x = y of its first plane × z; that of the donor has z along the line and x medial (line × posterior). Both
+/// have their origin where the axis meets the first plane. The transform maps one frame to the other, and the cuts of
+/// the donor are the jaw's planes mapped back (after BoneReconstructionPlanner).
+/// Throws Error for fewer than two or more than six planes, origins nearer than 1 mm to each other, a plane without
+/// normal at an end, a plane that is nearly parallel to a segment (more than 75° of tilt), a donor that the line leaves,
+/// and a donor that is too short.
+FibulaPlan plan_fibula(const FibulaInputs& inputs);
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan fibula: where a fibula is cut so that its segments fill a gap between planes of a jaw.
+#include "assets/file/json.hpp"
+#include "assets/reconstruct/fibula_inputs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+namespace tactus::command {
+
+namespace {
+
+using file::Json;
+using reconstruct::FibulaPlan;
+using reconstruct::FibulaSegment;
+
+struct FibulaChoice {
+    std::filesystem::path inputs;
+    bool json = false;
+};
+
+double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+
+Json in_mm(const std::optional<double>& metres) { return metres ? Json(*metres * 1e3) : Json(nullptr); }
+
+/// Row by row; lengths in mm.
+Json matrix_of(const Pose& pose) {
+    const Mat3 turn = glm::mat3_cast(pose.orientation);
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row)
+        rows.push_back(Json::array({turn[0][row], turn[1][row], turn[2][row], pose.position[row] * 1e3}));
+    rows.push_back(Json::array({0.0, 0.0, 0.0, 1.0}));
+    return rows;
+}
+
+Json json_of(const FibulaPlan& plan) {
+    Json segments = Json::array(), wedges = Json::array(), clearances = Json::array(), warnings = Json::array();
+    for (const FibulaSegment& s : plan.segments) {
+        Json one = Json::object();
+        one["length_centre_mm"] = s.length_centre * 1e3;
+        one["length_shortest_mm"] = in_mm(s.length_shortest);
+        one["length_longest_mm"] = in_mm(s.length_longest);
+        one["tilt_deg"] = Json::array({degrees(s.tilt[0]), degrees(s.tilt[1])});
+        one["end_angle_deg"] = degrees(s.end_angle);
+        one["donor_to_target"] = matrix_of(s.donor_to_target);
+        one["along_line_mm"] = Json::array({s.along_line[0] * 1e3, s.along_line[1] * 1e3});
+        segments.push_back(one);
+    }
+    for (const double wedge : plan.wedges) wedges.push_back(degrees(wedge));
+    for (const auto& clearance : plan.clearances) clearances.push_back(in_mm(clearance));
+    for (const reconstruct::FibulaWarning& w : plan.warnings)
+        warnings.push_back({{"code", reconstruct::name_of(w.code)}, {"text", w.text}, {"segment", w.segment}});
+    Json json = Json::object();
+    json["segments"] = segments;
+    json["wedges_deg"] = wedges;
+    json["clearances_mm"] = clearances;
+    json["warnings"] = warnings;
+    return json;
+}
+
+void print(const FibulaPlan& plan) {
+    for (std::size_t n = 0; n < plan.segments.size(); ++n) {
+        const FibulaSegment& s = plan.segments[n];
+        fmt::print("segment {}: {:.2f} mm", n + 1, s.length_centre * 1e3);
+        if (s.length_shortest)
+            fmt::print(" ({:.2f} to {:.2f} mm on the surface)", *s.length_shortest * 1e3, *s.length_longest * 1e3);
+        fmt::print(", cuts tilted by {:.2f}° and {:.2f}°, {:.2f}° between them; {:.2f} to {:.2f} mm along the line\n",
+                   degrees(s.tilt[0]), degrees(s.tilt[1]), degrees(s.end_angle), s.along_line[0] * 1e3,
+                   s.along_line[1] * 1e3);
+        if (n < plan.wedges.size()) {
+            fmt::print("  then a wedge of {:.2f}°", degrees(plan.wedges[n]));
+            if (plan.clearances[n]) fmt::print(", {:.2f} mm of bone between the cuts", *plan.clearances[n] * 1e3);
+            fmt::print("\n");
+        }
+    }
+    for (const reconstruct::FibulaWarning& w : plan.warnings) fmt::print("warning: {}\n", w.text);
+    fmt::print("for research, not a medical device\n");
+}
+
+int fibula(const FibulaChoice& choice) {
+    const reconstruct::FibulaInputs inputs = reconstruct::read_fibula_inputs(choice.inputs);
+    const FibulaPlan plan = reconstruct::plan_fibula(inputs);
+    if (choice.json) fmt::print("{}\n", json_of(plan).dump(2));
+    else print(plan);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<FibulaChoice>();
+    verb.add("inputs", choice->inputs, "planes of the jaw, line and surface of the fibula (.json)").required();
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return fibula(*choice); };
+}
+
+}  // namespace
+
+Verb plan_fibula_verb() {
+    return {"fibula", "cuts of a fibula whose segments fill a gap of a jaw: lengths, angles, poses, warnings", add};
+}
+
+}  // namespace tactus::command
