@@ -18,13 +18,14 @@ set_property(SOURCE devices/hosted/host_process.cpp APPEND PROPERTY
 
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.
 foreach(kind bones cases equalisers saw tasks)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/library/${kind} DESTINATION ${installed_library} PATTERN "saw-vibration.json" EXCLUDE)
 endforeach()
 
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.toml")
 
 # Man pages and completions are there when the target `manuals` has been built.
 set(manuals ${CMAKE_BINARY_DIR}/manuals)

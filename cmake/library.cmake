@@ -8,6 +8,13 @@ foreach(kind patches displays tasks)
   endforeach()
 endforeach()
 
+# The gallery: small patches that `tactus new` copies.
+file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/how-to/patches/*.toml)
+foreach(file ${examples})
+  get_filename_component(name ${file} NAME)
+  configure_file(${file} ${CMAKE_BINARY_DIR}/library/examples/${name} COPYONLY)
+endforeach()
+
 # The bone and the saw that come with Tactus are computed, not kept; again only when their generator has changed.
 add_executable(make_library tools/make_library.cpp)
 target_link_libraries(make_library PRIVATE tactus_assets tactus_flags)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Writes the pages that repeat what the command says, reference/nodes.md and reference/verbs.md:
+# Writes the pages that repeat what the command says, reference/nodes.md, value-types.md and verbs.md:
 # docs/generate.sh [COMMAND [FOLDER]]
 set -euo pipefail
 docs=$(dirname "$(readlink -f "$0")")
@@ -10,6 +10,7 @@ folder=${2:-$docs/reference}
 command -v python3 >/dev/null || { echo "docs/generate.sh: needs python3" >&2; exit 2; }
 
 "$tactus" nodes --json | python3 "$docs/nodes_page.py" "$docs/../nodes/catalogue.cpp" >"$folder/nodes.md"
+"$tactus" nodes --json | python3 -B "$docs/types_page.py" "$docs/../nodes/catalogue.cpp" >"$folder/value-types.md"
 
 # The names under the headings that follow the options.
 verbs_of() {

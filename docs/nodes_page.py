@@ -4,6 +4,7 @@
 
 The argument is nodes/catalogue.cpp, which knows the family of each type."""
 import json
+import os
 import re
 import sys
 
@@ -38,6 +39,9 @@ def values_of(param):
 
 def print_node(node, family):
     print(f'\n## {node["type"]}\n\n*{family}.* {node["about"]}')
+    picture = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pictures/responses", node["type"] + ".svg")
+    if os.path.exists(picture):
+        print(f'\n![Response of {node["type"]}](../pictures/responses/{node["type"]}.svg)')
     inputs = [(code(p["name"]), p["type"], p["unit"], p["about"], "" if p["optional"] else "yes")
               for p in node["inputs"]]
     table("input", ["type", "unit", "what", "required"], inputs)
@@ -48,13 +52,19 @@ def print_node(node, family):
     table("parameter", ["default", "values", "live", "what"], params)
 
 
-def main():
-    nodes = {node["type"]: node for node in json.load(sys.stdin)["rows"]}
+def families_of(path, nodes):
+    """The types of each family, from nodes/catalogue.cpp."""
     families = {}
-    with open(sys.argv[1], encoding="utf-8") as catalogue:
+    with open(path, encoding="utf-8") as catalogue:
         for name, family in re.findall(r"X\((\w+), (\w+)\)", catalogue.read()):
             if snake(name) in nodes:
                 families.setdefault(family, []).append(snake(name))
+    return families
+
+
+def main():
+    nodes = {node["type"]: node for node in json.load(sys.stdin)["rows"]}
+    families = families_of(sys.argv[1], nodes)
     print(f"""{NOTE}
 
 # Nodes
@@ -72,4 +82,5 @@ bare number; an input or output of several types has the unit that its wires bri
             print_node(nodes[name], family)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -17,6 +17,7 @@
     X(AudioOutput, device)              \
     X(BladeContact, contact)            \
     X(Body, contact)                    \
+    X(BoxGuide, guide)                  \
     X(Brush, planning)                  \
     X(Burr, contact)                    \
     X(Button, device)                   \
@@ -25,8 +26,10 @@
     X(CaseScene, planning)              \
     X(Clip, math)                       \
     X(Clock, logic)                     \
+    X(Comb, vibration)                  \
     X(Compare, logic)                   \
     X(Compose, geometry)                \
+    X(Compressor, vibration)            \
     X(Constant, math)                   \
     X(ContactEvents, event)             \
     X(Counter, logic)                   \
@@ -34,9 +37,11 @@
     X(Curve, math)                      \
     X(Debounce, logic)                  \
     X(Delay, time)                      \
+    X(Detents, guide)                   \
     X(DeviceInput, device)              \
     X(DeviceOutput, device)             \
     X(DeviceWrench, device)             \
+    X(Dial, guide)                      \
     X(Differentiate, time)              \
     X(DirectCoupling, coupling)         \
     X(Distance, geometry)               \
@@ -62,6 +67,7 @@
     X(GripperInput, admittance)         \
     X(GripperOutput, admittance)        \
     X(HeldWeight, admittance)           \
+    X(Impact, vibration)                \
     X(Insertion, contact)               \
     X(Integrate, time)                  \
     X(Interpolate, geometry)            \
@@ -72,6 +78,7 @@
     X(JoinWrench, geometry)             \
     X(KerfHeat, contact)                \
     X(Latch, logic)                     \
+    X(LineGuide, guide)                 \
     X(LookAt, geometry)                 \
     X(Magnitude, math)                  \
     X(Maximum, math)                    \
@@ -82,14 +89,20 @@
     X(Noise, vibration)                 \
     X(Normalise, geometry)              \
     X(Not, logic)                       \
+    X(OnePole, vibration)               \
     X(Onset, event)                     \
     X(Or, logic)                        \
     X(Oscillator, vibration)            \
     X(PassivityObserver, coupling)      \
+    X(PathGuide, guide)                 \
     X(PlanFrame, training)              \
+    X(PlaneGuide, guide)                \
+    X(Player, vibration)                \
+    X(PointGuide, guide)                \
     X(PointProxy, coupling)             \
     X(Probe, record)                    \
     X(QuasiStaticCoupling, coupling)    \
+    X(Ramp, time)                       \
     X(RandomNumber, time)               \
     X(Range, math)                      \
     X(Record, record)                   \
@@ -116,6 +129,7 @@
     X(SplitVector, geometry)            \
     X(SplitWrench, geometry)            \
     X(Spring, coupling)                 \
+    X(StateVariable, vibration)         \
     X(Subtract, math)                   \
     X(Sweep, vibration)                 \
     X(Task, training)                   \
@@ -125,6 +139,7 @@
     X(ToNumber, math)                   \
     X(ToSignal, math)                   \
     X(TransformPoint, geometry)         \
+    X(Viscosity, guide)                 \
     X(VoxmapContact, contact)           \
     X(Workspace, device)                \
     X(Wrap, math)                       \

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace tactus::expression {
 
@@ -50,7 +51,33 @@ std::uint8_t Emitter::register_of(const Operand& operand) {
     return static_cast<std::uint8_t>(variables_ + constants_.size() + operand.between);
 }
 
+void Emitter::join_products() {
+    std::vector<Pending> joined;
+    for (const Pending& p : pending_) {
+        const bool is_sum = p.operation == Operation::add || p.operation == Operation::subtract;
+        const bool follows = is_sum && !joined.empty() && joined.back().operation == Operation::multiply;
+        // A result between is used once: by the instruction that finds it in the place where it was just put.
+        const auto is_product = [&](const Operand& o) {
+            return !o.constant && !o.variable && o.between == joined.back().to;
+        };
+        if (!follows || (!is_product(p.operands[0]) && !is_product(p.operands[1]))) {
+            joined.push_back(p);
+            continue;
+        }
+        const bool is_left = is_product(p.operands[0]);
+        Pending& product = joined.back();
+        product.operation = p.operation == Operation::add ? Operation::multiply_add
+                            : is_left                     ? Operation::multiply_subtract
+                                                          : Operation::subtract_product;
+        product.operands[2] = p.operands[is_left ? 1 : 0];
+        product.count = 3;
+        product.to = p.to;
+    }
+    pending_ = std::move(joined);
+}
+
 Program Emitter::finish(const Operand& result) {
+    join_products();
     // All constants first: the registers of results stand behind them.
     for (const Pending& p : pending_)
         for (std::size_t i = 0; i < p.count; ++i)

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <optional>
@@ -54,7 +55,14 @@ const Measure radian = measure_of(parse_unit("rad").dimension);
 class Compiler {
 public:
     Compiler(std::string_view text, std::span<const Variable> variables, std::span<const Constant> constants)
-        : scanner_(text), emitter_(variables.size()), variables_(variables), constants_(constants) {}
+        : scanner_(text,
+                   [=](std::string_view name) {
+                       return std::ranges::find(variables, name, &Variable::name) != variables.end() ||
+                              std::ranges::find(constants, name, &Constant::name) != constants.end();
+                   }),
+          emitter_(variables.size()),
+          variables_(variables),
+          constants_(constants) {}
 
     Formula compile() {
         const Operand result = disjunction();

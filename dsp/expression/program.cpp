@@ -24,7 +24,8 @@ void with_function(Operation operation, Run&& run) noexcept {
             return run([](double a, double b, double) {
                 // The sign of the divisor, as in mathematics.
                 const double rest = std::fmod(a, b);
-                return rest != 0.0 && (rest < 0.0) != (b < 0.0) ? rest + b : rest;
+                if (rest == 0.0) return std::copysign(0.0, b);
+                return (rest < 0.0) != (b < 0.0) ? rest + b : rest;
             });
         case Operation::less: return run([=](double a, double b, double) { return truth(a < b); });
         case Operation::less_equal: return run([=](double a, double b, double) { return truth(a <= b); });
@@ -54,6 +55,9 @@ void with_function(Operation operation, Run&& run) noexcept {
         case Operation::sign: return run([](double a, double, double) { return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0; });
         case Operation::clip: return run([](double a, double b, double c) { return std::min(a > b ? a : b, c); });
         case Operation::choose: return run([](double a, double b, double c) { return a != 0.0 ? b : c; });
+        case Operation::multiply_add: return run([](double a, double b, double c) { return a * b + c; });
+        case Operation::multiply_subtract: return run([](double a, double b, double c) { return a * b - c; });
+        case Operation::subtract_product: return run([](double a, double b, double c) { return c - a * b; });
     }
 }
 
@@ -72,35 +76,52 @@ bool Program::uses(std::size_t variable) const noexcept {
     return result == variable || std::ranges::any_of(instructions, reads);
 }
 
-Machine::Machine(Program program) : program_(std::move(program)), registers_(program_.registers * block) {
-    for (std::size_t k = 0; k < program_.constants.size(); ++k)
+Machine::Machine(Program program)
+    : program_(std::move(program)), registers_(program_.registers * block), singles_(program_.registers) {
+    for (std::size_t k = 0; k < program_.constants.size(); ++k) {
         std::fill_n(variable(program_.variables + k), block, program_.constants[k]);
+        single(program_.variables + k) = program_.constants[k];
+    }
 }
 
 double Machine::run() noexcept {
-    double* const first = registers_.data();
-    const auto at = [first](std::uint8_t index) -> double& { return first[index * static_cast<std::size_t>(block)]; };
-    for (const Instruction& i : program_.instructions)
-        with_function(i.operation, [&](auto function) { at(i.to) = function(at(i.a), at(i.b), at(i.c)); });
-    return at(program_.result);
+    for (std::size_t i = 0; i < program_.variables; ++i) single(i) = *variable(i);
+    return run_one();
 }
 
-std::span<const double> Machine::run(int count) noexcept {
+double Machine::run_one() noexcept {
+    double* const at = singles_.data();
+    double value = at[program_.result];
+    // The last instruction makes the result: it need not be read again.
     for (const Instruction& i : program_.instructions) {
-        // A result may take the place of an operand, value by value, but never overlaps it otherwise: the loops need not
-        // look for that before they take several values at once.
-        double* const to = variable(i.to);
-        const double *const a = variable(i.a), *const b = variable(i.b), *const c = variable(i.c);
-        with_function(i.operation, [&](auto function) {
+        with_function(i.operation, [&](auto function) { value = function(at[i.a], at[i.b], at[i.c]); });
+        at[i.to] = value;
+    }
+    return value;
+}
+
+void run_instruction(Operation operation, double* to, const double* a, const double* b, const double* c,
+                     int count) noexcept {
+    // A result may take the place of an operand, value by value, but never overlaps it otherwise: the loops need not look
+    // for that before they take several values at once.
+    with_function(operation, [&](auto function) {
 #if defined(__clang__)
 #pragma clang loop vectorize(assume_safety)
 #else
 #pragma GCC ivdep
 #endif
-            for (int k = 0; k < count; ++k) to[k] = function(a[k], b[k], c[k]);
-        });
-    }
+        for (int k = 0; k < count; ++k) to[k] = function(a[k], b[k], c[k]);
+    });
+}
+
+std::span<const double> Machine::run(int count) noexcept {
+    for (const Instruction& i : program_.instructions)
+        run_instruction(i.operation, variable(i.to), variable(i.a), variable(i.b), variable(i.c), count);
     return {variable(program_.result), static_cast<std::size_t>(count)};
+}
+
+void Machine::run(const float* const* inputs, float* out, int count) noexcept {
+    loop_(program_, registers_.data(), inputs, out, count);
 }
 
 }  // namespace tactus::expression

@@ -2,7 +2,9 @@
 // A formula as a list of instructions.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -44,6 +46,9 @@ enum class Operation : std::uint8_t {
     sign,
     clip,
     choose,
+    multiply_add,       ///< a·b + c, rounded twice as the formula says
+    multiply_subtract,  ///< a·b − c
+    subtract_product,   ///< c − a·b
 };
 
 /// registers[to] = operation(registers[a], registers[b], registers[c]).
@@ -51,6 +56,13 @@ struct Instruction {
     Operation operation;
     std::uint8_t to = 0, a = 0, b = 0, c = 0;
 };
+
+/// Runs one instruction on `count` values. Of `samples.cpp`, for what has no loop of its own there.
+void run_instruction(Operation operation, double* to, const double* a, const double* b, const double* c,
+                     int count) noexcept;
+/// The loops of samples: for this processor.
+using SampleLoop = void (*)(const struct Program&, double*, const float* const*, float*, int) noexcept;
+SampleLoop sample_loop() noexcept;
 
 /// The value of one operation. IEEE 754; comparisons give 1 or 0, and 0 counts as false.
 double apply(Operation operation, double a, double b, double c) noexcept;
@@ -69,6 +81,13 @@ struct Program {
     bool uses(std::size_t variable) const noexcept;
 };
 
+/// A result as a sample: 0 when it is not finite, the end of the range when it is beyond that of a float.
+inline float sample_of(double value) noexcept {
+    constexpr double largest = std::numeric_limits<float>::max();
+    if (std::abs(value) <= largest) return static_cast<float>(value);
+    return std::isfinite(value) ? static_cast<float>(value < 0.0 ? -largest : largest) : 0.0f;
+}
+
 /// A program with its registers. `prepare` allocates; the rest is real-time safe.
 class Machine {
 public:
@@ -81,12 +100,21 @@ public:
     double* variable(std::size_t index) noexcept { return registers_.data() + index * block; }
     /// The value for the first value of each variable.
     double run() noexcept;
+    /// Where one value of a variable is put before `run_one`.
+    double& single(std::size_t index) noexcept { return singles_[index]; }
+    /// The value for the single value of each variable; the same bits as `run`, side by side in memory.
+    double run_one() noexcept;
     /// The values for the first `count` ≤ block values of each variable.
     std::span<const double> run(int count) noexcept;
+    /// Samples in, samples out: `inputs` has a place for each variable, null for one that the formula does not name. A
+    /// result that is not finite becomes 0, one beyond the range of a float its end. The same bits as `run`.
+    void run(const float* const* inputs, float* out, int count) noexcept;
 
 private:
     Program program_;
     std::vector<double> registers_;  ///< `block` values each
+    std::vector<double> singles_;  ///< one value each
+    SampleLoop loop_ = sample_loop();
 };
 
 }  // namespace tactus::expression

@@ -80,6 +80,19 @@ void Scanner::read_number() {
     at_ += static_cast<std::size_t>(unit.data() + unit.size() - (text_.data() + at_));
 }
 
+bool Scanner::is_factor(std::size_t at) const {
+    const std::string_view name = name_ahead(text_.substr(at));
+    if (!is_declared_ || !is_declared_(name)) return false;
+    try {
+        parse_measured_unit(name);
+    } catch (const Error&) {
+        return true;
+    }
+    fail(fmt::format(
+        "'{0}' is a unit and a name of this formula; put blanks around the '{1}' for the name, or rename it", name,
+        text_[at - 1]));
+}
+
 std::string_view Scanner::unit_ahead() const {
     // Names after names, by blanks, '·' or '*', '/' and '^' without blanks: "N s/m", "m/s^2", "N/m^1.5".
     std::size_t at = at_;
@@ -99,7 +112,7 @@ std::string_view Scanner::unit_ahead() const {
         }
         end = at;
         if (at < text_.size() && (text_[at] == '/' || text_[at] == '*') && at + 1 < text_.size() &&
-            begins_name(text_[at + 1]))
+            begins_name(text_[at + 1]) && !is_factor(at + 1))
             ++at;
         else if (const std::size_t further = blanks(at); further > at) at = further;
         else break;

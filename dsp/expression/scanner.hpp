@@ -4,8 +4,10 @@
 
 #include "dsp/expression/measure.hpp"
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace tactus::expression {
 
@@ -17,10 +19,15 @@ struct Token {
     Measure measure{};
 };
 
-/// Reads tokens one by one. A number takes the unit that follows it.
+/// Reads tokens one by one. A number takes the unit that follows it. Behind '*' and '/' a declared name is a factor of
+/// the formula, not a unit: "2 N/mm*x"; one that is both, as in "2 m/s" with an input s, is refused.
 class Scanner {
 public:
-    explicit Scanner(std::string_view text) : text_(text) { next(); }
+    /// `is_declared`: whether the formula has an input or a constant of that name.
+    explicit Scanner(std::string_view text, std::function<bool(std::string_view)> is_declared = {})
+        : text_(text), is_declared_(std::move(is_declared)) {
+        next();
+    }
 
     const Token& now() const { return token_; }
     /// Throws Error for a letter that has no meaning, a number out of range or an unknown unit.
@@ -32,8 +39,11 @@ public:
 private:
     void read_number();
     std::string_view unit_ahead() const;
+    /// Whether the name at `at`, behind '*' or '/', belongs to the formula. Throws Error when it may be either.
+    bool is_factor(std::size_t at) const;
 
     std::string_view text_;
+    std::function<bool(std::string_view)> is_declared_;
     std::size_t at_ = 0;
     Token token_;
 };

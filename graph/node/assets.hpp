@@ -6,6 +6,7 @@
 #include "assets/cases/case_bones.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
+#include "assets/sound/sound.hpp"
 #include "assets/table/deflection_file.hpp"
 #include "graph/node/param.hpp"
 
@@ -27,6 +28,12 @@ template <>
 struct AssetLoader<sound::RecordingSet> {
     static constexpr std::string_view name = "recording set";
     static sound::RecordingSet load(const std::string& path) { return sound::load_recording_set(path); }
+};
+
+template <>
+struct AssetLoader<sound::Sound> {
+    static constexpr std::string_view name = "sound";
+    static sound::Sound load(const std::string& path) { return sound::load_sound(path); }
 };
 
 template <>

@@ -12,18 +12,22 @@ struct Debounce {
 
     void prepare(const Setup&) {
         out = false;
-        kept_s_ = 0.0;
+        kept_ = 0;
     }
     void process(const Tick& tick) noexcept {
-        kept_s_ = in == out.get() ? 0.0 : kept_s_ + tick.elapsed_seconds();
-        if (in != out.get() && kept_s_ >= time) {
-            out = in;
-            kept_s_ = 0.0;
+        if (in == out.get()) {
+            kept_ = 0;
+            return;
         }
+        // Nobody saw the value in ticks that were left out: its first tick counts as one.
+        kept_ += kept_ == 0 ? tick.period : tick.elapsed;
+        if (seconds(kept_) < time) return;
+        out = in;
+        kept_ = 0;
     }
 
 private:
-    double kept_s_ = 0.0;
+    Flicks kept_ = 0;
 };
 
 TACTUS_NODE(Debounce, in, out, time)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/expression/formula.hpp"
-#include "dsp/signal/filter/sample.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -59,17 +59,20 @@ struct Expression {
             throw Error(unit.value.empty() ? formula.where : unit.where,
                         "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
         check_wires(setup, names, compiled.program);
-        for (std::size_t i = 0; i < count_; ++i) ranges_[i] = names[i].range;
+        for (std::size_t i = 0; i < count_; ++i) {
+            ranges_[i] = names[i].range;
+            sample_ranges_[i] = samples_in(names[i].range);
+        }
         machine_ = expression::Machine(std::move(compiled.program));
         is_signal_ = out.type == &value::signal;
     }
 
     void process(const Tick& tick) noexcept {
         if (is_signal_) return process_signal(tick);
-        const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
-        for (std::size_t i = 0; i < count_; ++i) *machine_.variable(i) = within(*ports[i]->as<double>(), ranges_[i]);
-        const double result = machine_.run();
-        *out.as<double>() = std::isfinite(result) ? result : 0.0;
+        for (std::size_t i = 0; i < count_; ++i)
+            if (used_[i]) machine_.single(i) = within(*used_[i]->as<double>(), ranges_[i].low, ranges_[i].high);
+        const double result = machine_.run_one();
+        *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
     }
 
     /// The unit that `inputs` or `unit` gives a port; a name without one takes any.
@@ -98,8 +101,27 @@ private:
     static constexpr std::size_t most_inputs = 6;
 
     /// NaN stays NaN.
-    static double within(double x, const expression::Interval& range) noexcept {
-        return x < range.low ? range.low : x > range.high ? range.high : x;
+    template <class Value>
+    static Value within(Value x, Value low, Value high) noexcept {
+        return x < low ? low : x > high ? high : x;
+    }
+    bool has_range(std::size_t input) const noexcept {
+        return std::isfinite(ranges_[input].low) || std::isfinite(ranges_[input].high);
+    }
+    float sample_within(float x, std::size_t input) const noexcept {
+        return within(x, sample_ranges_[input].low, sample_ranges_[input].high);
+    }
+    struct SampleRange {
+        float low = -std::numeric_limits<float>::infinity(), high = std::numeric_limits<float>::infinity();
+    };
+    /// The widest range of samples within the stated one.
+    static SampleRange samples_in(const expression::Interval& range) noexcept {
+        SampleRange out{static_cast<float>(range.low), static_cast<float>(range.high)};
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        if (static_cast<double>(out.low) < range.low) out.low = std::nextafter(out.low, infinity);
+        if (static_cast<double>(out.high) > range.high) out.high = std::nextafter(out.high, -infinity);
+        if (out.low > out.high) out.low = out.high = static_cast<float>(range.low);  // no sample lies within
+        return out;
     }
     static constexpr ValueKinds types = kinds::number | kinds::signal;
 
@@ -110,31 +132,37 @@ private:
             const std::string port = "in" + std::to_string(i + 1);
             if (i < count_ && !ports[i]->connected && program.uses(i))
                 setup.fail("'" + names[i].name + "' needs a wire to '" + port + "'");
+            used_[i] = i < count_ && program.uses(i) ? ports[i] : nullptr;
             if (i >= count_ && ports[i]->connected) setup.fail("'" + port + "' has a wire but no name in 'inputs'");
         }
     }
 
     void process_signal(const Tick& tick) noexcept {
-        const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
+        if (tick.frames == 1) {
+            for (std::size_t i = 0; i < count_; ++i)
+                if (used_[i]) machine_.single(i) = static_cast<double>(sample_within(*used_[i]->as<float>(), i));
+            *out.as<float>() = expression::sample_of(machine_.run_one());
+            return;
+        }
+        const float* places[most_inputs];
+        float clamped[most_inputs][expression::Machine::block];
         for (int from = 0; from < tick.frames; from += expression::Machine::block) {
             const int frames = std::min(tick.frames - from, expression::Machine::block);
             for (std::size_t i = 0; i < count_; ++i) {
-                const expression::Interval range = ranges_[i];
-                const float* const values = ports[i]->as<float>() + from;
-                double* const variable = machine_.variable(i);
-                for (int k = 0; k < frames; ++k) variable[k] = within(static_cast<double>(values[k]), range);
+                places[i] = used_[i] ? used_[i]->as<float>() + from : nullptr;
+                if (!used_[i] || !has_range(i)) continue;
+                for (int k = 0; k < frames; ++k) clamped[i][k] = sample_within(places[i][k], i);
+                places[i] = clamped[i];
             }
-            const auto results = machine_.run(frames);
-            for (int k = 0; k < frames; ++k) {
-                const double y = results[static_cast<std::size_t>(k)];
-                out.as<float>()[from + k] = std::isfinite(y) ? signal::to_sample(y) : 0.0f;
-            }
+            machine_.run(places, out.as<float>() + from, frames);
         }
     }
 
     expression::Machine machine_;
     expression::Interval ranges_[most_inputs] = {};
+    SampleRange sample_ranges_[most_inputs] = {};
     std::size_t count_ = 0;
+    const AnyIn* used_[most_inputs] = {};  ///< the port of each name that the formula has
     bool is_signal_ = false;
 };
 

@@ -15,7 +15,7 @@ struct Multiply {
     AnyOut out{"a × b"};
 
     void process(const Tick& tick) noexcept {
-        for_each_component(a, b, out, tick, [](double x, double y) { return x * y; });
+        for_each_component(a, b, out, tick, [](auto x, auto y) { return x * y; });
     }
 };
 

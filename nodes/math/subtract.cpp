@@ -13,7 +13,7 @@ struct Subtract {
     AnyOut out{"a - b"};
 
     void process(const Tick& tick) noexcept {
-        for_each_component(a, b, out, tick, [](double x, double y) { return x - y; });
+        for_each_component(a, b, out, tick, [](auto x, auto y) { return x - y; });
     }
 };
 

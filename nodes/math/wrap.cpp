@@ -19,11 +19,14 @@ struct Wrap {
 
     void process(const Tick& tick) noexcept {
         const double least = low, length = high - low;
+        const bool is_signal = out.type == &value::signal;
         for_each_component(in, out, tick, [=](double x) {
             if (!(length > 0.0) || !std::isfinite(x)) return least;
             const double wrapped = x - length * std::floor((x - least) / length);
             // Rounding may end at the border, or outside for a large x.
-            return wrapped >= least && wrapped < least + length ? wrapped : least;
+            if (!(wrapped >= least && wrapped < least + length)) return least;
+            // As a float it may round up to the end.
+            return is_signal && static_cast<double>(static_cast<float>(wrapped)) >= least + length ? least : wrapped;
         });
     }
 };

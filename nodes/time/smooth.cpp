@@ -41,9 +41,11 @@ private:
     void follow_signal(const Tick& tick) noexcept {
         const double share = signal::lag_share(time, period_s_);
         for (int i = 0; i < tick.frames; ++i) {
-            const double x = signal::finite_or_zero(in.as<float>()[i]);
-            sample_ += (has_begun_ ? share : 1.0) * (x - sample_);
-            has_begun_ = true;
+            const auto x = static_cast<double>(in.as<float>()[i]);
+            if (std::isfinite(x)) {
+                sample_ += (has_begun_ ? share : 1.0) * (x - sample_);
+                has_begun_ = true;
+            }
             out.as<float>()[i] = signal::to_sample(sample_);
         }
     }

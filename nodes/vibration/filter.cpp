@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/signal/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad_shelves.hpp"
 #include "dsp/signal/filter/sample.hpp"
 #include "graph/node/node.hpp"
 
@@ -13,31 +13,49 @@ struct Filter {
 
     In<Signal> in{"the signal"};
     Out<Signal> out{"the filtered signal"};
-    Choice kind{{"lowpass", "highpass", "bandpass", "notch"}, "filter type"};
-    Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "corner frequency, or centre frequency of bandpass and notch"};
+    Choice kind{{"lowpass", "highpass", "bandpass", "notch", "peak", "low_shelf", "high_shelf", "allpass"},
+                "filter type"};
+    Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "corner frequency, or centre frequency of bandpass, notch and peak"};
     Param q{"0.70710678", "0.05", "200",
-            "lowpass, highpass: gain at the corner; bandpass, notch: centre frequency divided by the -3 dB bandwidth"};
+            "lowpass, highpass: gain at the corner; bandpass, notch: centre frequency divided by the -3 dB bandwidth; "
+            "peak: by that of half its gain in dB; shelves: steepness"};
+    Param boost{"2", "0.001", "1000", "peak: gain at the centre; shelves: gain on their side; a factor"};
 
     void prepare(const Setup& setup) { rate_ = setup.rate(); }
 
     void process(const Tick& tick) noexcept {
-        if (frequency != frequency_ || q != q_) design();
-        for (int i = 0; i < tick.frames; ++i) out[i] = signal::to_sample(section_(signal::finite_or_zero(in[i])));
+        if (frequency != frequency_ || q != q_ || boost != boost_) design();
+        // Held in registers: what is written to the output might be a member, for all that the compiler knows.
+        signal::Biquad section = section_;
+        const float* const x = &in[0];
+        float* const y = &out[0];
+        for (int i = 0; i < tick.frames; ++i) y[i] = signal::to_sample(section(signal::finite_or_zero(x[i])));
+        section_ = section;
     }
 
 private:
     void design() noexcept {
         frequency_ = frequency;
         q_ = q;
-        using Design = signal::BiquadCoefficients (*)(double, double, double) noexcept;
-        constexpr Design designs[] = {signal::lowpass, signal::highpass, signal::bandpass, signal::notch};
-        section_.coefficients = designs[kind.index](frequency_, rate_, q_);
+        boost_ = boost;
+        section_.coefficients = [this] {
+            switch (kind.index) {
+                case 0: return signal::lowpass(frequency_, rate_, q_);
+                case 1: return signal::highpass(frequency_, rate_, q_);
+                case 2: return signal::bandpass(frequency_, rate_, q_);
+                case 3: return signal::notch(frequency_, rate_, q_);
+                case 4: return signal::peak(frequency_, rate_, q_, boost_);
+                case 5: return signal::low_shelf(frequency_, rate_, q_, boost_);
+                case 6: return signal::high_shelf(frequency_, rate_, q_, boost_);
+                default: return signal::allpass(frequency_, rate_, q_);
+            }
+        }();
     }
 
     signal::Biquad section_;
-    double rate_ = 48000.0, frequency_ = 0.0, q_ = 0.0;
+    double rate_ = 48000.0, frequency_ = 0.0, q_ = 0.0, boost_ = 0.0;
 };
 
-TACTUS_NODE(Filter, in, out, kind, frequency, q)
+TACTUS_NODE(Filter, in, out, kind, frequency, q, boost)
 
 }  // namespace tactus::nodes

@@ -13,9 +13,10 @@ struct Mix {
     static constexpr UnitRule units = UnitRule::same;
     static constexpr bool shapes_values = true;
 
-    AnyIn in1{optional, "a value", kinds::addable}, in2{optional, "a signal"}, in3{optional, "a signal"};
-    AnyIn in4{optional, "a value", kinds::addable}, in5{optional, "a signal"}, in6{optional, "a signal"};
-    AnyIn in7{optional, "a value", kinds::addable}, in8{optional, "a signal"};
+    AnyIn in1{optional, "a value", kinds::addable}, in2{optional, "a value", kinds::addable};
+    AnyIn in3{optional, "a value", kinds::addable}, in4{optional, "a value", kinds::addable};
+    AnyIn in5{optional, "a value", kinds::addable}, in6{optional, "a value", kinds::addable};
+    AnyIn in7{optional, "a value", kinds::addable}, in8{optional, "a value", kinds::addable};
     AnyOut out{"gain1 × in1 + … + gain8 × in8"};
     Param gain1{"1", "-1000", "1000", "factor of in1"}, gain2{"1", "-1000", "1000", "factor of in2"};
     Param gain3{"1", "-1000", "1000", "factor of in3"}, gain4{"1", "-1000", "1000", "factor of in4"};

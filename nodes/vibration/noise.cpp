@@ -3,8 +3,8 @@
 #include "dsp/signal/filter/sample.hpp"
 #include "graph/node/node.hpp"
 
-#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace tactus::nodes {
 
@@ -20,24 +20,30 @@ struct Noise {
     Param seed{structural, "0", "0", "1e9", "another seed gives another noise"};
 
     void prepare(const Setup& setup) {
-        random_ = Random{mix(setup.seed ^ mix(static_cast<std::uint64_t>(seed)))};
-        drawn_ = 0;
+        state_ = mix(setup.seed ^ mix(static_cast<std::uint64_t>(seed)));
         for (Section& section : sections_) section.y = 0.0;
     }
     void process(const Tick& tick) noexcept {
         const double a = level;
-        const bool is_pink = colour.index == 1;
-        for (int i = 0; i < tick.frames; ++i) {
-            // Uniform, with variance 1.
-            const double white = std::sqrt(3.0) * (2.0 * random_.uniform(drawn_++) - 1.0);
-            signal[i] = signal::to_sample(a * (is_pink ? pink(white) : white));
+        std::uint64_t state = state_;
+        if (colour.index == 0) {
+            for (int i = 0; i < tick.frames; ++i) signal[i] = static_cast<float>(a * white(state));
+        } else {
+            for (int i = 0; i < tick.frames; ++i) signal[i] = signal::to_sample(a * pink(white(state)));
         }
+        state_ = state;
     }
 
 private:
     struct Section {
         double pole, gain, y;
     };
+
+    /// Uniform, with variance 1: the upper half of a congruential generator of 64 bits (Knuth's MMIX), as signed.
+    static double white(std::uint64_t& state) noexcept {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return (static_cast<double>(static_cast<std::int32_t>(state >> 32)) + 0.5) * (std::numbers::sqrt3 * 0x1.0p-31);
+    }
 
     double pink(double white) noexcept {
         double sum = direct_ * white;
@@ -48,8 +54,7 @@ private:
         return sum;
     }
 
-    Random random_;
-    std::uint64_t drawn_ = 0;
+    std::uint64_t state_ = 0;
     // First-order sections fitted to 1/√f by least squares in decibels, for unit variance.
     static constexpr double direct_ = -0.0197881805;
     Section sections_[6] = {{0.999337664, 0.0132622611, 0.0}, {0.996379613, 0.016606242, 0.0},

@@ -53,7 +53,7 @@ TEST_CASE("the generated pages are what the command says, and docs/generate.sh w
     const Folder folder;
     const std::string script = (source_folder() / "docs/generate.sh").string();
     REQUIRE(std::system(("'" + script + "' '" + command() + "' '" + folder.path.string() + "'").c_str()) == 0);
-    for (const char* name : {"nodes.md", "verbs.md"}) {
+    for (const char* name : {"nodes.md", "value-types.md", "verbs.md"}) {
         CAPTURE(name);
         // Compared as a flag: a difference is easier to read in 'git diff' after running the script.
         const bool is_same = slurp(folder.path / name) == slurp(source_folder() / "docs/reference" / name);

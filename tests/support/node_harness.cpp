@@ -281,7 +281,8 @@ void NodeHarness::run(std::int64_t activations, std::uint64_t partition) {
         drive_params(index_);
         fill_inputs(index_, frames);
         spoil_signals();
-        const Tick tick{index_, options_.period, options_.period, frames};
+        const Flicks missed = left_out ? left_out(index_) * options_.period : 0;
+        const Tick tick{index_, options_.period, options_.period + missed, frames};
         {
             const RealtimeScope scope;
             type_.process(node_, tick);

@@ -127,6 +127,8 @@ public:
     ValueKinds takes() const;
     FakeHost host;
 
+    /// Ticks that were left out before an activation; by default none.
+    std::function<int(std::int64_t)> left_out;
     /// The values of a device before each activation; by default they follow the feed.
     std::function<void(std::int64_t, DevicePort&)> device_feed;
 

@@ -64,6 +64,12 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
         set.recordings = {tone(false, 200.0, 0.0), tone(true, 200.0, 7.0)};
         return std::make_shared<const sound::RecordingSet>(std::move(set));
     }
+    if (type_name == AssetLoader<sound::Sound>::name) {
+        sound::Sound click{48000, 2, 600, {}};
+        for (std::size_t k = 0; k < 2 * click.frames; ++k)
+            click.samples.push_back(static_cast<float>(std::sin(0.05 * static_cast<double>(k / 2))));
+        return std::make_shared<const sound::Sound>(std::move(click));
+    }
     if (type_name == AssetLoader<vibration::Equaliser>::name) {
         vibration::Equaliser equaliser;
         equaliser.taps = {0.5f, -0.25f, 0.125f};

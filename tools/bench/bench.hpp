@@ -21,6 +21,7 @@ struct BenchChoice {
 };
 
 Verb engine_verb();
+Verb nodes_verb();
 Verb contact_verb();
 Verb view_verb();
 Verb scrub_verb();

@@ -4,6 +4,7 @@
 
 // name, folder, heading of the help text
 #define TACTUS_VERBS(X)                   \
+    X(new, run, run_and_patch)            \
     X(run, run, run_and_patch)            \
     X(render, run, run_and_patch)         \
     X(check, run, run_and_patch)          \

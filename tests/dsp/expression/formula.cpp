@@ -5,9 +5,11 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::expression;
@@ -174,4 +176,80 @@ TEST_CASE("a long formula with many parts keeps them apart") {
         value = 0.5 - value * 1.5;
     }
     CHECK(value_of(nested, 0.0, 0.0, 0.5) == Approx(value));
+}
+
+TEST_CASE("a declared name behind a number's unit is a factor, and a name that is a unit too is refused") {
+    const auto with = [](std::string_view inputs, std::string_view text) {
+        const auto names = parse_variables(inputs);
+        Machine machine(compile_formula(text, names, {}).program);
+        *machine.variable(0) = 3.0;
+        return machine.run();
+    };
+    CHECK(with("x m", "2 N/mm*x") == 6000.0);
+    CHECK(with("x m", "6 N/x") == 2.0);
+    CHECK(with("x m", "6 N/m*x/x") == 6.0);
+    CHECK(with("s s", "6 m / s") == 2.0);
+    CHECK(with("x m", "6 m/s") == 6.0);
+    CHECK_THROWS_WITH(with("s s", "6 m/s"), ContainsSubstring("'s' is a unit and a name"));
+    CHECK_THROWS_WITH(with("m m", "6 N*m"), ContainsSubstring("around the '*'"));
+}
+
+TEST_CASE("a remainder of zero has the sign of the divisor, as in Python") {
+    CHECK_FALSE(std::signbit(value_of("n % 3", 0.0, 0.0, -6.0)));
+    CHECK(std::signbit(value_of("n % -3", 0.0, 0.0, 6.0)));
+    CHECK(value_of("n % 3", 0.0, 0.0, -7.0) == 2.0);
+}
+
+TEST_CASE("loops over samples give the bits of single values, whatever the samples are") {
+    const float infinite = std::numeric_limits<float>::infinity();
+    const std::vector<float> odd{0.0f, -0.0f, 1.5f, -2.25f, 3e38f, -3e38f, 1e-42f, infinite, -infinite, std::nanf("")};
+    for (const char* text :
+         {"n + y",
+          "n - y",
+          "n*y",
+          "n/y",
+          "-n",
+          "n*y + n",
+          "n*y - 3",
+          "2 - n*y",
+          "n*y - y*n",
+          "min(n, y)",
+          "max(n, y)",
+          "abs(n) + 1",
+          "sqrt(n)",
+          "clip(n, -1, y)",
+          "if(n, y, 2)",
+          "n < y",
+          "n > y",
+          "n <= y",
+          "n == y",
+          "n % y",
+          "sin(n)*y",
+          "n^3 + y^2",
+          "hypot(n, y)",
+          "n*1e30*y*1e30",
+          "y",
+          "7",
+          "(n+1)*((y+2)*((n+3)*((y+4)*((n+5)*((y+6)*((n+7)*((y+8)*((n+9)*((y+10)*((n+11)*((y+12)*((n+13)*((y+14)*"
+          "((n+15)*((y+16)*((n+17)*(y+18)))))))))))))))))"}) {
+        INFO(text);
+        Machine machine(compile_formula(text, parse_variables("n, y, unused"), {}).program);
+        std::vector<float> n, y, out(Machine::block);
+        for (std::size_t k = 0; k < Machine::block; ++k) {
+            n.push_back(k < 30 ? odd[k % odd.size()] : 0.1f * static_cast<float>(k) - 3.0f);
+            y.push_back(k < 30 ? odd[(k / 3) % odd.size()] : 2.0f - 0.3f * static_cast<float>(k % 17));
+        }
+        for (const int count : {Machine::block, 37, 2}) {
+            const float* const places[] = {n.data(), y.data(), nullptr};
+            machine.run(places, out.data(), count);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+                machine.single(0) = static_cast<double>(n[k]);
+                machine.single(1) = static_cast<double>(y[k]);
+                const float one = sample_of(machine.run_one());
+                CAPTURE(k, n[k], y[k], out[k], one);
+                CHECK(std::isfinite(out[k]));
+                CHECK(out[k] == one);
+            }
+        }
+    }
 }

@@ -246,6 +246,23 @@ const std::vector<Case>& cases() {
                      held(n);
                  }},
         };
+        // Guides: their top, or their middle, at z = 0. The hand is not damped: no velocity is wired.
+        const auto guide = [](std::vector<std::pair<const char*, const char*>> settings) {
+            return [=](NodeHarness& n) {
+                for (const auto& [name, text] : settings) n.set(name, text);
+            };
+        };
+        const auto add_guide = [&](const char* type, std::vector<std::pair<const char*, const char*>> settings) {
+            made.push_back({.type = type, .pose = "pose", .stiffness = 500.0, .set_up = guide(std::move(settings))});
+        };
+        add_guide("plane_guide", {});
+        add_guide("plane_guide", {{"kind", "both"}, {"reach", "3 mm"}});
+        add_guide("box_guide", {{"size", "16 mm, 16 mm, 10 mm"}, {"centre", "0 mm, 0 mm, -5 mm"}, {"keep", "outside"}});
+        add_guide("box_guide", {{"size", "4 mm, 4 mm, 10 mm"}, {"centre", "0 mm, 0 mm, 4 mm"}});
+        add_guide("point_guide", {{"reach", "3 mm"}});
+        add_guide("line_guide", {{"reach", "3 mm"}});
+        add_guide("path_guide", {{"points", "-10 0 0, 0 2 0, 10 0 0 mm"}, {"reach", "3 mm"}});
+        add_guide("detents", {});
         // A blade with its teeth down: y of the blade is −z of the scene.
         static const volume::BoneEditor block = plate(12.0 * mm), thin = plate(1.5 * mm);
         for (const char* type : {"blade_contact", "saw_blade"})
@@ -299,6 +316,8 @@ const std::map<std::string, std::string>& without_contact() {
         {"held_weight", "a weight that the hand carries: gravity and a grip that moves"},
         {"passivity_observer", "watches and damps"},
         {"join_wrench", "puts a force and a torque together"},
+        {"dial", "a torque of an angle; tests/nodes/guide drives it"},
+        {"viscosity", "drag of a velocity; tests/nodes/guide drives it"},
         {"wrench_sum", "adds forces"},
         {"spring", "between two poses, without contact"},
     };

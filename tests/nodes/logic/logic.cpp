@@ -164,3 +164,14 @@ TEST_CASE("a sequencer goes through its list and begins again") {
         CHECK_THROWS_AS(bad.prepare(), Error);
     }
 }
+
+TEST_CASE("debounce does not count ticks that nobody saw for a value that was seen once") {
+    NodeHarness node("debounce", {.period = ms});
+    node.set("time", "20 ms");
+    node.left_out = [](std::int64_t k) { return k == 5 ? 100 : 0; };
+    CHECK(run(feed(node, "in", ".....#.."), 10) == "..........");
+    NodeHarness held("debounce", {.period = ms});
+    held.set("time", "20 ms");
+    held.left_out = [](std::int64_t k) { return k == 6 ? 100 : 0; };
+    CHECK(run(feed(held, "in", ".....###"), 8) == "......##");
+}

@@ -44,3 +44,19 @@ TEST_CASE("magnitude refuses a wire without the part that is asked for") {
     node.set("part", "angular");
     CHECK_THROWS_AS(node.prepare(), Error);
 }
+
+TEST_CASE("a wrapped signal stays below the end of its range as a float too") {
+    NodeHarness node("wrap", {.any = &value::signal});
+    node.feed<float>("in", [](std::int64_t k) { return -1e-12f * static_cast<float>(k); });
+    node.prepare();
+    node.run(100);
+    for (const float x : node.values<float>("out")) CHECK((x >= 0.0f && x < 1.0f));
+}
+
+TEST_CASE("a quotient that is too large for a number is 0") {
+    NodeHarness node("divide", {.period = flicks_per_second / 1000});
+    node.feed("a", 1.0).feed("b", 1e-320);
+    node.prepare();
+    node.run(1);
+    CHECK(node.last<double>("out") == 0.0);
+}

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 using namespace tactus;
 using test::NodeHarness;
@@ -197,4 +198,39 @@ TEST_CASE("random numbers have their mean and spread, and are drawn at the trigg
     int changes = 0;
     for (std::size_t k = 1; k < out.size(); ++k) changes += out[k] != out[k - 1];
     CHECK(changes == 10);
+}
+
+TEST_CASE("a leak that is shorter than a tick gives its time constant times the value") {
+    for (const char* leak : {"0.1 ms", "1 ms", "20 ms", "5 s"}) {
+        NodeHarness node("integrate", {.period = ms});
+        node.set("leak", leak).feed("in", 2.0).disconnect_optional();
+        node.prepare();
+        node.run(60'000);
+        const double tau = std::stod(leak) * (std::string(leak).find("ms") == std::string::npos ? 1.0 : 1e-3);
+        CHECK(node.last<double>("out") == Approx(2.0 * tau).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a leaky integral of a ramp is that of the differential equation") {
+    const double tau = 3e-3;
+    NodeHarness node("integrate", {.period = ms});
+    node.set("leak", "3 ms").disconnect_optional().feed<double>("in", [](std::int64_t k) { return time_of(k + 1); });
+    node.prepare();
+    node.run(40);
+    // y' = t - y / tau from 0.
+    const auto out = node.values<double>("out");
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const double t = time_of(static_cast<std::int64_t>(k) + 1);
+        CHECK(out[k] == Approx(tau * (t - tau * (1.0 - std::exp(-t / tau)))));
+    }
+}
+
+TEST_CASE("a smoothed signal does not follow samples that are not finite") {
+    NodeHarness node("smooth", {.any = &value::signal});
+    node.set("time", "1 ms").feed<float>("in", [](std::int64_t k) {
+        return k < 480 ? 1.0f : std::numeric_limits<float>::quiet_NaN();
+    });
+    node.prepare();
+    node.run(960);
+    CHECK(node.values<float>("out").back() == 1.0f);
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nodes/catalogue.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -88,4 +90,21 @@ TEST_CASE("an envelope rises and falls with its time constants") {
     CHECK(out[4799] == Approx(2.0).epsilon(1e-3));
     CHECK(out[4799 + 4800] == Approx(out[4799] * std::exp(-1.0)).epsilon(1e-3));
     CHECK(node.last<double>("level") == Approx(out.back()));
+}
+
+TEST_CASE("a mix takes what can be added on each of its inputs, and nothing else") {
+    const compile::Catalogue types = nodes::catalogue();
+    const auto mix = std::ranges::find(types, "mix", &NodeType::name);
+    struct Inputs final : MemberVisitor {
+        void input(std::string_view name, Input& port) override {
+            INFO(name);
+            CHECK(port.takes == kinds::addable);
+            ++count;
+        }
+        int count = 0;
+    } inputs;
+    void* const node = (*mix)->create();
+    (*mix)->visit(node, inputs);
+    (*mix)->destroy(node);
+    CHECK(inputs.count == 8);
 }

@@ -100,3 +100,35 @@ TEST_CASE("white noise is flat and pink noise falls by 3 dB per octave, both at 
         }
     }
 }
+
+TEST_CASE("the oscillator's sine is a sine, its phase a phasor") {
+    NodeHarness node("oscillator");
+    node.set("shape", "sine").set("frequency", "123.4 Hz").set("amplitude", "2");
+    node.prepare();
+    node.run(480'000, 1);
+    const auto wave = node.values<float>("signal"), phase = node.values<float>("phase");
+    double off = 0.0, phase_off = 0.0;
+    for (std::size_t k = 0; k < wave.size(); ++k) {
+        const double cycles = 123.4 * static_cast<double>(k) / rate, part = cycles - std::floor(cycles);
+        off = std::max(off, std::abs(static_cast<double>(wave[k]) - 2.0 * std::sin(2.0 * std::numbers::pi * part)));
+        const double gap = std::abs(static_cast<double>(phase[k]) - part);
+        phase_off = std::max(phase_off, std::min(gap, 1.0 - gap));
+        CHECK(phase[k] < 1.0f);
+    }
+    CHECK(off < 1e-6);
+    CHECK(phase_off < 1e-6);
+}
+
+TEST_CASE("neighbours of white noise are not related") {
+    NodeHarness node("noise");
+    node.set("level", "1");
+    node.prepare();
+    node.run(480'000);
+    const auto x = node.values<float>("signal");
+    for (std::size_t lag = 1; lag < 200; ++lag) {
+        double sum = 0.0;
+        for (std::size_t k = lag; k < x.size(); ++k) sum += static_cast<double>(x[k]) * static_cast<double>(x[k - lag]);
+        INFO(lag);
+        CHECK(std::abs(sum / static_cast<double>(x.size())) < 5.0 / std::sqrt(480'000.0));
+    }
+}

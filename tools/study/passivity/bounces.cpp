@@ -32,6 +32,9 @@ constexpr std::string_view bone_wires =
     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
 "contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench", )";
 
+constexpr std::string_view guide_wires =
+    R"("hand.pose -> contact.pose", "hand.twist -> contact.twist", "contact.wrench -> out.wrench")";
+
 /// `@` is the kerf.
 constexpr std::string_view bone_nodes = R"(
 [assets]
@@ -81,6 +84,49 @@ rate = "1 kHz"
 centre = "0 m, 0 m, -1 m"
 radius = "1 m"
 tool_radius = "0 mm"
+stiffness = "% N/mm"
+)"},
+    {"plane_guide", 1e-3, guide_wires, R"(
+[nodes.contact]
+type = "plane_guide"
+rate = "1 kHz"
+max_force = "10 N"
+stiffness = "% N/mm"
+)"},
+    {"box_guide", 1e-3, guide_wires, R"(
+[nodes.contact]
+type = "box_guide"
+rate = "1 kHz"
+centre = "0 mm, 0 mm, -50 mm"
+keep = "outside"
+max_force = "10 N"
+stiffness = "% N/mm"
+)"},
+    // What pulls must let go: less than 1.5 mJ, so that every throw gets through once. The bound is that of one contact; a
+    // hand that is caught swings through many.
+    {"point_guide", 6e-3, guide_wires, R"(
+[nodes.contact]
+type = "point_guide"
+rate = "1 kHz"
+reach = "5 mm"
+max_force = "0.3 N"
+stiffness = "% N/mm"
+)"},
+    {"line_guide", 6e-3, guide_wires, R"(
+[nodes.contact]
+type = "line_guide"
+rate = "1 kHz"
+reach = "5 mm"
+max_force = "0.3 N"
+stiffness = "% N/mm"
+)"},
+    {"path_guide", 6e-3, guide_wires, R"(
+[nodes.contact]
+type = "path_guide"
+rate = "1 kHz"
+points = "-20 0 0, 0 3 0, 20 0 0 mm"
+reach = "5 mm"
+max_force = "0.3 N"
 stiffness = "% N/mm"
 )"},
     {"voxmap_contact", 3e-3,

@@ -9,7 +9,8 @@ using namespace tactus;
 
 TEST_CASE("no contact on any simulated device returns more energy than its bound", "[slow]") {
     study::BounceMatrix matrix;
-    matrix.nodes = {"sphere_contact", "sphere_proxy", "quasi_static_coupling", "dynamic_coupling"};
+    matrix.nodes = {"sphere_contact",   "sphere_proxy", "quasi_static_coupling",
+                    "dynamic_coupling", "plane_guide",  "point_guide"};
     matrix.stiffnesses = {2.5e3, 12.8e3};
     matrix.speeds = {0.2};
     matrix.masses = {0.1, 0.3};
