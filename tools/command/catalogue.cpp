@@ -25,6 +25,7 @@
     X(info, bones, bones)                 \
     X(export, bones, bones)               \
     X(register, bones, bones)             \
+    X(vessel, bones, bones)               \
     X(fracture, bones, fractures)         \
     X(fracture_surface, bones, fractures) \
     X(snap, bones, fractures)             \
