@@ -50,18 +50,21 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                 const double angle = 2.0 * std::numbers::pi * turn / 16.0;
                 const Vec3 out = std::cos(angle) * frame.first + std::sin(angle) * frame.second;
                 for (const double tilt : {-1.05, -0.55, 0.0, 0.55, 1.05}) {
+                    // Branches that leave at an acute angle are free of the vessel further away.
+                    const double off = std::abs(tilt) > 1.0 ? 2.2 : 1.2;
                     Tube tube;
                     tube.direction = std::cos(tilt) * out + std::sin(tilt) * node.direction;
-                    tube.centre = node.position + (node.radius + 1.2 * radius + 0.5 * voxel) / std::cos(tilt) *
+                    tube.centre = node.position + (node.radius + off * radius + 0.5 * voxel) / std::cos(tilt) *
                                                       tube.direction;
                     tube.radius = radius;
                     float value;
-                    const double level = 0.5 * node.contrast;
+                    // Blur takes brightness from what is thin.
+                    const double level = std::clamp(radius / voxel - 0.7, 0.3, 0.5) * node.contrast;
                     if (!scan.value(tube.centre, value)) continue;
                     tube = measured(scan, window, search.sampling, tube);
                     if (tube.score < search.least_mean || tube.contrast < level || tube.valid < 0.6) continue;
                     if (is_taken(taken, tube.centre, 0.3 * radius)) continue;
-                    if (least_between(scan, node.position, tube.centre) < tube.background + 0.5 * node.contrast)
+                    if (least_between(scan, node.position, tube.centre) < tube.background + level)
                         continue;
                     found.push_back({tube, static_cast<int>(n)});
                 }

@@ -102,19 +102,30 @@ void smooth_centres(std::vector<Tube>& tubes) {
     for (std::size_t n = 0; n < tubes.size(); ++n) tubes[n].centre = centres[n];
 }
 
-/// How many of these contrasts, from the inside of a branch to its end, belong to the vessel: up to where their excess
-/// over 0.65 of what the vessel had before sums to the most. A run into noise has less than that on average, however
-/// long it is; beyond a gap the vessel makes up for it.
-std::size_t kept_of(const std::vector<double>& contrasts, double known) {
-    std::vector<double> before;
+/// What an end is judged by.
+struct Seen {
+    double contrast, radius;
+};
+
+/// How many of these nodes, from the inside of a branch to its end, belong to the vessel: up to where contrast times
+/// cross-section, beside those before, exceeds 0.65 by the most in sum. A run into noise has less than that on average,
+/// however long it is; beyond a gap or a stenosis the vessel makes up for it.
+std::size_t kept_of(const std::vector<Seen>& nodes, double known_contrast, double known_radius) {
+    constexpr std::ptrdiff_t window = 60;
+    std::vector<double> contrasts, radii;
     double sum = 0.0, most = 0.0;
     std::size_t kept = 1;
-    for (std::size_t n = 0; n < contrasts.size(); ++n) {
-        double reference = known;
-        if (before.size() >= 30)
-            reference = std::max(0.6 * known, median({before.end() - std::min<std::ptrdiff_t>(60, std::ssize(before)), before.end()}));
-        sum += contrasts[n] / reference - 0.65;
-        before.push_back(contrasts[n]);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        double contrast = known_contrast, radius = known_radius;
+        if (n >= window / 2) {
+            const std::ptrdiff_t count = std::min<std::ptrdiff_t>(window, std::ssize(contrasts));
+            contrast = std::max(0.6 * known_contrast, median({contrasts.end() - count, contrasts.end()}));
+            radius = median({radii.end() - count, radii.end()});
+        }
+        const double slimmer = std::min(1.0, nodes[n].radius / radius);
+        sum += nodes[n].contrast / contrast * slimmer * slimmer - 0.65;
+        contrasts.push_back(nodes[n].contrast);
+        radii.push_back(nodes[n].radius);
         if (sum > most) most = sum, kept = n + 1;
     }
     return kept;
@@ -165,14 +176,14 @@ std::vector<Node> refined_nodes(const Search& search, const std::vector<Tube>& t
     smooth_directions(free, std::max(typical, 1.5 * voxel));
     smooth_centres(free);
 
-    std::vector<double> excess;
-    for (std::size_t n = 0; n < free.size(); ++n) excess.push_back(lost[n] ? std::min(free[n].contrast, 0.4 * known) : free[n].contrast);
-    const std::size_t from = std::min(middle, free.size() - 1);
+    std::vector<Seen> seen;
+    for (std::size_t n = 0; n < free.size(); ++n)
+        seen.push_back({lost[n] ? std::min(free[n].contrast, 0.4 * known) : free[n].contrast, free[n].radius});
+    const auto middle_of = static_cast<std::ptrdiff_t>(middle);
     std::size_t first = 0, last = free.size();
-    if (cut_end) last = from + kept_of(std::vector<double>(excess.begin() + static_cast<std::ptrdiff_t>(from), excess.end()), known);
+    if (cut_end) last = middle + kept_of({seen.begin() + middle_of, seen.end()}, known, free[middle].radius);
     if (cut_start)
-        first = from + 1 -
-                kept_of(std::vector<double>(excess.rend() - static_cast<std::ptrdiff_t>(from) - 1, excess.rend()), known);
+        first = middle + 1 - kept_of({seen.rend() - middle_of - 1, seen.rend()}, known, free[middle].radius);
     std::vector<Node> nodes;
     double along = 0.0;
     for (std::size_t n = first; n < last; ++n) {
