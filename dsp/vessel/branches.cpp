@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace tactus::vessel {
 
@@ -49,9 +50,10 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
             for (int turn = 0; turn < 16; ++turn) {
                 const double angle = 2.0 * std::numbers::pi * turn / 16.0;
                 const Vec3 out = std::cos(angle) * frame.first + std::sin(angle) * frame.second;
-                for (const double tilt : {-1.05, -0.55, 0.0, 0.55, 1.05}) {
-                    // Branches that leave at an acute angle are free of the vessel further away.
-                    const double off = std::abs(tilt) > 1.0 ? 2.2 : 1.2;
+                // Branches that leave at an acute angle are free of the vessel only further away.
+                constexpr std::pair<double, double> places[] = {{-1.05, 1.2}, {-1.05, 2.2}, {-0.55, 1.2}, {0.0, 1.2},
+                                                                {0.55, 1.2},  {1.05, 1.2},  {1.05, 2.2}};
+                for (const auto& [tilt, off] : places) {
                     Tube tube;
                     tube.direction = std::cos(tilt) * out + std::sin(tilt) * node.direction;
                     tube.centre = node.position + (node.radius + off * radius + 0.5 * voxel) / std::cos(tilt) *

@@ -51,7 +51,7 @@ struct Leg {
         const double width = glm::length(to_fibula);
         const Vec3 lateral = to_fibula / width;
         Vec3 front = glm::normalize(glm::cross(lateral, down));
-        if (bones.is_right) front = -front;
+        if (!bones.is_right) front = -front;
         const double u = glm::dot(p - tibia, lateral) / width, w = glm::dot(p - tibia, front);
         if (u < -1.5 || u > 2.5 || std::abs(w) > beside) return std::nullopt;
         if (w > 0.0) return LegArtery::anterior_tibial;

@@ -106,7 +106,7 @@ bool Scan::value(const Vec3& position, float& out) const {
     if (!excluded_.empty() &&
         is_excluded(static_cast<int>(at.x + 0.5), static_cast<int>(at.y + 0.5), static_cast<int>(at.z + 0.5)))
         return false;
-    out = trilinear(grid_, at);
+    out = std::max(least_, trilinear(grid_, at));
     return true;
 }
 

@@ -25,6 +25,8 @@ public:
     /// values of a vessel. Infinity: nothing is excluded.
     void exclude_above(double value);
     double excluded_above() const { return limit_; }
+    /// Lower values count as `value`: beside lung and air, tissue would look like a vessel.
+    void clip_below(double value) { least_ = static_cast<float>(value); }
 
     const volume::Grid& grid() const { return grid_; }
     double voxel() const { return voxel_; }                ///< m, geometric mean of the spacing
@@ -56,6 +58,7 @@ private:
     Vec3 per_metre_;
     double voxel_;
     double limit_ = std::numeric_limits<double>::infinity();
+    float least_ = -std::numeric_limits<float>::infinity();
     std::array<int, 3> blocks_;
     mutable std::vector<std::unique_ptr<Block>> excluded_;
 };

@@ -51,6 +51,7 @@ public:
             if (search_.scan.inside_by(next.centre) < 0.5 * search_.scan.voxel()) return finished(End::border);
             const double least = least_contrast(next.radius);
             if (next.contrast < least * recent.contrast) return finished(end_of_contrast(next, recent));
+            if (!is_same_brightness(next, recent)) return finished(end_of_contrast(next, recent));
             if (const int met = meets(next); met >= 0) {
                 meets_ = met;
                 return finished(End::meets_track);
@@ -84,6 +85,13 @@ private:
     double least_contrast(double radius) const {
         const double voxels = radius / search_.scan.voxel();
         return settings_.least_contrast * std::clamp(0.5 + 0.5 * (voxels - 0.75) / 0.75, 0.5, 1.0);
+    }
+
+    /// Neither tissue nor another contrast than so far.
+    bool is_same_brightness(const Tube& tube, const Recent& recent) const {
+        const double change = (tube.background + tube.contrast - recent.lumen) / recent.contrast;
+        const bool is_thin = tube.radius < 1.5 * search_.scan.voxel();
+        return change < 0.6 && (is_thin || change > -0.6);
     }
 
     End end_of_contrast(const Tube& tube, const Recent& recent) const {

@@ -50,6 +50,30 @@ std::vector<Vec3> half_sphere() {
     return directions;
 }
 
+/// The tube of least radius whose score is not surpassed by the next larger one: the score of what holds a vessel and
+/// its neighbours grows with the number of samples. Only tubes of at least half of the best contrast.
+Tube first_peak(std::vector<Tube> tubes, double least_score) {
+    std::ranges::stable_sort(tubes, [](const Tube& a, const Tube& b) { return a.radius < b.radius; });
+    std::vector<Tube> different;  // fits of several radii often end at one tube
+    double contrast = 0.0;
+    for (const Tube& tube : tubes) {
+        if (tube.score >= least_score) contrast = std::max(contrast, tube.contrast);
+        if (!different.empty() && tube.radius < 1.2 * different.back().radius) {
+            if (tube.score > different.back().score) different.back() = tube;
+        } else {
+            different.push_back(tube);
+        }
+    }
+    Tube best;
+    for (std::size_t n = 0; n < different.size(); ++n) {
+        const Tube& tube = different[n];
+        if (tube.score > best.score) best = tube;
+        const bool is_peak = n + 1 == different.size() || different[n + 1].score < tube.score;
+        if (is_peak && tube.score >= least_score && tube.contrast > 0.5 * contrast) return tube;
+    }
+    return best;
+}
+
 }  // namespace
 
 Tube best_start(const Search& search, const Vec3& seed) {
@@ -84,10 +108,7 @@ Tube best_start(const Search& search, const Vec3& seed) {
         if (off > std::max(1.3 * tube.radius, search.scan.voxel())) continue;
         best.push_back(tube);
     }
-    Tube start;
-    for (const Tube& tube : best)
-        if (tube.score > start.score) start = tube;
-    return start;
+    return first_peak(std::move(best), search.least_start);
 }
 
 }  // namespace tactus::vessel

@@ -13,6 +13,7 @@ std::string_view reason_of(End end) {
         case End::excluded: return "it meets bone or a stent";
         case End::larger_vessel: return "it joins a larger vessel";
         case End::meets_track: return "it meets a vessel that is tracked";
+        case End::forks: return "it forks";
         case End::length: return "the limit of length is reached";
     }
     return "";

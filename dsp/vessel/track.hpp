@@ -24,7 +24,7 @@ struct Node {
 };
 
 /// Why a branch ends.
-enum class End { contrast, noise, border, excluded, larger_vessel, meets_track, length };
+enum class End { contrast, noise, border, excluded, larger_vessel, meets_track, forks, length };
 /// "the contrast is lost", …: the end of a sentence "a branch ends where …".
 std::string_view reason_of(End end);
 

@@ -29,6 +29,7 @@ public:
                   Sampling{scan_.voxel_volume()}} {}
 
     Followed run(const Vec3& seed) {
+        if (settings_.clip_below) scan_.clip_below(*settings_.clip_below);
         if (settings_.exclude_above) {
             scan_.exclude_above(*settings_.exclude_above);
             if (scan_.is_excluded(seed))
@@ -47,6 +48,8 @@ public:
         if (!follow_seed(start, seed)) return nothing(seed, start);
         if (settings_.branches)
             for (std::size_t n = 0; n < found_.track.branches.size(); ++n) find_branches(n);
+        cut_forked_ends();
+        found_.track.seed_node = std::min(found_.track.seed_node, found_.track.branches[0].nodes.size() - 1);
         return std::move(found_);
     }
 
@@ -138,7 +141,15 @@ private:
         if (start.score < search_.least_mean || is_taken(start.centre)) return;
         if (glm::dot(start.direction, side.tube.direction) < 0.0) start.direction = -start.direction;
         const OneWay ahead = follow_one_way(search_, start, taken_, settings_.most_length);
-        std::vector<Tube> tubes{start};
+        // Back to the parent, which the search for side branches keeps clear of.
+        Tube back = start;
+        back.direction = -back.direction;
+        const OneWay behind = follow_one_way(search_, back, taken_, 6.0 * leaves.radius);
+        std::vector<Tube> tubes(behind.tubes.rbegin(), behind.tubes.rend());
+        for (Tube& tube : tubes) tube.direction = -tube.direction;
+        const bool is_joined = behind.end == End::meets_track || behind.end == End::larger_vessel;
+        if (!is_joined) tubes.clear();
+        tubes.push_back(start);
         tubes.insert(tubes.end(), ahead.tubes.begin(), ahead.tubes.end());
         Branch branch;
         branch.nodes = refined_nodes(search_, tubes, start.contrast, start.centre, false, true);
@@ -152,8 +163,22 @@ private:
 
     /// Joins the branch to its parent where the line of its first piece, drawn backwards, comes closest to the parent's.
     void attach(Branch& branch, const Branch& parent, const Node& leaves) {
-        const std::size_t ahead = std::min<std::size_t>(branch.nodes.size() - 1, 3);
-        const Vec3 first = branch.nodes.front().position;
+        // Where the branch is free of its parent; closer, the parent draws the track to itself.
+        std::size_t clear = 0;
+        const auto is_clear = [&](const Vec3& place, double radius) {
+            return std::ranges::none_of(parent.nodes, [&](const Node& node) {
+                return glm::length(place - node.position) < node.radius + 0.5 * radius;
+            });
+        };
+        while (clear + 4 < branch.nodes.size() && !is_clear(branch.nodes[clear].position, branch.nodes[clear].radius))
+            ++clear;
+        std::size_t ahead = clear + 1;
+        while (ahead + 1 < branch.nodes.size() &&
+               branch.nodes[ahead].along - branch.nodes[clear].along < 2.5 * branch.nodes[clear].radius)
+            ++ahead;
+        ahead = std::min(ahead, branch.nodes.size() - 1);
+        clear = std::min(clear, ahead - 1);
+        Vec3 first = branch.nodes[clear].position;
         const Vec3 back = glm::normalize(first - branch.nodes[ahead].position);
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t n = 0; n < parent.nodes.size(); ++n) {
@@ -163,14 +188,75 @@ private:
             const double off = glm::length(to - along * back);
             if (off < least) least = off, branch.parent_node = static_cast<int>(n);
         }
-        Node root = parent.nodes[static_cast<std::size_t>(branch.parent_node)];
-        root.radius = branch.nodes.front().radius;
-        root.is_lost = false;
-        root.direction = -back;
-        root.along = 0.0;
+        std::size_t behind = 0;  // nodes on the other side of the root
+        while (behind < clear && glm::dot(branch.nodes[behind].position -
+                                              parent.nodes[static_cast<std::size_t>(branch.parent_node)].position,
+                                          back) > 0.0)
+            ++behind;
+        branch.nodes.erase(branch.nodes.begin(), branch.nodes.begin() + static_cast<std::ptrdiff_t>(behind));
+        first = branch.nodes.front().position;
+        const double dropped = branch.nodes.front().along;
+        for (Node& node : branch.nodes) node.along -= dropped;
+        // A straight piece from the parent's axis.
+        const Node& root = parent.nodes[static_cast<std::size_t>(branch.parent_node)];
         const double gap = glm::length(first - root.position);
+        const int parts = std::max(1, static_cast<int>(gap / scan_.voxel()));
+        std::vector<Node> joining;
+        for (int n = 0; n < parts; ++n) {
+            Node node = branch.nodes.front();
+            node.position = root.position + (first - root.position) * (double(n) / parts);
+            node.direction = gap > 0.0 ? (first - root.position) / gap : -back;
+            node.along = gap * n / parts;
+            node.is_lost = false;
+            joining.push_back(node);
+        }
         for (Node& node : branch.nodes) node.along += gap;
-        branch.nodes.insert(branch.nodes.begin(), root);
+        branch.nodes.insert(branch.nodes.begin(), joining.begin(), joining.end());
+        // The start of a branch is a place on the axis that it left.
+        if (branch.parent_node == 0 && parent.parent >= 0) {
+            branch.parent = parent.parent;
+            branch.parent_node = parent.parent_node;
+        }
+    }
+
+    /// Where a vessel forks evenly, the track of the trunk runs on between its branches: it ends at their root.
+    void cut_forked_ends() {
+        std::vector<Branch>& branches = found_.track.branches;
+        for (std::size_t b = 0; b < branches.size(); ++b) {
+            Branch& branch = branches[b];
+            for (const bool at_end : {true, false}) {
+                if (!at_end && b > 0) continue;
+                const End end = at_end ? branch.end : branch.start;
+                if (end == End::meets_track || end == End::larger_vessel) continue;
+                const double tip = at_end ? branch.length() : 0.0;
+                int children = 0;
+                double furthest = -1.0, smallest = 1e9;
+                for (const Branch& child : branches) {
+                    if (child.parent != static_cast<int>(b)) continue;
+                    const Node& root = branch.nodes[static_cast<std::size_t>(child.parent_node)];
+                    const double off = std::abs(tip - root.along);
+                    if (off > 5.0 * root.radius) continue;
+                    ++children;
+                    furthest = std::max(furthest, static_cast<double>(child.parent_node));
+                    smallest = std::min(smallest, static_cast<double>(child.parent_node));
+                }
+                if (children < 2) continue;
+                if (at_end) branch.nodes.resize(static_cast<std::size_t>(furthest) + 1);
+                else cut_start(b, static_cast<int>(smallest));
+                (at_end ? branch.end : branch.start) = End::forks;
+            }
+        }
+    }
+
+    void cut_start(std::size_t index, int count) {
+        std::vector<Branch>& branches = found_.track.branches;
+        std::vector<Node>& nodes = branches[index].nodes;
+        const double cut = nodes[static_cast<std::size_t>(count)].along;
+        nodes.erase(nodes.begin(), nodes.begin() + count);
+        for (Node& node : nodes) node.along -= cut;
+        for (Branch& child : branches)
+            if (child.parent == static_cast<int>(index)) child.parent_node -= count;
+        found_.track.seed_node -= std::min(found_.track.seed_node, static_cast<std::size_t>(count));
     }
 
     const TrackSettings settings_;

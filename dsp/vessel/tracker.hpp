@@ -19,6 +19,7 @@ struct TrackSettings {
     double least_contrast = 0.4;  ///< of the running median: below it the vessel ends
     double most_length = 2.0;     ///< m
     bool branches = true;
+    std::optional<double> clip_below;     ///< lower values count as this one; for HU: -150
     std::optional<double> exclude_above;  ///< value of bone or stent; none: from the vessel's own brightness
 };
 

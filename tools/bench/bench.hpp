@@ -30,5 +30,6 @@ Verb device_verb();
 Verb saw_verb();
 Verb fits_verb();
 Verb assembly_verb();
+Verb vessel_verb();
 
 }  // namespace tactus::bench

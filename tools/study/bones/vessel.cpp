@@ -14,6 +14,7 @@ namespace tactus::study {
 namespace {
 
 constexpr double air = -200.0, bone = 900.0;  // HU; vessels in a CT angiography reach about 700
+constexpr double least_hu = -150.0;                // below fat
 
 double processor_seconds() {
     timespec now{};
@@ -55,7 +56,9 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
     if (is_hu) check_seed(grid, settings.seed);
 
     const double before = processor_seconds();
-    result.found = vessel::follow(grid, settings.seed, settings.track);
+    vessel::TrackSettings track_settings = settings.track;
+    if (is_hu) track_settings.clip_below = least_hu;
+    result.found = vessel::follow(grid, settings.seed, track_settings);
     result.seconds = processor_seconds() - before;
     const vessel::Track& track = result.found.track;
     if (settings.leg) result.run_off = vessel::run_off(track, *settings.leg);
