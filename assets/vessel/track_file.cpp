@@ -90,9 +90,8 @@ std::string vtp(const Track& track) {
     array("Float64", "confidence",
           [](std::size_t, std::size_t, const Node& node) { return fmt::format("{:.4f}", node.confidence); });
     array("Int64", "branch", [](std::size_t b, std::size_t, const Node&) { return fmt::format("{}", b); });
-    array("Int64", "parent", [&](std::size_t b, std::size_t n, const Node&) {
-        return fmt::format("{}", parent_of(track, rows, b, n));
-    });
+    array("Int64", "parent",
+          [&](std::size_t b, std::size_t n, const Node&) { return fmt::format("{}", parent_of(track, rows, b, n)); });
     return text + "</PointData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
@@ -120,7 +119,9 @@ std::string markups(const Track& track) {
                           {"labelFormat", "%N-%d"},
                           {"controlPoints", points},
                           {"display",
-                           {{"visibility", true}, {"color", {colour.x, colour.y, colour.z}}, {"propertiesLabelVisibility", false}}}});
+                           {{"visibility", true},
+                            {"color", {colour.x, colour.y, colour.z}},
+                            {"propertiesLabelVisibility", false}}}});
     }
     const Json json{{"@schema",
                      "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"

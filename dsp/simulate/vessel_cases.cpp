@@ -49,14 +49,19 @@ VesselCase ends_case(double radius, double noise, std::uint64_t seed) {
 VesselCase branch_case(double radius, double angle_deg, double ratio, std::uint64_t seed) {
     VesselPhantom phantom({90, 56, 90}, voxel);
     VesselCase made{fmt::format("Y, R {} voxels, {} deg, {}", radius, angle_deg, ratio == 1.0 ? "1:1" : "2:1"),
-                    {}, {}, {}, radius * voxel, Vec3(45.2, 28.1, 44.0) * voxel};
+                    {},
+                    {},
+                    {},
+                    radius * voxel,
+                    Vec3(45.2, 28.1, 44.0) * voxel};
     const double angle = angle_deg * std::numbers::pi / 180.0;
     const auto direction = [](double a) { return Vec3(std::sin(a), 0.0, std::cos(a)); };
     const bool is_even = ratio == 1.0;
     const Vec3 joint = *made.joint;
     const std::vector<Vec3> trunk = straight(Vec3(45.2, 28.1, 4.0) * voxel, joint, fine);
     const std::vector<Vec3> first = straight(joint, joint + 38 * voxel * direction(is_even ? -0.5 * angle : 0.0), fine);
-    const std::vector<Vec3> second = straight(joint, joint + 38 * voxel * direction(is_even ? 0.5 * angle : angle), fine);
+    const std::vector<Vec3> second =
+        straight(joint, joint + 38 * voxel * direction(is_even ? 0.5 * angle : angle), fine);
     phantom.add_tube(trunk, constant(made.radius), 1.0);
     phantom.add_tube(first, constant(is_even ? 0.8 * made.radius : made.radius), 1.0);
     phantom.add_tube(second, constant(is_even ? 0.8 * made.radius : ratio * made.radius), 1.0);
@@ -71,13 +76,14 @@ VesselCase stenosis_case(double radius, std::uint64_t seed) {
     VesselCase made{fmt::format("stenosis 70 %, R {} voxels", radius), {}, {}, {}, radius * voxel, {}};
     made.lines = {oblique(8, 82)};
     const double length = glm::length(made.lines[0].back() - made.lines[0].front());
-    phantom.add_tube(made.lines[0],
-                     [&](double s) {
-                         const double x = (s - 0.6) * length / (4.0 * made.radius);
-                         const double narrower = std::abs(x) < 0.5 ? 0.35 * (1.0 + std::cos(2.0 * std::numbers::pi * x)) : 0.0;
-                         return made.radius * (1.0 - narrower);
-                     },
-                     1.0);
+    phantom.add_tube(
+        made.lines[0],
+        [&](double s) {
+            const double x = (s - 0.6) * length / (4.0 * made.radius);
+            const double narrower = std::abs(x) < 0.5 ? 0.35 * (1.0 + std::cos(2.0 * std::numbers::pi * x)) : 0.0;
+            return made.radius * (1.0 - narrower);
+        },
+        1.0);
     made.seed = made.lines[0][made.lines[0].size() / 4];
     made.scan = phantom.scan(0.0, 0.2, seed);
     return made;
@@ -129,7 +135,8 @@ TrackError compared(const vessel::Track& track, const VesselCase& with) {
     std::vector<Vec3> ends;
     for (const auto& line : with.lines)
         for (const Vec3& end : {line.front(), line.back()}) ends.push_back(end);
-    const Vec3 before = glm::normalize(first[0] - first[1]), after = glm::normalize(first.back() - first[first.size() - 2]);
+    const Vec3 before = glm::normalize(first[0] - first[1]),
+               after = glm::normalize(first.back() - first[first.size() - 2]);
     for (std::size_t b = 0; b < track.branches.size(); ++b)
         for (const vessel::Node& node : track.branches[b].nodes) {
             if (b == 0 && with.lines.size() == 1) {
@@ -169,7 +176,8 @@ TrackError compared(const vessel::Track& track, const VesselCase& with) {
     if (with.joint)
         for (const vessel::Branch& branch : track.branches)
             if (branch.parent >= 0)
-                error.joint = std::min(error.joint, glm::length(branch.nodes.front().position - *with.joint) / with.radius);
+                error.joint =
+                    std::min(error.joint, glm::length(branch.nodes.front().position - *with.joint) / with.radius);
     return error;
 }
 

@@ -14,7 +14,8 @@ struct VesselCase {
     std::string name;
     volume::Grid scan;
     Vec3 seed{0.0};
-    std::vector<std::vector<Vec3>> lines;  ///< centre lines, points at most 0.15 samples apart; the first holds the seed
+    std::vector<std::vector<Vec3>>
+        lines;  ///< centre lines, points at most 0.15 samples apart; the first holds the seed
     double radius = 0.0;                   ///< m, of the first line
     std::optional<Vec3> joint;             ///< where the lines meet
 };
@@ -39,12 +40,12 @@ volume::Grid noise_case(double correlation, std::uint64_t seed);
 
 /// Lengths in samples unless stated.
 struct TrackError {
-    double rms = 0.0;         ///< distance of nodes to the nearest line, two radii away from its ends; without lost stretches
+    double rms = 0.0;  ///< distance of nodes to the nearest line, two radii away from its ends; without lost stretches
     double mean_radius = 0.0;  ///< of these nodes of the first branch
-    double worst = 0.0;       ///< greatest of these distances
-    double overshoot = 0.0;   ///< past an end of the first line, in its radii
-    double covered = 0.0;     ///< share of all lines with a node closer than 1.5 radii
-    double joint = 0.0;       ///< nearest start of a side branch to the joint, radii; 1e9: no side branch
+    double worst = 0.0;  ///< greatest of these distances
+    double overshoot = 0.0;  ///< past an end of the first line, in its radii
+    double covered = 0.0;  ///< share of all lines with a node closer than 1.5 radii
+    double joint = 0.0;  ///< nearest start of a side branch to the joint, radii; 1e9: no side branch
 };
 TrackError compared(const vessel::Track& track, const VesselCase& with);
 

@@ -83,7 +83,8 @@ void VesselPhantom::add_tube(const std::vector<Vec3>& line, const std::function<
     for (std::size_t n = 0; n < line.size(); ++n) {
         const double r = radius(double(n) / double(line.size() - 1));
         if (!(r > 0.0)) continue;
-        const Vec3 low = (line[n] - r) / fine + double(finer - 1) / 2.0, high = (line[n] + r) / fine + double(finer - 1) / 2.0;
+        const Vec3 low = (line[n] - r) / fine + double(finer - 1) / 2.0,
+                   high = (line[n] + r) / fine + double(finer - 1) / 2.0;
         for (int k = static_cast<int>(low.z); k <= static_cast<int>(high.z) + 1; ++k)
             for (int j = static_cast<int>(low.y); j <= static_cast<int>(high.y) + 1; ++j)
                 for (int i = static_cast<int>(low.x); i <= static_cast<int>(high.x) + 1; ++i) {
@@ -127,8 +128,7 @@ std::vector<Vec3> helix(const Vec3& centre, double radius, double pitch, double 
     std::vector<Vec3> line;
     for (int n = 0; n <= count; ++n) {
         const double turn = turns * n / count, angle = 2.0 * std::numbers::pi * turn;
-        line.push_back(centre +
-                       Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * (turn - 0.5 * turns)));
+        line.push_back(centre + Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * (turn - 0.5 * turns)));
     }
     return line;
 }

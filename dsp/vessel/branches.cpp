@@ -26,9 +26,8 @@ double least_between(const Scan& scan, const Vec3& from, const Vec3& to) {
 }
 
 bool is_taken(const std::vector<Taken>& taken, const Vec3& place, double margin) {
-    return std::ranges::any_of(taken, [&](const Taken& other) {
-        return glm::length(place - other.position) < other.radius + margin;
-    });
+    return std::ranges::any_of(
+        taken, [&](const Taken& other) { return glm::length(place - other.position) < other.radius + margin; });
 }
 
 }  // namespace
@@ -56,8 +55,8 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                 for (const auto& [tilt, off] : places) {
                     Tube tube;
                     tube.direction = std::cos(tilt) * out + std::sin(tilt) * node.direction;
-                    tube.centre = node.position + (node.radius + off * radius + 0.5 * voxel) / std::cos(tilt) *
-                                                      tube.direction;
+                    tube.centre =
+                        node.position + (node.radius + off * radius + 0.5 * voxel) / std::cos(tilt) * tube.direction;
                     tube.radius = radius;
                     float value;
                     // Blur takes brightness from what is thin.
@@ -66,8 +65,7 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                     tube = measured(scan, window, search.sampling, tube);
                     if (tube.score < search.least_mean || tube.contrast < level || tube.valid < 0.6) continue;
                     if (is_taken(taken, tube.centre, 0.3 * radius)) continue;
-                    if (least_between(scan, node.position, tube.centre) < tube.background + level)
-                        continue;
+                    if (least_between(scan, node.position, tube.centre) < tube.background + level) continue;
                     found.push_back({tube, static_cast<int>(n)});
                 }
             }
@@ -78,7 +76,8 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
     std::vector<SideBranch> kept;
     for (const SideBranch& each : found) {
         const bool is_twin = std::ranges::any_of(kept, [&](const SideBranch& other) {
-            return glm::length(other.tube.centre - each.tube.centre) < 1.2 * std::max(other.tube.radius, each.tube.radius);
+            return glm::length(other.tube.centre - each.tube.centre) <
+                   1.2 * std::max(other.tube.radius, each.tube.radius);
         });
         if (!is_twin) kept.push_back(each);
         if (kept.size() == 30) break;

@@ -51,8 +51,8 @@ public:
     double blur(const Vec3& direction) const {
         const Across frame = across(direction);
         const double psf = search_.settings.psf_voxels;
-        return std::sqrt(0.5 * (search_.scan.blur_variance(frame.first, psf) +
-                                search_.scan.blur_variance(frame.second, psf)));
+        return std::sqrt(
+            0.5 * (search_.scan.blur_variance(frame.first, psf) + search_.scan.blur_variance(frame.second, psf)));
     }
 
     /// `kept` above 0: contrast held at this value.
@@ -182,8 +182,7 @@ std::vector<Node> refined_nodes(const Search& search, const std::vector<Tube>& t
     const auto middle_of = static_cast<std::ptrdiff_t>(middle);
     std::size_t first = 0, last = free.size();
     if (cut_end) last = middle + kept_of({seen.begin() + middle_of, seen.end()}, known, free[middle].radius);
-    if (cut_start)
-        first = middle + 1 - kept_of({seen.rend() - middle_of - 1, seen.rend()}, known, free[middle].radius);
+    if (cut_start) first = middle + 1 - kept_of({seen.rend() - middle_of - 1, seen.rend()}, known, free[middle].radius);
     std::vector<Node> nodes;
     double along = 0.0;
     for (std::size_t n = first; n < last; ++n) {

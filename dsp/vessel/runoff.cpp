@@ -19,7 +19,8 @@ struct Leg {
     Vec3 down;
     double length;
 
-    explicit Leg(const LegGeometry& leg) : bones(leg), down(leg.tibia_bottom - leg.tibia_top), length(glm::length(down)) {
+    explicit Leg(const LegGeometry& leg)
+        : bones(leg), down(leg.tibia_bottom - leg.tibia_top), length(glm::length(down)) {
         for (const Vec3& p : {leg.tibia_top, leg.tibia_bottom, leg.fibula_top, leg.fibula_bottom})
             if (!is_finite(p)) throw Error("the ends of tibia and fibula must be positions in mm");
         if (length < 0.1 || glm::length(leg.fibula_bottom - leg.fibula_top) < 0.1)
@@ -62,20 +63,23 @@ struct Leg {
 void warn(RunOff& found) {
     const auto& [anterior, posterior, peroneal] = found.arteries;
     if (!found.is_judged) {
-        found.warnings.push_back(fmt::format(
-            "the track covers levels {:.2f} to {:.2f} of the leg, which is too little to judge its arteries (0.4 to 0.7 "
-            "is needed): the run-off is unknown",
-            std::min(found.from, found.to), found.to));
+        found.warnings.push_back(
+            fmt::format("the track covers levels {:.2f} to {:.2f} of the leg, which is too little to judge its "
+                        "arteries (0.4 to 0.7 "
+                        "is needed): the run-off is unknown",
+                        std::min(found.from, found.to), found.to));
         return;
     }
     if (!peroneal.is_seen)
         found.warnings.push_back(
-            "the peroneal artery was not found: the fibula may have no pedicle on this side; seed it by hand or look at "
+            "the peroneal artery was not found: the fibula may have no pedicle on this side; seed it by hand or look "
+            "at "
             "the scan before planning");
     const bool front = anterior.is_seen && anterior.reaches_foot, back = posterior.is_seen && posterior.reaches_foot;
     if (peroneal.is_seen && !front && !back)
         found.warnings.push_back(
-            "neither the anterior nor the posterior tibial artery is seen to reach the foot: the peroneal artery may be "
+            "neither the anterior nor the posterior tibial artery is seen to reach the foot: the peroneal artery may "
+            "be "
             "the only one to it, and taking it may cost the foot");
     else if (peroneal.is_seen && !(front && back))
         found.warnings.push_back(fmt::format(

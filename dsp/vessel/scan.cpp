@@ -7,7 +7,8 @@
 namespace tactus::vessel {
 
 Scan::Scan(const volume::Grid& grid)
-    : grid_(grid), per_metre_(1.0 / grid.spacing.x, 1.0 / grid.spacing.y, 1.0 / grid.spacing.z),
+    : grid_(grid),
+      per_metre_(1.0 / grid.spacing.x, 1.0 / grid.spacing.y, 1.0 / grid.spacing.z),
       voxel_(std::cbrt(grid.spacing.x * grid.spacing.y * grid.spacing.z)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (grid.size[axis] < 2) throw Error("the scan needs at least two samples along each axis");
@@ -85,11 +86,13 @@ bool Scan::is_excluded(const Vec3& position) const {
 namespace {
 
 float trilinear(const volume::Grid& grid, const Vec3& at) {
-    const int i = std::min(static_cast<int>(at.x), grid.size[0] - 2), j = std::min(static_cast<int>(at.y), grid.size[1] - 2),
+    const int i = std::min(static_cast<int>(at.x), grid.size[0] - 2),
+              j = std::min(static_cast<int>(at.y), grid.size[1] - 2),
               k = std::min(static_cast<int>(at.z), grid.size[2] - 2);
     const float x = static_cast<float>(at.x - i), y = static_cast<float>(at.y - j), z = static_cast<float>(at.z - k);
     const float* const p = grid.values.data() + grid.index(i, j, k);
-    const std::size_t row = static_cast<std::size_t>(grid.size[0]), layer = row * static_cast<std::size_t>(grid.size[1]);
+    const std::size_t row = static_cast<std::size_t>(grid.size[0]),
+                      layer = row * static_cast<std::size_t>(grid.size[1]);
     const auto along_x = [&](const float* q) { return q[0] + x * (q[1] - q[0]); };
     const float low = along_x(p) + y * (along_x(p + row) - along_x(p));
     const float high = along_x(p + layer) + y * (along_x(p + layer + row) - along_x(p + layer));

@@ -29,7 +29,7 @@ public:
     void clip_below(double value) { least_ = static_cast<float>(value); }
 
     const volume::Grid& grid() const { return grid_; }
-    double voxel() const { return voxel_; }                ///< m, geometric mean of the spacing
+    double voxel() const { return voxel_; }  ///< m, geometric mean of the spacing
     double voxel_volume() const { return voxel_ * voxel_ * voxel_; }
 
     /// Position in samples.

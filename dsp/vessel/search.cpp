@@ -200,9 +200,8 @@ private:
                 const double angle = most_angle * std::hypot(i, j) / n;
                 if (angle > most_angle * 1.2) continue;
                 const double turn = std::atan2(j, i);
-                const Vec3 direction =
-                    std::cos(angle) * from.direction +
-                    std::sin(angle) * (std::cos(turn) * frame.first + std::sin(turn) * frame.second);
+                const Vec3 direction = std::cos(angle) * from.direction +
+                                       std::sin(angle) * (std::cos(turn) * frame.first + std::sin(turn) * frame.second);
                 Tube tube = from;
                 tube.direction = glm::normalize(direction);
                 tube.centre = from.centre + step * tube.direction;
@@ -224,7 +223,8 @@ private:
         std::vector<Tube> found;
         for (const auto& [score, peak] : peaks) {
             const Tube tube = settled(from, peak, step, recent);
-            if (tube.score < search_.least_score || tube.contrast < 0.5 * least_contrast(tube.radius) * recent.contrast) {
+            if (tube.score < search_.least_score ||
+                tube.contrast < 0.5 * least_contrast(tube.radius) * recent.contrast) {
                 if (near_excluded(tube)) refused_ = End::excluded;
                 else if (search_.scan.inside_by(tube.centre) < tube.radius) refused_ = End::border;
                 else if (tube.contrast < 0.5 * least_contrast(tube.radius) * recent.contrast)

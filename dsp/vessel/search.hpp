@@ -37,7 +37,7 @@ struct Taken {
 struct OneWay {
     std::vector<Tube> tubes;  ///< without the start
     End end = End::contrast;
-    int meets = -1;           ///< for End::meets_track
+    int meets = -1;  ///< for End::meets_track
 };
 
 /// Follows a vessel from `start` along its direction.

@@ -35,8 +35,8 @@ Straightened straightened(const volume::Grid& grid, const Branch& branch, double
         out.is_lost.push_back(u < 0.5 ? a.is_lost : b.is_lost);
         for (int row = 0; row < out.rows; ++row) {
             const double off = (row - half) * out.spacing;
-            const std::size_t at =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) + static_cast<std::size_t>(column);
+            const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
+                                   static_cast<std::size_t>(column);
             out.first[at] = static_cast<float>(scan.any_value(centre + off * side));
             out.second[at] = static_cast<float>(scan.any_value(centre + off * other));
         }

@@ -24,7 +24,8 @@ double exclusion(const Tube& start, const Noise& noise) {
 class Follower {
 public:
     Follower(const volume::Grid& grid, const TrackSettings& settings)
-        : settings_(settings), scan_(grid),
+        : settings_(settings),
+          scan_(grid),
           search_{scan_, settings_, tracking_window(settings.axial_window, settings.across_window),
                   Sampling{scan_.voxel_volume()}} {}
 
@@ -56,8 +57,9 @@ public:
 private:
     Followed nothing(const Vec3& seed, const Tube& start) {
         found_.track.branches.clear();
-        found_.why = fmt::format("no vessel at {}: the best tube there has a t-statistic of {:.1f}, noise reaches {:.1f}",
-                                 in_mm(seed), start.score, search_.least_start);
+        found_.why =
+            fmt::format("no vessel at {}: the best tube there has a t-statistic of {:.1f}, noise reaches {:.1f}",
+                        in_mm(seed), start.score, search_.least_start);
         if (start.score >= search_.least_start)
             found_.why = fmt::format("no vessel at {}: what is bright there cannot be followed", in_mm(seed));
         return std::move(found_);
@@ -172,14 +174,21 @@ private:
         };
         while (clear + 4 < branch.nodes.size() && !is_clear(branch.nodes[clear].position, branch.nodes[clear].radius))
             ++clear;
+        const double reach = std::max({2.5 * branch.nodes[clear].radius, 2.5 * leaves.radius, 6.0 * scan_.voxel()});
         std::size_t ahead = clear + 1;
-        while (ahead + 1 < branch.nodes.size() &&
-               branch.nodes[ahead].along - branch.nodes[clear].along < 2.5 * branch.nodes[clear].radius)
+        while (ahead + 1 < branch.nodes.size() && branch.nodes[ahead].along - branch.nodes[clear].along < reach)
             ++ahead;
         ahead = std::min(ahead, branch.nodes.size() - 1);
         clear = std::min(clear, ahead - 1);
-        Vec3 first = branch.nodes[clear].position;
-        const Vec3 back = glm::normalize(first - branch.nodes[ahead].position);
+        // Its line there: through the means of two halves.
+        const auto mean = [&](std::size_t from, std::size_t to) {
+            Vec3 sum(0.0);
+            for (std::size_t n = from; n < to; ++n) sum += branch.nodes[n].position / double(to - from);
+            return sum;
+        };
+        const std::size_t half = (clear + ahead + 1) / 2;
+        Vec3 first = mean(clear, half);
+        const Vec3 back = glm::normalize(first - mean(half, ahead + 1));
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t n = 0; n < parent.nodes.size(); ++n) {
             const Vec3 to = parent.nodes[n].position - first;

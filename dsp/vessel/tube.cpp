@@ -31,8 +31,8 @@ void add_layers(Window& window, double axial, double across_sigma, double axial_
             for (int n = 0; n < places; ++n) {
                 // Rings and layers are turned against each other, so that samples of the grid are met evenly.
                 const double angle = 2.0 * std::numbers::pi * (n + 0.38 * layer + 0.5 * double(ring % 2)) / places;
-                window.places.push_back({a, b * std::cos(angle), b * std::sin(angle), weight, volume,
-                                         smooth_profile(b * b, 1.0).value});
+                window.places.push_back(
+                    {a, b * std::cos(angle), b * std::sin(angle), weight, volume, smooth_profile(b * b, 1.0).value});
             }
             window.reach = std::max(window.reach, std::hypot(a, high));
         }
@@ -96,7 +96,8 @@ struct Sums {
         const double m = (y - k * t) / w;
         const double rest = yy - 2.0 * k * ty - 2.0 * m * y + k * k * tt + 2.0 * k * m * t + m * m * w;
         // k is a sum of values with the factors ω (w T - t) / det.
-        const double variance = std::max(rest, 1e-12 * yy) / w * (w * w * vtt - 2.0 * w * t * vt + t * t * v) / (det * det);
+        const double variance =
+            std::max(rest, 1e-12 * yy) / w * (w * w * vtt - 2.0 * w * t * vt + t * t * v) / (det * det);
         tube.contrast = k;
         tube.background = m;
         tube.contrast_error = std::sqrt(std::max(variance, 0.0));
@@ -156,7 +157,8 @@ public:
             best = improved(best, start);
             const double moved = glm::length(best.centre - before.centre);
             const double turned = glm::length(glm::cross(best.direction, before.direction));
-            if (moved < 0.02 * best.radius && turned < 0.02 && std::abs(best.radius - before.radius) < 0.01 * best.radius)
+            if (moved < 0.02 * best.radius && turned < 0.02 &&
+                std::abs(best.radius - before.radius) < 0.01 * best.radius)
                 break;
         }
         return best;
@@ -262,8 +264,8 @@ private:
         if (tilt > most_tilt) pose.t1 *= most_tilt / tilt, pose.t2 *= most_tilt / tilt;
     }
 
-    void normal_equations(const Pose5& pose, double k, double m, double scale,
-                          std::array<std::array<double, 7>, 7>& a, std::array<double, 7>& b) const {
+    void normal_equations(const Pose5& pose, double k, double m, double scale, std::array<std::array<double, 7>, 7>& a,
+                          std::array<double, 7>& b) const {
         const double norm = 1.0 / std::sqrt(1.0 + pose.t1 * pose.t1 + pose.t2 * pose.t2);
         for (const Reading& r : readings_) {
             const double y1 = r.first - pose.s1, y2 = r.second - pose.s2;

@@ -50,12 +50,12 @@ Tube measured(const Scan& scan, const Window& window, const Sampling& sampling, 
 
 struct FitLimits {
     double least_radius, most_radius;  ///< m
-    double shift = 1.0;                ///< greatest move across the axis, in radii of the start
-    double angle = 0.6;                ///< greatest turn, rad
-    int rounds = 3;                    ///< times that the image is read again
-    double blur = 0.0;                 ///< m; above 0: blurred_profile
+    double shift = 1.0;  ///< greatest move across the axis, in radii of the start
+    double angle = 0.6;  ///< greatest turn, rad
+    int rounds = 3;  ///< times that the image is read again
+    double blur = 0.0;  ///< m; above 0: blurred_profile
     bool turns = true, resizes = true;
-    double contrast = 0.0;             ///< above 0: kept at this value
+    double contrast = 0.0;  ///< above 0: kept at this value
 };
 
 /// Fits centre (across the axis), direction, radius, contrast and background from `start` on by Levenberg and

@@ -17,7 +17,8 @@ geometry::TriangleSurface tube_surface(const Branch& branch, int sides) {
         const Vec3 other = glm::cross(node.direction, side);
         for (int n = 0; n < sides; ++n) {
             const double angle = 2.0 * std::numbers::pi * n / sides;
-            surface.vertices.push_back(node.position + node.radius * (std::cos(angle) * side + std::sin(angle) * other));
+            surface.vertices.push_back(node.position +
+                                       node.radius * (std::cos(angle) * side + std::sin(angle) * other));
         }
     }
     const int rings = static_cast<int>(branch.nodes.size());

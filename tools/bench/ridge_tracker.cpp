@@ -19,7 +19,8 @@ volume::Grid smoothed(volume::Grid grid, double scale) {
         const int reach = static_cast<int>(std::ceil(3.0 * sigma)), n = grid.size[axis];
         std::vector<double> kernel;
         double sum = 0.0;
-        for (int k = -reach; k <= reach; ++k) kernel.push_back(std::exp(-0.5 * k * k / (sigma * sigma))), sum += kernel.back();
+        for (int k = -reach; k <= reach; ++k)
+            kernel.push_back(std::exp(-0.5 * k * k / (sigma * sigma))), sum += kernel.back();
         std::vector<float> line(static_cast<std::size_t>(n));
         for (std::size_t start = 0; start < grid.count(); ++start) {
             if (start / strides[axis] % static_cast<std::size_t>(n) != 0) continue;

@@ -9,6 +9,7 @@
 #include "tools/bench/bench.hpp"
 #include "tools/bench/ridge_tracker.hpp"
 #include "tools/bench/vessel_real.hpp"
+#include "tools/picture/report/straightened_picture.hpp"
 
 #include <fmt/format.h>
 
@@ -153,6 +154,13 @@ int bench_vessel(const VesselBenchChoice& choice) {
     each("stenosis", {2.0, 3.0, 4.0}, simulate::stenosis_case);
     each("gap", {1.5, 3.0}, simulate::gap_case);
     each("bone", {1.5, 2.0, 3.0}, simulate::bone_case);
+    if (is_chosen("stenosis") && !choice.pictures.empty()) {
+        std::filesystem::create_directories(choice.pictures);
+        const VesselCase one = simulate::stenosis_case(4.0, 101);
+        const vessel::Track track = vessel::follow(one.scan, one.seed).track;
+        picture::write_picture(vessel::straightened(one.scan, track.branches.at(0), 2.5 * one.radius), track.background,
+                               track.contrast, choice.pictures / "stenosis.png");
+    }
     if (is_chosen("noise")) {
         Json row = noise_row(choice.volumes);
         if (!choice.json)
@@ -174,12 +182,14 @@ int bench_vessel(const VesselBenchChoice& choice) {
 
 Action add_options(VerbOptions& verb) {
     const auto choice = std::make_shared<VesselBenchChoice>();
-    verb.add("--case", choice->cases, "only these: helix, ends, y, stenosis, gap, bone, noise, real; separated by commas")
+    verb.add("--case", choice->cases,
+             "only these: helix, ends, y, stenosis, gap, bone, noise, real; separated by commas")
         .separated_by(',');
     verb.add("--repeats", choice->repeats, "noises per phantom; the worst counts").shows_default().range(1, 1000);
     verb.add("--volumes", choice->volumes, "volumes of noise").shows_default().range(1, 100000);
     verb.add("--data", choice->data, "folder with vessels/*.nrrd (default: TACTUS_SHARED_DATA)");
-    verb.add("--pictures", choice->pictures, "folder for pictures of the real scans: region and track");
+    verb.add("--pictures", choice->pictures,
+             "folder for pictures: a stenosis pulled straight, region and track of the real scans");
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return bench_vessel(*choice); };
 }
@@ -187,7 +197,8 @@ Action add_options(VerbOptions& verb) {
 }  // namespace
 
 Verb vessel_verb() {
-    return {"vessel", "the vessel tracker on phantoms, noise and real scans, beside a plain ridge tracker", add_options};
+    return {"vessel", "the vessel tracker on phantoms, noise and real scans, beside a plain ridge tracker",
+            add_options};
 }
 
 }  // namespace tactus::bench

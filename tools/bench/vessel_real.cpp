@@ -63,7 +63,8 @@ Json aorta(const std::filesystem::path& folder, const std::filesystem::path& pic
         double nearest = std::numeric_limits<double>::infinity(), radius = 0.0;
         for (const vessel::Branch& branch : track.branches)
             for (std::size_t k = 1; k < branch.nodes.size(); ++k) {
-                const double d = distance_to_piece(line[n].place, branch.nodes[k - 1].position, branch.nodes[k].position);
+                const double d =
+                    distance_to_piece(line[n].place, branch.nodes[k - 1].position, branch.nodes[k].position);
                 if (d < nearest) nearest = d, radius = branch.nodes[k].radius;
             }
         squares += nearest * nearest;
@@ -85,8 +86,7 @@ Json aorta(const std::filesystem::path& folder, const std::filesystem::path& pic
         for (const Vec3& place : peer) nearest = std::min(nearest, glm::length(place - at.place));
         ridge += nearest * nearest / double(line.size());
     }
-    if (!pictures.empty())
-        draw_region(grid, Mask(grid.count(), 0), places_of(track), pictures / "aorta.png");
+    if (!pictures.empty()) draw_region(grid, Mask(grid.count(), 0), places_of(track), pictures / "aorta.png");
     return {{"case", "aorta_mra_vmtk"},
             {"branches", track.branches.size()},
             {"length_mm", track.length() * 1e3},
@@ -98,8 +98,8 @@ Json aorta(const std::filesystem::path& folder, const std::filesystem::path& pic
 }
 
 Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pictures, const std::string& name,
-            const Vec3& seed_mm, double low) {
-    constexpr double high = 700.0, wide = 7.5e-3;
+            const Vec3& seed_mm, double low, std::size_t axis) {
+    constexpr double high = 700.0;
     const std::filesystem::path scan = folder / "vessels/thorax_cta_dissection.nrrd";
     if (!std::filesystem::exists(scan)) return missing("thorax_cta_dissection " + name);
     const volume::Grid grid = volume::lps_grid(volume::read_volume(scan));
@@ -107,7 +107,7 @@ Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pi
     vessel::TrackSettings settings;
     settings.clip_below = -150.0;
     const vessel::Track track = vessel::follow(grid, seed, settings).track;
-    const Mask region = grown_region(grid, seed, low, high, wide), near = grown(grid, region);
+    const Mask region = grown_region(grid, seed, low, high, axis), near = grown(grid, region);
     const vessel::Scan values(grid);
     int inside = 0, bright = 0, dim = 0, all = 0;
     for (const Vec3& place : places_of(track)) {
@@ -116,11 +116,15 @@ Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pi
         bright += values.any_value(place) > high;
         dim += values.any_value(place) < low;
     }
-    double low_z = 1e9, high_z = -1e9;
+    const auto at = static_cast<int>(axis);
+    double from = 1e9, to = -1e9;
     for (std::size_t n = 0; n < region.size(); ++n)
         if (region[n]) {
-            const double z = grid.position(0, 0, static_cast<int>(n / (std::size_t(grid.size[0]) * std::size_t(grid.size[1])))).z;
-            low_z = std::min(low_z, z), high_z = std::max(high_z, z);
+            const std::size_t width = static_cast<std::size_t>(grid.size[0]),
+                              height = static_cast<std::size_t>(grid.size[1]);
+            const double along = grid.position(static_cast<int>(n % width), static_cast<int>(n / width % height),
+                                               static_cast<int>(n / (width * height)))[at];
+            from = std::min(from, along), to = std::max(to, along);
         }
     const std::vector<Vec3> peer = follow_ridge(grid, seed, 3e-3);
     int ridge = 0;
@@ -133,7 +137,7 @@ Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pi
             {"inside", all ? double(inside) / all : 0.0},
             {"in_bone_or_stent", bright},
             {"dimmer_than_lumen", dim},
-            {"region_z_mm", {low_z * 1e3, high_z * 1e3}},
+            {axis == 2 ? "region_z_mm" : "region_y_mm", {from * 1e3, to * 1e3}},
             {"ridge_length_mm", peer.empty() ? 0.0 : 0.2 * 1.5 * double(peer.size())},
             {"ridge_inside", peer.empty() ? 0.0 : double(ridge) / double(peer.size())}};
 }
@@ -144,10 +148,10 @@ std::vector<Json> real_vessels(const std::filesystem::path& folder, const std::f
     if (!pictures.empty()) std::filesystem::create_directories(pictures);
     std::vector<Json> rows;
     rows.push_back(aorta(folder, pictures));
-    // Half between lumen and surroundings, HU.
-    rows.push_back(thorax(folder, pictures, "carotid", Vec3(7.8, -179.2, 753.2), 237.0));
-    rows.push_back(thorax(folder, pictures, "subclavian", Vec3(12.3, -164.2, 757.7), 209.0));
-    rows.push_back(thorax(folder, pictures, "coeliac", Vec3(-2.7, -174.7, 549.2), 263.0));
+    // Half between lumen and surroundings, HU; slices across z, for the coeliac artery across y.
+    rows.push_back(thorax(folder, pictures, "carotid", Vec3(7.8, -179.2, 753.2), 237.0, 2));
+    rows.push_back(thorax(folder, pictures, "subclavian", Vec3(12.3, -164.2, 757.7), 209.0, 2));
+    rows.push_back(thorax(folder, pictures, "coeliac", Vec3(-2.7, -174.7, 549.2), 263.0, 1));
     return rows;
 }
 

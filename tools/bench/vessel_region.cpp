@@ -13,26 +13,14 @@ using Index = std::array<int, 3>;
 
 Index nearest(const volume::Grid& grid, const Vec3& place) {
     const Vec3 at = (place - grid.origin) / grid.spacing;
-    return {static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)), static_cast<int>(std::lround(at.z))};
+    return {static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)),
+            static_cast<int>(std::lround(at.z))};
 }
 
 bool is_inside(const volume::Grid& grid, const Index& at) {
     for (std::size_t a = 0; a < 3; ++a)
         if (at[a] < 0 || at[a] >= grid.size[a]) return false;
     return true;
-}
-
-std::vector<Index> ball(const volume::Grid& grid, double radius) {
-    std::vector<Index> found;
-    Index reach;
-    for (std::size_t a = 0; a < 3; ++a) reach[a] = static_cast<int>(radius / grid.spacing[static_cast<int>(a)]);
-    for (int k = -reach[2]; k <= reach[2]; ++k)
-        for (int j = -reach[1]; j <= reach[1]; ++j)
-            for (int i = -reach[0]; i <= reach[0]; ++i) {
-                const Vec3 off = Vec3(i, j, k) * grid.spacing;
-                if (off.x * off.x + off.y * off.y + off.z * off.z <= radius * radius) found.push_back({i, j, k});
-            }
-    return found;
 }
 
 template <class F>
@@ -44,41 +32,46 @@ void each(const volume::Grid& grid, F&& f) {
 
 }  // namespace
 
-Mask grown_region(const volume::Grid& grid, const Vec3& seed, double low, double high, double wide) {
-    Mask range(grid.count(), 0), centres(grid.count(), 0), large(grid.count(), 0), region(grid.count(), 0);
-    for (std::size_t n = 0; n < grid.count(); ++n)
-        range[n] = double(grid.values[n]) >= low && double(grid.values[n]) <= high;
-    const std::vector<Index> inner = ball(grid, wide), outer = ball(grid, wide + grid.spacing.x);
-    each(grid, [&](const Index& at, std::size_t n) {
-        if (!range[n]) return;
-        centres[n] = std::ranges::all_of(inner, [&](const Index& off) {
-            const Index there{at[0] + off[0], at[1] + off[1], at[2] + off[2]};
-            return is_inside(grid, there) && range[grid.index(there[0], there[1], there[2])];
-        });
-    });
-    each(grid, [&](const Index& at, std::size_t n) {
-        if (!centres[n]) return;
-        for (const Index& off : outer) {
-            const Index there{at[0] + off[0], at[1] + off[1], at[2] + off[2]};
-            if (is_inside(grid, there)) large[grid.index(there[0], there[1], there[2])] = 1;
-        }
-    });
+Mask grown_region(const volume::Grid& grid, const Vec3& seed, double low, double high, std::size_t axis) {
+    Mask region(grid.count(), 0);
     const Index start = nearest(grid, seed);
     if (!is_inside(grid, start)) return region;
-    std::vector<Index> open{start};
-    while (!open.empty()) {
-        const Index at = open.back();
-        open.pop_back();
-        if (!is_inside(grid, at)) continue;
-        const std::size_t n = grid.index(at[0], at[1], at[2]);
-        if (region[n] || !range[n] || large[n]) continue;
-        region[n] = 1;
-        for (std::size_t a = 0; a < 3; ++a)
-            for (const int side : {-1, 1}) {
-                Index next = at;
-                next[a] += side;
-                open.push_back(next);
-            }
+    // The part of a slice that is joined with one of `from`.
+    const auto part_of_slice = [&](const std::vector<Index>& from, std::size_t most) {
+        Mask seen(grid.count(), 0);
+        std::vector<Index> open = from, part;
+        while (!open.empty() && part.size() <= most) {
+            const Index at = open.back();
+            open.pop_back();
+            if (!is_inside(grid, at)) continue;
+            const std::size_t n = grid.index(at[0], at[1], at[2]);
+            if (seen[n] || !(double(grid.values[n]) >= low && double(grid.values[n]) <= high)) continue;
+            seen[n] = 1;
+            part.push_back(at);
+            for (std::size_t a = 0; a < 3; ++a)
+                for (const int side : {-1, 1}) {
+                    if (a == axis) continue;
+                    Index next = at;
+                    next[a] += side;
+                    open.push_back(next);
+                }
+        }
+        return part;
+    };
+    const std::vector<Index> first = part_of_slice({start}, grid.count());
+    for (const int way : {-1, 1}) {
+        std::vector<Index> part = first;
+        std::vector<std::size_t> areas;
+        while (!part.empty()) {
+            areas.push_back(part.size());
+            for (const Index& at : part) region[grid.index(at[0], at[1], at[2])] = 1;
+            std::vector<std::size_t> sorted = areas;
+            std::ranges::sort(sorted);
+            const std::size_t most = 2 * sorted[sorted.size() / 2];
+            for (Index& at : part) at[axis] += way;
+            part = part_of_slice(part, most);
+            if (part.size() > most) break;  // it has run into something larger
+        }
     }
     return region;
 }
@@ -111,7 +104,8 @@ void draw_region(const volume::Grid& grid, const Mask& region, const std::vector
     });
     for (const Vec3& place : places)
         if (is_inside(grid, nearest(grid, place))) include(nearest(grid, place));
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::max(0, low[a] - 12), high[a] = std::min(grid.size[a] - 1, high[a] + 12);
+    for (std::size_t a = 0; a < 3; ++a)
+        low[a] = std::max(0, low[a] - 12), high[a] = std::min(grid.size[a] - 1, high[a] + 12);
     constexpr int zoom = 5;
     constexpr std::size_t axes[3][2] = {{0, 2}, {1, 2}, {0, 1}};  // front, side, top
     display::Image image;
@@ -146,7 +140,8 @@ void draw_region(const volume::Grid& grid, const Mask& region, const std::vector
                 const int y = flips ? high[v] - b : b - low[v];
                 for (int s = 0; s < zoom * zoom; ++s)
                     set((a - low[u]) * zoom + s % zoom, y * zoom + s / zoom,
-                        in_region ? std::array<int, 3>{grey / 2, grey / 2 + 90, grey / 2} : std::array<int, 3>{grey, grey, grey});
+                        in_region ? std::array<int, 3>{grey / 2, grey / 2 + 90, grey / 2}
+                                  : std::array<int, 3>{grey, grey, grey});
             }
         for (const Vec3& place : places) {
             const Vec3 at = (place - grid.origin) / grid.spacing + 0.5;

@@ -12,9 +12,10 @@ namespace tactus::bench {
 /// Voxels of a grid, 1 inside.
 using Mask = std::vector<char>;
 
-/// Samples between `low` and `high` that are joined by faces with the one at `seed`, without what belongs to something
-/// wider: the samples of which a ball of `wide` (m) lies inside of that range, grown again by it and a sample.
-Mask grown_region(const volume::Grid& grid, const Vec3& seed, double low, double high, double wide);
+/// Slice by slice across `axis`, from the one of the seed both ways: the samples between `low` and `high` that are joined
+/// within the slice and lie beside some of the slice before. Ends where nothing is left, or where the area is more than
+/// twice the median of the slices before: there the vessel leaves another one.
+Mask grown_region(const volume::Grid& grid, const Vec3& seed, double low, double high, std::size_t axis);
 
 /// The mask grown by one sample (26 neighbours).
 Mask grown(const volume::Grid& grid, const Mask& mask);

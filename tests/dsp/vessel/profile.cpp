@@ -29,8 +29,8 @@ TEST_CASE("the profile of a blurred disc is the disc under its blur") {
             CHECK(std::abs(vessel::blurred_profile(d * d, radius, 1.0).value - by_sum(d, radius)) < 3e-3);
         }
     // Continuous where the table ends.
-    CHECK(std::abs(vessel::blurred_profile(144.0, 11.99, 1.0).value - vessel::blurred_profile(144.0, 12.01, 1.0).value) <
-          0.01);
+    CHECK(std::abs(vessel::blurred_profile(144.0, 11.99, 1.0).value -
+                   vessel::blurred_profile(144.0, 12.01, 1.0).value) < 0.01);
 }
 
 TEST_CASE("the derivatives of both profiles are their slopes") {
@@ -40,10 +40,12 @@ TEST_CASE("the derivatives of both profiles are their slopes") {
             constexpr double h = 1e-4;
             const auto smooth = vessel::smooth_profile(d2, radius);
             CHECK(smooth.by_squared_distance ==
-                  Approx((vessel::smooth_profile(d2 + h, radius).value - vessel::smooth_profile(d2 - h, radius).value) / (2 * h))
+                  Approx((vessel::smooth_profile(d2 + h, radius).value - vessel::smooth_profile(d2 - h, radius).value) /
+                         (2 * h))
                       .margin(1e-5));
             CHECK(smooth.by_radius ==
-                  Approx((vessel::smooth_profile(d2, radius + h).value - vessel::smooth_profile(d2, radius - h).value) / (2 * h))
+                  Approx((vessel::smooth_profile(d2, radius + h).value - vessel::smooth_profile(d2, radius - h).value) /
+                         (2 * h))
                       .margin(1e-5));
             const auto blurred = vessel::blurred_profile(d2, radius, 0.7);
             constexpr double wide = 0.05;

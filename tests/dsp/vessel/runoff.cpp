@@ -61,11 +61,9 @@ TEST_CASE("the three arteries of either leg are told apart by their place beside
         CHECK(found.is_judged);
         CHECK(found.warnings.empty());
         for (const vessel::SeenArtery& artery : found.arteries) CHECK((artery.is_seen && artery.reaches_foot));
-        for (const LegArtery alone :
-             {LegArtery::anterior_tibial, LegArtery::posterior_tibial, LegArtery::peroneal}) {
+        for (const LegArtery alone : {LegArtery::anterior_tibial, LegArtery::posterior_tibial, LegArtery::peroneal}) {
             const auto one = vessel::run_off(arteries({alone}, is_right ? -1 : 1), is_right ? right_leg() : left_leg());
-            for (std::size_t n = 0; n < 3; ++n)
-                CHECK(one.arteries[n].is_seen == (static_cast<LegArtery>(n) == alone));
+            for (std::size_t n = 0; n < 3; ++n) CHECK(one.arteries[n].is_seen == (static_cast<LegArtery>(n) == alone));
         }
     }
 }
@@ -78,10 +76,10 @@ TEST_CASE("whoever plans is warned when the peroneal artery may be the only one,
     CHECK(warns(vessel::run_off(arteries({LegArtery::peroneal, LegArtery::anterior_tibial}, -1), leg),
                 "posterior tibial artery is not seen"));
     // Both tibial arteries end in the calf.
-    CHECK(warns(vessel::run_off(arteries({LegArtery::anterior_tibial, LegArtery::posterior_tibial, LegArtery::peroneal},
-                                         -1, 0.72),
-                                leg),
-                "the only one"));
+    CHECK(warns(
+        vessel::run_off(
+            arteries({LegArtery::anterior_tibial, LegArtery::posterior_tibial, LegArtery::peroneal}, -1, 0.72), leg),
+        "the only one"));
     vessel::Track lost = arteries({LegArtery::anterior_tibial, LegArtery::posterior_tibial, LegArtery::peroneal}, -1);
     for (std::size_t n = 20; n < 30; ++n) lost.branches[3].nodes[n].is_lost = true;
     CHECK(warns(vessel::run_off(lost, leg), "peroneal artery has a stretch"));

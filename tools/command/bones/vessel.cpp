@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus vessel: follows a vessel in a scan from one seed.
+#include "tools/study/bones/vessel.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/straightened_picture.hpp"
-#include "tools/study/bones/vessel.hpp"
 
 #include <fmt/format.h>
 
@@ -170,7 +170,7 @@ void print_run_off(const vessel::RunOff& run_off) {
     for (std::size_t n = 0; n < run_off.arteries.size(); ++n) {
         const vessel::SeenArtery& artery = run_off.arteries[n];
         fmt::print("{} artery: {}\n", vessel::name_of(static_cast<vessel::LegArtery>(n)),
-                   !artery.is_seen        ? "not seen"
+                   !artery.is_seen       ? "not seen"
                    : artery.reaches_foot ? fmt::format("seen down to level {:.2f}", artery.to)
                                          : fmt::format("seen down to level {:.2f} only", artery.to));
     }
@@ -204,8 +204,8 @@ int follow(const VesselChoice& given) {
         fmt::print("{}\n", result.found.why);
         return answer_is_no;
     }
-    fmt::print("{} branch{}, {:.1f} mm in all, {:.2f} s\n", track.branches.size(), track.branches.size() == 1 ? "" : "es",
-               track.length() * 1e3, result.seconds);
+    fmt::print("{} branch{}, {:.1f} mm in all, {:.2f} s\n", track.branches.size(),
+               track.branches.size() == 1 ? "" : "es", track.length() * 1e3, result.seconds);
     for (std::size_t n = 0; n < track.branches.size(); ++n) print_branch(n, track.branches[n]);
     if (result.run_off) print_run_off(*result.run_off);
     for (const std::string& note : result.notes) fmt::print("  {}\n", note);
@@ -216,10 +216,14 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<VesselChoice>();
     verb.add("scan", choice->settings.scan, "CT or MR angiography, in a format of import").required();
     verb.add("--seed", choice->seed, "a place in the vessel, mm, LPS").required().value_name("X,Y,Z");
-    verb.add("-o,--out", choice->out, "centre line as .csv, .vtp or .mrk.json, or tubes as .stl or .ply; may be repeated")
+    verb.add("-o,--out", choice->out,
+             "centre line as .csv, .vtp or .mrk.json, or tubes as .stl or .ply; may be repeated")
         .one_each();
     verb.add("--straightened", choice->straightened, "a PNG of the seed's branch pulled straight");
-    verb.add("--min-radius", choice->least_mm, "least radius of a vessel, mm").unit("mm").shows_default().range(0.1, 20.0);
+    verb.add("--min-radius", choice->least_mm, "least radius of a vessel, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.1, 20.0);
     verb.add("--max-radius", choice->most_mm, "greatest radius of a vessel, mm")
         .unit("mm")
         .shows_default()

@@ -29,8 +29,7 @@ void check_seed(const volume::Grid& grid, const Vec3& seed) {
     double sum = 0.0;
     for (int n = 0; n < 27; ++n)
         sum += scan.any_value(seed + Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1) * grid.spacing) / 27.0;
-    if (sum < air)
-        throw Error(fmt::format("the seed lies in air ({:.0f} HU); put it into the vessel", sum));
+    if (sum < air) throw Error(fmt::format("the seed lies in air ({:.0f} HU); put it into the vessel", sum));
     if (sum > bone)
         throw Error(fmt::format("the seed lies on bone or a stent ({:.0f} HU); put it into the vessel", sum));
 }
