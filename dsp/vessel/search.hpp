@@ -16,7 +16,7 @@ struct Search {
     Sampling sampling;
     /// t-statistics that pure noise does not reach (`tactus bench vessel --case noise`): of one piece, of the mean over the
     /// pieces looked ahead, of the piece at the seed, and of the mean over the nodes of a whole branch.
-    double least_score = 3.5, least_mean = 5.0, least_start = 5.5, least_branch = 6.5;
+    double least_score = 3.5, least_mean = 5.0, least_start = 6.0, least_branch = 7.5;
 };
 
 /// Distance from the axis to the edge of the vessel, m: where the brightness, averaged along the axis, falls below half

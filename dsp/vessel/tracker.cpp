@@ -109,7 +109,7 @@ private:
         }
         std::ranges::sort(radii);
         const double typical = radii[radii.size() / 2], count = double(branch.nodes.size());
-        return branch.length() > std::max(4.0 * typical, 5.0 * scan_.voxel()) && seen > 0.6 * count &&
+        return branch.length() > std::max(4.0 * typical, 8.0 * scan_.voxel()) && seen > 0.6 * count &&
                score / count > search_.least_branch;
     }
 

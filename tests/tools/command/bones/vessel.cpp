@@ -34,7 +34,7 @@ TEST_CASE("tactus vessel writes the line in every format, and a straightened vie
     const test::Folder folder;
     const std::string seed = write_scan(folder.path / "cta.nrrd");
     const auto seen =
-        folder.tactus("vessel cta.nrrd --unit mm --seed " + seed +
+        folder.tactus("vessel cta.nrrd --seed " + seed +
                       " -o line.csv -o line.vtp -o line.mrk.json -o tubes.ply --straightened straight.png --json");
     INFO(seen.err);
     REQUIRE(seen.code == 0);
@@ -56,19 +56,19 @@ TEST_CASE("tactus vessel says in one line what is wrong with a seed") {
     write_scan(folder.path / "cta.nrrd");
     for (const char* const seed : {"500,0,0", "nan,1,2", "1,2", "1,2,x", "2,20,20", ""}) {
         CAPTURE(seed);
-        const auto seen = folder.tactus(fmt::format("vessel cta.nrrd --unit mm '--seed={}' -o line.csv", seed));
+        const auto seen = folder.tactus(fmt::format("vessel cta.nrrd '--seed={}' -o line.csv", seed));
         CHECK(seen.code == 2);
         CHECK(is_one_line(seen.err));
         CHECK_FALSE(std::filesystem::exists(folder.path / "line.csv"));
     }
     // No vessel: the answer is no.
-    const auto none = folder.tactus("vessel cta.nrrd --unit mm --seed 32,8,45 -o line.csv");
+    const auto none = folder.tactus("vessel cta.nrrd --seed 32,8,45 -o line.csv");
     CHECK(none.code == 1);
     CHECK_FALSE(std::filesystem::exists(folder.path / "line.csv"));
     for (const char* const rest :
          {"-o line.txt", "--leg right", "--straightened view.svg", "--min-radius 9 --max-radius 3"}) {
         CAPTURE(rest);
-        const auto seen = folder.tactus(fmt::format("vessel cta.nrrd --unit mm --seed 19,19,44 {}", rest));
+        const auto seen = folder.tactus(fmt::format("vessel cta.nrrd --seed 19,19,44 {}", rest));
         CHECK(seen.code == 2);
         CHECK(is_one_line(seen.err));
     }
