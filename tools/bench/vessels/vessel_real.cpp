@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/vessel_real.hpp"
+#include "tools/bench/vessels/vessel_real.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/vessel/tracker.hpp"
-#include "tools/bench/ridge_tracker.hpp"
-#include "tools/bench/vessel_region.hpp"
+#include "tools/bench/vessels/ridge_tracker.hpp"
+#include "tools/bench/vessels/vessel_region.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -7,8 +7,8 @@
 #include "dsp/vessel/tracker.hpp"
 #include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/bench/ridge_tracker.hpp"
-#include "tools/bench/vessel_real.hpp"
+#include "tools/bench/vessels/ridge_tracker.hpp"
+#include "tools/bench/vessels/vessel_real.hpp"
 #include "tools/picture/report/straightened_picture.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/vessel_region.hpp"
+#include "tools/bench/vessels/vessel_region.hpp"
 #include "devices/display/png.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/ridge_tracker.hpp"
+#include "tools/bench/vessels/ridge_tracker.hpp"
 #include "dsp/geometry/symmetric_eigen.hpp"
 
 #include <glm/geometric.hpp>
