@@ -33,5 +33,6 @@ Verb fits_verb();
 Verb assembly_verb();
 Verb shafts_verb();
 Verb segment_verb();
+Verb vessel_verb();
 
 }  // namespace tactus::bench

@@ -27,6 +27,7 @@
     X(segment, bones, bones)              \
     X(export, bones, bones)               \
     X(register, bones, bones)             \
+    X(vessel, bones, bones)               \
     X(fracture, bones, fractures)         \
     X(fracture_surface, bones, fractures) \
     X(snap, bones, fractures)             \

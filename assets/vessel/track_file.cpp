@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/vessel/track_file.hpp"
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/vessel/tube_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <iterator>
+
+namespace tactus::vessel {
+
+namespace {
+
+using file::Json;
+
+constexpr std::array<Vec3, 6> colours{Vec3(0.80, 0.16, 0.14), Vec3(0.90, 0.55, 0.13), Vec3(0.20, 0.45, 0.75),
+                                      Vec3(0.35, 0.62, 0.30), Vec3(0.55, 0.35, 0.65), Vec3(0.45, 0.45, 0.45)};
+
+Vec3 colour_of(std::size_t branch) { return colours[branch % colours.size()]; }
+
+/// The row of each branch's first node.
+std::vector<std::size_t> first_rows(const Track& track) {
+    std::vector<std::size_t> rows;
+    std::size_t next = 0;
+    for (const Branch& branch : track.branches) {
+        rows.push_back(next);
+        next += branch.nodes.size();
+    }
+    return rows;
+}
+
+long parent_of(const Track& track, const std::vector<std::size_t>& rows, std::size_t branch, std::size_t node) {
+    if (node > 0) return static_cast<long>(rows[branch] + node) - 1;
+    const Branch& of = track.branches[branch];
+    if (of.parent < 0) return -1;
+    return static_cast<long>(rows[static_cast<std::size_t>(of.parent)]) + of.parent_node;
+}
+
+std::string csv(const Track& track) {
+    const std::vector<std::size_t> rows = first_rows(track);
+    std::string text = "branch,x_mm,y_mm,z_mm,radius_mm,contrast,confidence,parent\n";
+    for (std::size_t b = 0; b < track.branches.size(); ++b)
+        for (std::size_t n = 0; n < track.branches[b].nodes.size(); ++n) {
+            const Node& node = track.branches[b].nodes[n];
+            fmt::format_to(std::back_inserter(text), "{},{:.4f},{:.4f},{:.4f},{:.4f},{:.6g},{:.4f},{}\n", b,
+                           node.position.x * 1e3, node.position.y * 1e3, node.position.z * 1e3, node.radius * 1e3,
+                           node.contrast, node.confidence, parent_of(track, rows, b, n));
+        }
+    return text;
+}
+
+std::string vtp(const Track& track) {
+    const std::vector<std::size_t> rows = first_rows(track);
+    std::size_t points = 0;
+    for (const Branch& branch : track.branches) points += branch.nodes.size();
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
+        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
+        "NumberOfPolys=\"0\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+        points, track.branches.size());
+    const auto out = std::back_inserter(text);
+    const auto each = [&](const std::function<void(std::size_t, std::size_t, const Node&)>& write) {
+        for (std::size_t b = 0; b < track.branches.size(); ++b)
+            for (std::size_t n = 0; n < track.branches[b].nodes.size(); ++n) write(b, n, track.branches[b].nodes[n]);
+    };
+    each([&](std::size_t, std::size_t, const Node& node) {
+        fmt::format_to(out, "{:.6f} {:.6f} {:.6f}\n", node.position.x * 1e3, node.position.y * 1e3,
+                       node.position.z * 1e3);
+    });
+    text += "</DataArray>\n</Points>\n<Lines>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n";
+    for (std::size_t n = 0; n < points; ++n) fmt::format_to(out, "{} ", n);
+    text += "\n</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n";
+    for (std::size_t b = 0; b < track.branches.size(); ++b)
+        fmt::format_to(out, "{} ", rows[b] + track.branches[b].nodes.size());
+    text += "\n</DataArray>\n</Lines>\n<PointData Scalars=\"radius_mm\">\n";
+    const auto array = [&](const char* type, const char* name,
+                           const std::function<std::string(std::size_t, std::size_t, const Node&)>& value) {
+        fmt::format_to(out, "<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\">\n", type, name);
+        each([&](std::size_t b, std::size_t n, const Node& node) { text += value(b, n, node) + " "; });
+        text += "\n</DataArray>\n";
+    };
+    array("Float64", "radius_mm",
+          [](std::size_t, std::size_t, const Node& node) { return fmt::format("{:.6f}", node.radius * 1e3); });
+    array("Float64", "contrast",
+          [](std::size_t, std::size_t, const Node& node) { return fmt::format("{:.6g}", node.contrast); });
+    array("Float64", "confidence",
+          [](std::size_t, std::size_t, const Node& node) { return fmt::format("{:.4f}", node.confidence); });
+    array("Int64", "branch", [](std::size_t b, std::size_t, const Node&) { return fmt::format("{}", b); });
+    array("Int64", "parent",
+          [&](std::size_t b, std::size_t n, const Node&) { return fmt::format("{}", parent_of(track, rows, b, n)); });
+    return text + "</PointData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+}
+
+std::string markups(const Track& track) {
+    Json curves = Json::array();
+    for (std::size_t b = 0; b < track.branches.size(); ++b) {
+        Json points = Json::array();
+        for (std::size_t n = 0; n < track.branches[b].nodes.size(); ++n) {
+            const Node& node = track.branches[b].nodes[n];
+            points.push_back({{"id", fmt::format("{}", n + 1)},
+                              {"label", fmt::format("B{}-{}", b, n + 1)},
+                              {"description", fmt::format("radius {:.3f} mm{}", node.radius * 1e3,
+                                                          node.is_lost ? ", without contrast" : "")},
+                              {"position", {node.position.x * 1e3, node.position.y * 1e3, node.position.z * 1e3}},
+                              {"selected", true},
+                              {"locked", false},
+                              {"visibility", true},
+                              {"positionStatus", "defined"}});
+        }
+        const Vec3 colour = colour_of(b);
+        curves.push_back({{"type", "Curve"},
+                          {"coordinateSystem", "LPS"},
+                          {"coordinateUnits", "mm"},
+                          {"locked", false},
+                          {"labelFormat", "%N-%d"},
+                          {"controlPoints", points},
+                          {"display",
+                           {{"visibility", true},
+                            {"color", {colour.x, colour.y, colour.z}},
+                            {"propertiesLabelVisibility", false}}}});
+    }
+    const Json json{{"@schema",
+                     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+                     "markups-schema-v1.0.3.json#"},
+                    {"markups", curves}};
+    return json.dump(2) + "\n";
+}
+
+bool ends_with(const std::filesystem::path& path, std::string_view end) {
+    return path.filename().string().ends_with(end);
+}
+
+}  // namespace
+
+bool is_track_file(const std::filesystem::path& path) {
+    for (const char* const end : {".csv", ".vtp", ".mrk.json", ".stl", ".ply"})
+        if (ends_with(path, end)) return true;
+    return false;
+}
+
+void write_track(const Track& track, const std::filesystem::path& path) {
+    if (track.branches.empty()) throw Error("there is no vessel to write to " + path.string());
+    if (ends_with(path, ".csv")) return file::write_whole_file(path, csv(track));
+    if (ends_with(path, ".vtp")) return file::write_whole_file(path, vtp(track));
+    if (ends_with(path, ".mrk.json")) return file::write_whole_file(path, markups(track));
+    if (!is_track_file(path))
+        throw Error(path.string() + ": a vessel is written as .csv, .vtp, .mrk.json, .stl or .ply");
+    std::vector<mesh::ColouredSurface> tubes;
+    for (std::size_t b = 0; b < track.branches.size(); ++b)
+        tubes.push_back({tube_surface(track.branches[b]), colour_of(b)});
+    mesh::write_mesh(tubes, path);
+}
+
+}  // namespace tactus::vessel

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/vessel/track_file.hpp"
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+using namespace tactus;
+
+namespace {
+
+vessel::Track forked() {
+    vessel::Track track;
+    vessel::Branch trunk, side;
+    for (int n = 0; n < 21; ++n) {
+        vessel::Node node;
+        node.position = Vec3(0.01, -0.02, 0.001 * n);
+        node.direction = Vec3(0, 0, 1);
+        node.radius = 2e-3, node.contrast = 300.0, node.confidence = 0.9, node.along = 0.001 * n;
+        trunk.nodes.push_back(node);
+        node.position = Vec3(0.01 + 0.001 * n, -0.02, 0.008);
+        node.direction = Vec3(1, 0, 0);
+        node.radius = 1e-3;
+        side.nodes.push_back(node);
+    }
+    side.parent = 0, side.parent_node = 8;
+    track.branches = {trunk, side};
+    return track;
+}
+
+std::filesystem::path place(const std::string& name) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("tactus_track_file_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    return folder / name;
+}
+
+}  // namespace
+
+TEST_CASE("a track as CSV has a row per node and names the row before each") {
+    vessel::write_track(forked(), place("line.csv"));
+    std::istringstream text(file::read_whole_file(place("line.csv")));
+    std::string row;
+    std::getline(text, row);
+    CHECK(row == "branch,x_mm,y_mm,z_mm,radius_mm,contrast,confidence,parent");
+    std::vector<std::string> rows;
+    while (std::getline(text, row)) rows.push_back(row);
+    REQUIRE(rows.size() == 42);
+    CHECK(rows[0] == "0,10.0000,-20.0000,0.0000,2.0000,300,0.9000,-1");
+    CHECK(rows[1].ends_with(",0"));
+    CHECK(rows[21].ends_with(",8"));  // leaves the trunk at its ninth node
+    CHECK(rows[22].ends_with(",21"));
+}
+
+TEST_CASE("a track as Slicer markups has a curve per branch in LPS") {
+    vessel::write_track(forked(), place("line.mrk.json"));
+    const file::Json json = file::Json::parse(file::read_whole_file(place("line.mrk.json")));
+    REQUIRE(json["markups"].size() == 2);
+    const file::Json& curve = json["markups"][1];
+    CHECK(curve["type"].as_text() == "Curve");
+    CHECK(curve["coordinateSystem"].as_text() == "LPS");
+    REQUIRE(curve["controlPoints"].size() == 21);
+    CHECK(curve["controlPoints"][20]["position"][0].get<double>() == Approx(30.0));
+}
+
+TEST_CASE("a track as VTK counts points and lines") {
+    vessel::write_track(forked(), place("line.vtp"));
+    const std::string text = file::read_whole_file(place("line.vtp"));
+    CHECK(text.find("NumberOfPoints=\"42\"") != std::string::npos);
+    CHECK(text.find("NumberOfLines=\"2\"") != std::string::npos);
+    CHECK(text.find("\n21 42 \n") != std::string::npos);
+}
+
+TEST_CASE("tubes of a track are closed and look outwards") {
+    vessel::write_track(forked(), place("tubes.stl"));
+    const mesh::Mesh tubes = mesh::load_mesh(place("tubes.stl"), 1e-3);
+    const mesh::MeshTopology topology = mesh::topology_of(tubes);
+    CHECK(topology.is_watertight());
+    CHECK(topology.components == 2);
+    // A ring of sixteen sides holds 97.4 % of its circle.
+    const double circles = std::numbers::pi * (4e-6 * 0.02 + 1e-6 * 0.02);
+    CHECK(mesh::volume_of(tubes) == Approx(0.974 * circles).epsilon(0.01));
+}
+
+TEST_CASE("a track without branches, or for another extension, is not written") {
+    CHECK_THROWS_AS(vessel::write_track({}, place("none.csv")), Error);
+    CHECK_THROWS_AS(vessel::write_track(forked(), place("line.txt")), Error);
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vessel/tracker.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/simulate/vessel_cases.hpp"
+#include "tests/support/catch.hpp"
+
+#include <glm/geometric.hpp>
+
+using namespace tactus;
+using simulate::TrackError;
+using simulate::VesselCase;
+
+namespace {
+
+struct Result {
+    vessel::Followed found;
+    TrackError error;
+};
+
+Result followed(const VesselCase& one) {
+    Result result{vessel::follow(one.scan, one.seed), {}};
+    INFO(one.name << " " << result.found.why);
+    REQUIRE_FALSE(result.found.track.branches.empty());
+    result.error = simulate::compared(result.found.track, one);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a helix of one to four voxels radius is followed to its ends within a quarter of a voxel", "[slow]") {
+    for (const double radius : {1.0, 1.5, 2.5, 4.0}) {
+        CAPTURE(radius);
+        const Result result = followed(simulate::helix_case(radius, 0.2, 11));
+        CHECK(result.error.rms < 0.25);
+        CHECK(result.error.covered > 0.97);
+        CHECK(result.found.track.branches.size() == 1);
+        if (radius >= 1.5) CHECK(std::abs(result.error.mean_radius / radius - 1.0) < 0.05);
+        else CHECK(result.found.track.branches[0].nodes[60].is_radius_uncertain);
+    }
+}
+
+TEST_CASE("a track ends within two radii of the end of its vessel", "[slow]") {
+    for (const double radius : {1.5, 2.5, 4.0})
+        for (const std::uint64_t seed : {1u, 2u}) {
+            CAPTURE(radius, seed);
+            const Result result = followed(simulate::ends_case(radius, 0.4, seed));
+            CHECK(result.error.overshoot < 2.0);
+            CHECK(result.error.covered > 0.9);
+            CHECK(result.error.worst < 1.5 * radius);
+        }
+}
+
+TEST_CASE("both branches of a fork are found and meet near it", "[slow]") {
+    for (const double ratio : {1.0, 0.5})
+        for (const double angle : {30.0, 60.0, 90.0}) {
+            CAPTURE(ratio, angle);
+            const Result result = followed(simulate::branch_case(4.0, angle, ratio, 3));
+            CHECK(result.found.track.branches.size() <= 3);  // a trunk that forks is a branch of its own
+            CHECK(result.error.covered > 0.95);
+            CHECK(result.error.joint < 1.5);
+        }
+}
+
+TEST_CASE("a stenosis is passed and measured") {
+    const VesselCase one = simulate::stenosis_case(4.0, 5);
+    const Result result = followed(one);
+    CHECK(result.error.covered > 0.95);
+    const auto stenosis = vessel::stenosis_of(result.found.track.branches[0]);
+    REQUIRE(stenosis);
+    CHECK(stenosis->percent > 55.0);
+    CHECK(stenosis->percent < 85.0);
+    CHECK(std::abs(stenosis->reference_radius - one.radius) < 0.05 * one.radius);
+    CHECK(stenosis->is_uncertain);  // 1.2 voxels
+    const std::vector<Vec3>& line = one.lines[0];
+    CHECK(glm::length(result.found.track.branches[0].nodes[stenosis->node].position - line[line.size() * 6 / 10]) <
+          one.radius);
+}
+
+TEST_CASE("a gap without contrast is bridged and said", "[slow]") {
+    for (const double radius : {1.5, 3.0}) {
+        CAPTURE(radius);
+        const VesselCase one = simulate::gap_case(radius, 7);
+        const Result result = followed(one);
+        CHECK(result.error.covered > 0.95);
+        const std::vector<vessel::LostStretch> lost = result.found.track.branches[0].lost();
+        REQUIRE_FALSE(lost.empty());
+        for (const vessel::Node& node : result.found.track.branches[0].nodes)
+            if (node.is_lost) CHECK(node.confidence == 0.0);
+    }
+}
+
+TEST_CASE("a wall of bone half a voxel away does not capture the track", "[slow]") {
+    for (const double radius : {1.5, 3.0}) {
+        CAPTURE(radius);
+        const Result result = followed(simulate::bone_case(radius, 9));
+        CHECK(result.error.rms < 0.25);
+        CHECK(result.error.covered > 0.95);
+        CHECK(result.found.track.branches.size() == 1);
+    }
+}
+
+TEST_CASE("no vessel is found in noise", "[slow]") {
+    for (int n = 0; n < 10; ++n) {
+        const volume::Grid grid =
+            simulate::noise_case(n % 2 == 0 ? 0.0 : 0.7 + 0.08 * n, 100 + static_cast<std::uint64_t>(n));
+        const Random random{static_cast<std::uint64_t>(n)};
+        for (std::uint64_t k = 0; k < 4; ++k) {
+            CAPTURE(n, k);
+            const Vec3 seed = 1e-3 * Vec3(8.0 + 32.0 * random.uniform(3 * k), 8.0 + 32.0 * random.uniform(3 * k + 1),
+                                          8.0 + 32.0 * random.uniform(3 * k + 2));
+            const vessel::Followed found = vessel::follow(grid, seed);
+            CHECK(found.track.branches.empty());
+            CHECK_FALSE(found.why.empty());
+        }
+    }
+}
+
+TEST_CASE("the unit of brightness does not matter to a track", "[slow]") {
+    VesselCase one = simulate::helix_case(2.0, 0.2, 4);
+    const vessel::Followed before = vessel::follow(one.scan, one.seed);
+    for (float& value : one.scan.values) value = 512.0f * value;  // exact in float
+    const vessel::Followed after = vessel::follow(one.scan, one.seed);
+    REQUIRE(before.track.branches.size() == after.track.branches.size());
+    REQUIRE(before.track.branches[0].nodes.size() == after.track.branches[0].nodes.size());
+    for (std::size_t n = 0; n < before.track.branches[0].nodes.size(); ++n)
+        CHECK(glm::length(before.track.branches[0].nodes[n].position - after.track.branches[0].nodes[n].position) <
+              1e-9);
+}
+
+TEST_CASE("a seed outside of the scan, without numbers or on bone is refused in one sentence") {
+    const VesselCase one = simulate::bone_case(2.0, 9);
+    CHECK_THROWS_AS(vessel::follow(one.scan, Vec3(-0.01, 0.02, 0.02)), Error);
+    CHECK_THROWS_AS(vessel::follow(one.scan, Vec3(std::nan(""), 0.02, 0.02)), Error);
+    vessel::TrackSettings settings;
+    settings.exclude_above = 600.0;
+    CHECK_THROWS_AS(vessel::follow(one.scan, Vec3(26.0, 19.9, 54.0) * 1e-3, settings), Error);
+}
