@@ -81,6 +81,11 @@ public:
             case Operation::add: return sum(a, b, a.value + b.value, {1.0, 1.0}, {1.0, 1.0});
             case Operation::subtract: return sum(a, b, a.value + -b.value, {1.0, 1.0}, {-1.0, -1.0});
             case Operation::multiply: return sum(a, b, a.value * b.value, b.value, a.value);
+            case Operation::multiply_add: return apply(Operation::add, apply(Operation::multiply, a, b, c), c, c);
+            case Operation::multiply_subtract:
+                return apply(Operation::subtract, apply(Operation::multiply, a, b, c), c, c);
+            case Operation::subtract_product:
+                return apply(Operation::subtract, c, apply(Operation::multiply, a, b, c), c);
             case Operation::divide: {
                 if (b.value.low <= 0.0 && b.value.high >= 0.0) fail_with(a), fail_with(b);
                 const Interval per = reciprocal(b.value);
