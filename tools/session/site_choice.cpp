@@ -41,6 +41,19 @@ Vec3 three_lengths(const char* option, std::string_view text) {
 
 }  // namespace
 
+std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& site_mm, const Vec3& approach) {
+    std::vector<SiteSetting> settings;
+    for (const patch::PatchNode& node : patch.nodes) {
+        const bool has_bone = std::ranges::any_of(
+            node.settings, [](const auto& setting) { return setting.name == "bone" || setting.name == "source"; });
+        if (!has_bone || (node.type != "workspace" && node.type != "carve")) continue;
+        settings.push_back({node.name, "find_site", "false"});
+        settings.push_back({node.name, "site", fmt::format("{} mm, {} mm, {} mm", site_mm.x, site_mm.y, site_mm.z)});
+        settings.push_back({node.name, "approach", fmt::format("{}, {}, {}", approach.x, approach.y, approach.z)});
+    }
+    return settings;
+}
+
 void choose_site(PatchChoice& choice, const SiteText& text) {
     if (text.site.empty() && text.approach.empty()) return;
     if (text.site.empty()) throw Error("--approach needs --site: the point that the saw is to meet");
@@ -49,18 +62,10 @@ void choose_site(PatchChoice& choice, const SiteText& text) {
     if (!text.approach.empty() && !(glm::length(approach) > 1e-9)) throw Error("--approach 0,0,0 is no direction");
     patch::Problems problems;
     const patch::Patch patch = patch::load_patch(find_patch(choice.patch), problems);
-    bool any = false;
-    for (const patch::PatchNode& node : patch.nodes) {
-        const bool has_bone = std::ranges::any_of(
-            node.settings, [](const auto& setting) { return setting.name == "bone" || setting.name == "source"; });
-        if (!has_bone || (node.type != "workspace" && node.type != "carve")) continue;
-        any = true;
-        choice.overrides.settings.push_back(node.name + ".find_site=false");
-        choice.overrides.settings.push_back(
-            fmt::format("{}.site={} mm, {} mm, {} mm", node.name, site.x, site.y, site.z));
-        choice.overrides.settings.push_back(
-            fmt::format("{}.approach={}, {}, {}", node.name, approach.x, approach.y, approach.z));
-    }
+    const std::vector<SiteSetting> settings = site_settings(patch, site, approach);
+    for (const SiteSetting& s : settings)
+        choice.overrides.settings.push_back(fmt::format("{}.{}={}", s.node, s.param, s.value));
+    const bool any = !settings.empty();
     if (!any && problems.empty())
         throw Error(fmt::format("{}: --site needs a workspace with a bone, which this patch has not", choice.patch));
 }

@@ -2,9 +2,12 @@
 // --site and --approach: where on a bone a saw works.
 #pragma once
 
+#include "dsp/core/types.hpp"
+#include "graph/patch/patch.hpp"
 #include "tools/session/patch_choice.hpp"
 
 #include <string>
+#include <vector>
 
 namespace tactus::session {
 
@@ -12,6 +15,14 @@ struct SiteText {
     std::string site;      ///< "X,Y,Z" in mm, empty: the program finds a site
     std::string approach;  ///< "X,Y,Z", a direction; empty: along the surface's normal
 };
+
+/// A parameter of a node and its value, as people write it.
+struct SiteSetting {
+    std::string node, param, value;
+};
+/// What makes a saw of the patch work at a site (mm, LPS): for each workspace with a bone and each carve node. None: the
+/// patch has no such node. `approach`: a direction; 0: along the surface's normal.
+std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& site_mm, const Vec3& approach);
 
 /// Adds the site to the choice's settings, for each workspace with a bone and each carve node of the patch. Throws Error
 /// for text that is no three numbers, and for a patch without such nodes.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
+#include "tools/session/site_choice.hpp"
 
 #include "assets/file/whole_file.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 
@@ -105,6 +107,38 @@ bool Workbench::set(const std::string& node, const std::string& param, const std
 bool Workbench::reset(const std::string& node, const std::string& param) {
     return edit([&](std::string_view text) { return edit::without_setting(text, node, param); },
                 fmt::format("{}.{} has its default", node, param));
+}
+
+bool Workbench::cut_at(const Vec3& site) {
+    patch::Problems problems;
+    // A hundredth of a millimetre: no voxel is smaller.
+    const Vec3 mm = glm::round(site * 1e5) * 1e-2;
+    const auto settings =
+        session::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), mm, Vec3(0.0));
+    if (settings.empty()) {
+        tell("this patch has no bone to saw: a site needs a workspace or carve node with a bone", true);
+        return false;
+    }
+    // What the command line said about the site does not hold any more.
+    std::erase_if(choice_.overrides.settings, [&](const std::string& given) {
+        return std::ranges::any_of(settings,
+                                   [&](const auto& s) { return given.starts_with(s.node + "." + s.param + "="); });
+    });
+    return edit(
+        [&](std::string_view text) {
+            std::string changed(text);
+            for (const session::SiteSetting& s : settings)
+                changed = edit::with_setting(changed, s.node, s.param, s.value);
+            return changed;
+        },
+        fmt::format("the saw works at {:g}, {:g}, {:g} mm", mm.x, mm.y, mm.z));
+}
+
+bool Workbench::can_cut() const {
+    return plan_ && std::ranges::any_of(plan_->nodes, [](const auto& node) {
+               const std::string_view type = node.type->name;
+               return type == "workspace" || type == "carve";
+           });
 }
 
 bool Workbench::add(const edit::NewNode& node) {

@@ -56,6 +56,11 @@ public:
     /// Wires "node.port" to "node.port"; replaces an existing wire to that input.
     bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
     bool disconnect(const std::string& to);
+    /// Moves the saw's site to a point of the bone (scene, m), along the surface's normal, as one edit. Refused for a
+    /// patch without a bone to saw.
+    bool cut_at(const Vec3& site);
+    /// The patch has a bone to saw.
+    bool can_cut() const;
     bool undo();
     bool redo();
     /// Refused for a patch of the library; then sets `wants_name`.

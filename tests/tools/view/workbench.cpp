@@ -272,3 +272,27 @@ TEST_CASE("a run whose patch is broken ends with the reason and leaves the bench
     REQUIRE(come_about([&] { return bench.running()->is_over(); }));
     CHECK(bench.status()->failure.find("gian") != std::string::npos);
 }
+
+TEST_CASE("a place on the bone becomes the site of the saw as one edit that can be undone", "[slow]") {
+    const Folder folder;
+    RunChoice choice = choice_in(folder);
+    choice.patch = "saw-training";
+    choice.overrides.settings = {"place.site=1 mm, 2 mm, 3 mm"};
+    Workbench bench(choice);
+    REQUIRE(bench.can_cut());
+    const std::string before = bench.editor().text();
+    REQUIRE(bench.cut_at(Vec3(0.0123456, -0.05, 1.25)));
+    const std::string& text = bench.editor().text();
+    CHECK(text.find("\"12.35 mm, -50 mm, 1250 mm\"") != std::string::npos);
+    CHECK(text.find("find_site = false") != std::string::npos);
+    CHECK(text.find("approach = \"0, 0, 0\"") != std::string::npos);
+    bench.undo();
+    CHECK(bench.editor().text() == before);
+    CHECK_FALSE(bench.editor().can_undo());
+
+    Workbench voice_bench(choice_in(folder));
+    CHECK_FALSE(voice_bench.can_cut());
+    CHECK_FALSE(voice_bench.cut_at(Vec3(0.0)));
+    CHECK(voice_bench.messages().back().is_problem);
+    CHECK(voice_bench.editor().text() == voice);
+}

@@ -94,6 +94,12 @@ std::optional<Pose> SceneModel::pose_of(const std::string& port) {
     return std::nullopt;
 }
 
+bool SceneModel::is_bone(std::size_t index) const {
+    return index < picture_.meshes.size() &&
+           std::ranges::any_of(
+               bones_, [&](const auto& bone) { return bone.second.mesh == picture_.meshes[index].mesh; });
+}
+
 double SceneModel::number_of(const std::string& port, double otherwise) const {
     const auto seen = port.empty() ? std::nullopt : observer_.latest<double>(port);
     return seen && std::isfinite(seen->value) ? seen->value : otherwise;

@@ -53,6 +53,8 @@ public:
     const display::Bounds& bounds() const { return bounds_; }
     /// Position of a blade in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
+    /// Whether mesh `index` of the last picture is a bone that is carved.
+    bool is_bone(std::size_t index) const;
     /// Bricks remeshed by the last `update`, and triangles in all.
     std::size_t remeshed_bricks() const { return remeshed_; }
     std::size_t triangles() const;

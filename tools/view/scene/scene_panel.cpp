@@ -250,9 +250,11 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         steer(static_cast<int>(size.x), static_cast<int>(size.y));
         tend_screens();
         render(width, height);
-        if (is_measuring && ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
-            ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f)
-            measure((point(ImGui::GetIO().MousePos) - corner) * dense);
+        const bool is_clicked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+                                ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f;
+        const Point clicked = (point(ImGui::GetIO().MousePos) - corner) * dense;
+        if (is_clicked && is_siting) move_site(clicked);
+        else if (is_clicked && is_measuring) measure(clicked);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);
         if (sight_.display_file())
             paint.box({corner.x, corner.y, corner.x + size.x, corner.y + size.y}, colour(0x0b0e13), 6.0);

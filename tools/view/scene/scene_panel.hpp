@@ -50,6 +50,7 @@ public:
     /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping.
     void clip(int axis, double share);
     bool is_measuring = false;
+    bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool wants_calibration = false;  ///< requests the calibration panel
 
     // View settings. All throw Error and then change nothing.
@@ -73,6 +74,8 @@ private:
     void watch_sight();
     display::Legend legend() const;
     void measure(Point pixel);
+    void move_site(Point pixel);
+    std::optional<display::Picked> pick(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_hand(const Painter& paint, Point corner, Point size, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);

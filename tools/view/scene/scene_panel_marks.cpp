@@ -21,7 +21,7 @@ ImU32 packed(const Vec3& rgb) {
 
 }  // namespace
 
-void ScenePanel::measure(Point pixel) {
+std::optional<display::Picked> ScenePanel::pick(Point pixel) {
     for (const SceneScreens::Tile& tile : screens_.tiles()) {
         if (tile.views.empty() || tile.width < 1 || tile.height < 1) continue;
         const double x = (pixel.x - tile.x) * tile.picture_width / tile.width;
@@ -29,12 +29,23 @@ void ScenePanel::measure(Point pixel) {
         const auto view = std::ranges::find_if(tile.views, [&](const display::DrawnView& v) {
             return x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height;
         });
-        if (view == tile.views.end()) continue;
-        if (marks_.size() == 3) marks_.clear();
-        if (const auto picked = renderer_->pick(model_->update(), *view, x, y)) marks_.push_back(picked->position);
-        needs_picture_ = true;
-        return;
+        if (view != tile.views.end()) return renderer_->pick(model_->update(), *view, x, y);
     }
+    return {};
+}
+
+void ScenePanel::measure(Point pixel) {
+    if (marks_.size() == 3) marks_.clear();
+    if (const auto picked = pick(pixel)) marks_.push_back(picked->position);
+    needs_picture_ = true;
+}
+
+void ScenePanel::move_site(Point pixel) {
+    const auto picked = pick(pixel);
+    needs_picture_ = true;
+    if (!picked || !model_->is_bone(picked->mesh))
+        return bench_.tell("there is no bone under the pointer; click on the bone where the saw is to cut", true);
+    is_siting = !bench_.cut_at(picked->position);
 }
 
 void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
