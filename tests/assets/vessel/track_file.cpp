@@ -25,7 +25,7 @@ vessel::Track forked() {
         node.direction = Vec3(0, 0, 1);
         node.radius = 2e-3, node.contrast = 300.0, node.confidence = 0.9, node.along = 0.001 * n;
         trunk.nodes.push_back(node);
-        node.position = Vec3(0.01 + 0.001 * n, -0.02, 0.008);
+        node.position = Vec3(0.01 + 0.001 * n, -0.02, 0.0083);  // no vertex in common
         node.direction = Vec3(1, 0, 0);
         node.radius = 1e-3;
         side.nodes.push_back(node);

@@ -43,4 +43,7 @@ TEST_CASE("the nearest name is suggested, a far one is not") {
     CHECK(did_you_mean("pos", names) == "; did you mean 'pose'?");
     CHECK(did_you_mean("stifness", names) == "; did you mean 'stiffness'?");
     CHECK(did_you_mean("zzzz", names).empty());
+    const std::vector<std::string> nodes{"dial", "gain"};
+    // Two letters exchanged are one mistake.
+    CHECK(did_you_mean("gian", nodes) == "; did you mean 'gain'?");
 }

@@ -2,12 +2,14 @@
 #include "tools/view/workbench.hpp"
 #include "engine/take/take_reader.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/signal/feed.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <functional>
 #include <thread>
 
@@ -275,6 +277,7 @@ TEST_CASE("a run whose patch is broken ends with the reason and leaves the bench
 
 TEST_CASE("a place on the bone becomes the site of the saw as one edit that can be undone", "[slow]") {
     const Folder folder;
+    ::setenv("TACTUS_LIBRARY", test::library_folder().c_str(), 1);
     RunChoice choice = choice_in(folder);
     choice.patch = "saw-training";
     choice.overrides.settings = {"place.site=1 mm, 2 mm, 3 mm"};

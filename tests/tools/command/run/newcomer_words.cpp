@@ -36,7 +36,7 @@ rate = "1 kHz"
 )";
 }
 
-constexpr const char* gripper_at_absent_port = R"(wires = [ "finger.finger_force -> motor.finger_speed" ]
+constexpr const char* gripper_at_absent_port = R"(wires = [ "finger.finger_force -> speed.in", "speed.out -> motor.finger_speed" ]
 [devices.serial]
 driver = "serial_gripper"
 port = "/dev/no-such-port"
@@ -45,6 +45,11 @@ port = "/dev/no-such-port"
 constexpr const char* gripper_nodes = R"([nodes.finger]
 type = "gripper_input"
 rate = "150 Hz"
+[nodes.speed]
+type = "gain"
+rate = "150 Hz"
+factor = 0.01
+unit = "m/s"
 [nodes.motor]
 type = "gripper_output"
 rate = "150 Hz"
@@ -77,7 +82,7 @@ TEST_CASE("check judges a patch of hardware that is not here, and says that it i
     CAPTURE(checked.out, checked.err);
     CHECK(checked.code == 0);
     CHECK_THAT(checked.out, ContainsSubstring("device 'serial' is not here (there is no /dev/no-such-port)"));
-    CHECK_THAT(checked.out, ContainsSubstring("2 nodes"));
+    CHECK_THAT(checked.out, ContainsSubstring("3 nodes"));
     // Its settings are judged all the same.
     const std::string wrong =
         folder.write("wrong.toml", std::string(gripper_at_absent_port) + "bauds = 9600\n" + gripper_nodes).string();
