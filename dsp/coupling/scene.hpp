@@ -35,6 +35,7 @@ struct SceneObject {
     Pose pose;
     int unit = -1;  ///< objects of one unit move together and do not touch each other; -1: none
     bool stands = true;  ///< the object is placed: others may be fitted to it
+    int hangs_on = -1;   ///< the object that it was fitted to, and that it stands by; -1: none
 };
 
 /// Up to sixteen bodies with their poses, by value: a scene is a snapshot.

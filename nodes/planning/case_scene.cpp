@@ -304,6 +304,7 @@ private:
         coupling::SceneObject& object = scene_.objects[static_cast<std::size_t>(fragment)];
         object.pose = now_->pose(fragment) * parts_[static_cast<std::size_t>(fragment)]->home;
         object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != fit::Arrangement::none;
+        object.hangs_on = now_->is_locked(fragment) ? -1 : now_->fitted_to(fragment);
     }
 
     void publish() noexcept {

@@ -98,7 +98,7 @@ private:
             if (!is_valid(other.pose)) return nothing();
             poses_[n] = Pose{other.pose.position, glm::normalize(other.pose.orientation)} * other.body.home.inverse();
             stands_[n] = !goes_along(static_cast<std::size_t>(place), n) && other.body.map &&
-                         (other.stands || partners.index == 1);
+                         ((other.stands && !hangs_on(n, static_cast<std::size_t>(place))) || partners.index == 1);
         }
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
@@ -161,6 +161,17 @@ private:
                 if (stands_[n] &&
                     fit::lie_in_each_other(mine, placed(n, poses_[n]), matcher_->settings.fit.most_penetration))
                     return true;
+        }
+        return false;
+    }
+
+    /// Whether an object stands only by the one that is moved, directly or through others: a fit to it would hold up
+    /// nothing.
+    bool hangs_on(std::size_t other, std::size_t moving) const noexcept {
+        int at = scene->objects[other].hangs_on;
+        for (std::size_t steps = 0; steps < scene->count && at >= 0; ++steps) {
+            if (goes_along(moving, static_cast<std::size_t>(at))) return true;
+            at = scene->objects[static_cast<std::size_t>(at)].hangs_on;
         }
         return false;
     }

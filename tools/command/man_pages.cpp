@@ -18,6 +18,7 @@ std::string troff(const std::string& text) {
         if (c == '\\') out += "\\e";
         else if (c == '-') out += "\\-";
         else out += c;
+        if (c == ',') out += "\\:";  // a long list of values breaks here, without a hyphen
     }
     return out;
 }

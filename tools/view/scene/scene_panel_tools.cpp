@@ -35,12 +35,6 @@ void ScenePanel::tools() {
         needs_picture_ = true;
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
-    if (bench_.can_cut()) {
-        if (next_button(is_siting ? "click on the bone" : "cut here...")) is_siting = !is_siting;
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("the next click on the bone moves the saw there; it can be undone");
-        mark_spot("cut here");
-    }
     sight_tools();
     const float unit = ImGui::GetFontSize();
     stay_on_line(6.0f * unit);

@@ -18,6 +18,12 @@ void ScenePanel::draw_tree() {
     mark_spot("hide all");
     ImGui::SameLine();
     ImGui::TextDisabled("a picture only: the run goes on with all");
+    if (bench_.can_cut()) {
+        if (ImGui::SmallButton(is_siting ? "click on the bone" : "cut here...")) is_siting = !is_siting;
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("the next click on the bone moves the saw there; it can be undone");
+        mark_spot("cut here");
+    }
     for (const SceneModel::Part& part : model_->parts()) {
         ImGui::PushID(part.name.c_str());
         bool is_shown = part.is_shown;
