@@ -25,24 +25,31 @@ Laws::Laws(const compile::Plan& plan, const DrivenParams& driven)
         wires_into_[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
         wires_from_[static_cast<std::size_t>(wire.from_node)].push_back(&wire);
     }
+    find_units_given();
 }
 
-std::optional<compile::WireUnit> Laws::unit_given(std::size_t node) const {
-    if (units_.outputs[node].size() == 1 && units_.outputs[node][0]) return units_.outputs[node][0];
-    std::vector<std::size_t> to_follow{node};
-    std::vector<bool> is_known(plan_.nodes.size(), false);
-    while (!to_follow.empty()) {
-        const std::size_t from = to_follow.back();
-        to_follow.pop_back();
-        for (const compile::PlanWire* wire : wires_from_[from]) {
-            const auto to = static_cast<std::size_t>(wire->to_node);
-            if (const auto& taken = units_.inputs[to][static_cast<std::size_t>(wire->to_input)]) return taken;
-            if (plan_.nodes[to].type->units != UnitRule::same || is_known[to]) continue;
-            is_known[to] = true;
-            to_follow.push_back(to);
+void Laws::find_units_given() {
+    given_.resize(plan_.nodes.size());
+    std::vector<std::size_t> known;
+    for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
+        if (units_.outputs[n].size() == 1) given_[n] = units_.outputs[n][0];
+        for (const compile::PlanWire* wire : wires_from_[n])
+            if (!given_[n])
+                given_[n] =
+                    units_.inputs[static_cast<std::size_t>(wire->to_node)][static_cast<std::size_t>(wire->to_input)];
+        if (given_[n]) known.push_back(n);
+    }
+    // From the readers back, through nodes that keep a unit. Each node is reached once.
+    for (std::size_t head = 0; head < known.size(); ++head) {
+        const std::size_t reader = known[head];
+        if (plan_.nodes[reader].type->units != UnitRule::same) continue;
+        for (const compile::PlanWire* wire : wires_into_[reader]) {
+            const auto from = static_cast<std::size_t>(wire->from_node);
+            if (given_[from]) continue;
+            given_[from] = given_[reader];
+            known.push_back(from);
         }
     }
-    return std::nullopt;
 }
 
 std::optional<KnownLaw> Laws::of(std::size_t n, const std::vector<bool>& reached_by_hands) const {
@@ -56,7 +63,7 @@ std::optional<KnownLaw> Laws::of(std::size_t n, const std::vector<bool>& reached
     } catch (const Error&) {
         return std::nullopt;  // `prepare` says what is wrong
     }
-    const std::optional<compile::WireUnit> out = unit_given(n);
+    const std::optional<compile::WireUnit>& out = given_[n];
     KnownLaw law;
     double squares = 0.0;
     bool has_positions = false;

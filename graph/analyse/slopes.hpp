@@ -29,13 +29,14 @@ public:
     std::optional<KnownLaw> of(std::size_t node, const std::vector<bool>& reached_by_hands) const;
 
 private:
-    /// The unit of an output, or that which its readers take.
-    std::optional<compile::WireUnit> unit_given(std::size_t node) const;
+    void find_units_given();
 
     const compile::Plan& plan_;
     const DrivenParams& driven_;
     compile::PlanUnits units_;
     std::vector<std::vector<const compile::PlanWire*>> wires_into_, wires_from_;
+    std::vector<std::optional<compile::WireUnit>>
+        given_;  ///< unit of each node's output, or that which its readers take
 };
 
 }  // namespace tactus::analyse
