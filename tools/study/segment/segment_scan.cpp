@@ -90,11 +90,15 @@ double share_below(std::vector<float> values, double share) {
     return static_cast<double>(*at);
 }
 
-/// Voxels beside the bone that take the label of the nearest bone: marrow, and in a masked scan all that are not 0.
+/// Voxels beside the bone that take the label of the nearest bone: marrow, and in a masked scan all that are not 0. A
+/// masked scan says itself where the bone ends, so that only single voxels within it are missing.
 std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::LabelMap& map, double marrow) {
     std::vector<std::uint8_t> open(map.label.size(), 0);
-    if (marrow > 0.0) open = segment::marrow_of(map, scan.scan.spacing, marrow);
-    if (scan.hu == volume::HuKind::masked)
+    const bool is_masked = scan.hu == volume::HuKind::masked;
+    const Vec3& h = scan.scan.spacing;
+    const double radius = is_masked ? std::min(marrow, 0.5 * std::min({h.x, h.y, h.z})) : marrow;
+    if (radius > 0.0) open = segment::marrow_of(map, h, radius);
+    if (is_masked)
         for (std::size_t v = 0; v < open.size(); ++v) open[v] |= scan.scan.values[v] != 0.0f;
     return open;
 }
