@@ -2,6 +2,7 @@
 #include "assets/reconstruct/fibula_inputs.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
@@ -22,13 +23,11 @@ constexpr std::size_t most_planes = 6;
 
 Vec3 vector_of(const Json& json, const char* key, const std::string& where) {
     const Json* found = json.find(key);
-    const bool is_vector = found && found->is_array() && found->size() == 3 &&
-                           std::all_of(found->begin(), found->end(), [](const Json& x) { return x.is_number(); });
-    if (!is_vector) throw Error(fmt::format("{}: '{}' must be a list of three numbers", where, key));
-    const Vec3 v((*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>());
-    if (!is_finite(v) || std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > farthest_mm)
-        throw Error(fmt::format("{}: '{}' has a number beyond {:.0f}", where, key, farthest_mm));
-    return v;
+    const std::optional<Vec3> v = found ? file::vector_of(*found, farthest_mm) : std::nullopt;
+    if (!v)
+        throw Error(
+            fmt::format("{}: '{}' must be a list of three numbers, each at most {:.0f}", where, key, farthest_mm));
+    return *v;
 }
 
 double length_of(const Json& json, const char* key, double otherwise, double most_mm, const std::string& file) {

@@ -2,6 +2,7 @@
 #include "assets/segment/seeds_file.hpp"
 
 #include "assets/file/json.hpp"
+#include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
@@ -39,13 +40,11 @@ Vec3 colour_of(const Json& json, const std::string& where) {
 }
 
 Vec3 point_of(const Json& json, const std::string& where) {
-    const bool is_point = json.is_array() && json.size() == 3 &&
-                          std::all_of(json.begin(), json.end(), [](const Json& x) { return x.is_number(); });
-    if (!is_point) throw Error(fmt::format("{}: a point is a list of three numbers, in mm", where));
-    const Vec3 point(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-    if (!is_finite(point) || std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > farthest_mm)
-        throw Error(fmt::format("{}: a point lies more than {:.0f} m away", where, farthest_mm * mm));
-    return point * mm;
+    const std::optional<Vec3> point = file::vector_of(json, farthest_mm);
+    if (!point)
+        throw Error(
+            fmt::format("{}: a point is a list of three numbers in mm, each at most {:.0f}", where, farthest_mm));
+    return *point * mm;
 }
 
 Stroke stroke_of(const Json& json, const std::string& where) {

@@ -73,8 +73,8 @@ public:
     /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
     void start_from(const Wrench& committed) noexcept;
 
-    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only lateness gives way
-    /// to another one, for it names no cause.
+    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only lateness, which
+    /// names no cause, is replaced by a later one.
     void fail(Fault reason) noexcept;
 
     /// The same when another thread has already faded the force: the output is zero at once.

@@ -54,13 +54,7 @@ FreeNodes free_nodes(const VoxelGraph& graph, std::span<const NodeState> state) 
         }
     const std::size_t rows = out.node.size();
 
-    // A graph names each edge once; a row needs the edges of both ends.
-    std::vector<std::array<std::int32_t, 3>> before(graph.nodes(), {-1, -1, -1});
-    for (std::size_t n = 0; n < graph.nodes(); ++n)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            if (graph.next[n][axis] >= 0)
-                before[static_cast<std::size_t>(graph.next[n][axis])][axis] = static_cast<std::int32_t>(n);
-
+    const auto around = neighbours_of(graph);
     Laplacian& a = out.matrix;
     a.start.reserve(rows + 1);
     a.column.reserve(rows * 6);
@@ -77,7 +71,7 @@ FreeNodes free_nodes(const VoxelGraph& graph, std::span<const NodeState> state) 
             }
         };
         for (std::size_t axis = 3; axis-- > 0;) {
-            const std::int32_t other = before[n][axis];
+            const std::int32_t other = around[n][axis + 3];
             add(other, other < 0 ? 0.0f : graph.weight[static_cast<std::size_t>(other)][axis]);
         }
         for (std::size_t axis = 0; axis < 3; ++axis) add(graph.next[n][axis], graph.weight[n][axis]);

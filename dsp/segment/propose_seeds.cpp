@@ -174,13 +174,7 @@ std::vector<ProposedFragment> fragments_of(const VoxelGraph& graph, const volume
 
 std::vector<ProposedFragment> propose_seeds(const VoxelGraph& graph, const volume::Grid& values, const GapLaw& law,
                                             const ProposeSeeds& how) {
-    Around around(graph.nodes(), {none, none, none, none, none, none});
-    for (std::size_t n = 0; n < graph.nodes(); ++n)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            if (const std::int32_t m = graph.next[n][axis]; m >= 0) {
-                around[n][axis] = m;
-                around[static_cast<std::size_t>(m)][axis + 3] = static_cast<std::int32_t>(n);
-            }
+    const Around around = neighbours_of(graph);
     // A gap darkens its voxels by several widths; spongy bone seldom does.
     const double dark = law.bright - 6.0 * law.width;
     std::vector<char> bright(graph.nodes());

@@ -53,6 +53,17 @@ VoxelGraph make_voxel_graph(const volume::Grid& values, std::span<const std::uin
     return graph;
 }
 
+std::vector<std::array<std::int32_t, 6>> neighbours_of(const VoxelGraph& graph) {
+    std::vector<std::array<std::int32_t, 6>> around(graph.nodes(), {-1, -1, -1, -1, -1, -1});
+    for (std::size_t n = 0; n < graph.nodes(); ++n)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (const std::int32_t m = graph.next[n][axis]; m >= 0) {
+                around[n][axis] = m;
+                around[static_cast<std::size_t>(m)][axis + 3] = static_cast<std::int32_t>(n);
+            }
+    return around;
+}
+
 GraphParts parts_of(const VoxelGraph& graph) {
     std::vector<std::int32_t> parent(graph.nodes());
     for (std::size_t n = 0; n < parent.size(); ++n) parent[n] = static_cast<std::int32_t>(n);

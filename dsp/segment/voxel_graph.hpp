@@ -38,6 +38,9 @@ struct GapLaw {
 /// by the square of its spacing relative to the least one, so that walks are the same in mm along all axes.
 VoxelGraph make_voxel_graph(const volume::Grid& values, std::span<const std::uint8_t> inside, const GapLaw& law);
 
+/// Of each node: its neighbours along x, y and z, first those after it, then those before it; -1: none.
+std::vector<std::array<std::int32_t, 6>> neighbours_of(const VoxelGraph& graph);
+
 /// Connected parts of a graph: the part of each node, numbered from 0 in the order of their first nodes.
 struct GraphParts {
     std::vector<std::int32_t> part;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/contact_law.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/types.hpp"
 
@@ -41,13 +42,6 @@ inline Pose pose_of(const Case& c, std::uint64_t frame) {
     const Vec3 way = glm::normalize(Vec3(normal(4), normal(5), normal(6)));
     const double press = 1e-4 * (1.0 + random.uniform(16 * frame + 7));
     return {way * (c.distance > 0.0 ? c.distance * c.radius * voxel - press : 0.5 * press), turn};
-}
-
-/// Processor time of this thread, s. Other load on the machine has an effect only through the caches.
-inline double thread_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 inline double percentile(std::vector<double> values, double share) {

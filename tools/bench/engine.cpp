@@ -3,6 +3,7 @@
 #include "engine/run/engine.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
@@ -28,17 +29,11 @@ namespace {
 
 constexpr double rate = 48000.0;
 
-double processor_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 /// Processor time of all threads; other load on the machine does not count.
 double seconds_of(const std::function<void()>& work) {
-    const double begin = processor_seconds();
+    const double begin = process_seconds();
     work();
-    return processor_seconds() - begin;
+    return process_seconds() - begin;
 }
 
 std::string patch_of(int nodes) {

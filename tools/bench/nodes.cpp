@@ -2,6 +2,7 @@
 // Cost of single nodes: a formula beside the same law as a C++ node, and nodes beside the loops of their twins in Pure
 // Data.
 #include "assets/file/json.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/node/node.hpp"
 #include "nodes/catalogue.hpp"
@@ -25,12 +26,6 @@ namespace {
 
 constexpr double rate = 48000.0;
 constexpr int count = 200;  ///< nodes side by side
-
-double processor_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Two tones, and `nodes` nodes of a type that read them; inputs and settings as text.
 std::string patch_of(int nodes, const std::string& type, const std::vector<std::string>& inputs,
@@ -61,9 +56,9 @@ double seconds_of(const std::string& text, int block, double length) {
     options.block = block;
     options.hash = false;
     run::Engine engine(std::move(*plan), options);
-    const double begin = processor_seconds();
+    const double begin = process_seconds();
     engine.render(1);
-    return processor_seconds() - begin;
+    return process_seconds() - begin;
 }
 
 /// ns of one node in one call of `block` samples; the best of some rounds.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/nodes_pure_data.hpp"
+#include "dsp/core/processor_time.hpp"
 
 #include <time.h>
 #include <array>
@@ -75,12 +76,6 @@ void noise(Object& o) {
     o.value = value;
 }
 
-double processor_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 double ns_of(void (*perform)(Object&), bool is_oscillator, int count) {
     const auto n = static_cast<std::size_t>(count);
     std::vector<Block> places(n + 2);
@@ -103,10 +98,10 @@ double ns_of(void (*perform)(Object&), bool is_oscillator, int count) {
         o.perform = perform;
     }
     constexpr int calls = 3000;
-    const double begin = processor_seconds();
+    const double begin = process_seconds();
     for (int i = 0; i < calls; ++i)
         for (Object& o : objects) o.perform(o);
-    return (processor_seconds() - begin) * 1e9 / (static_cast<double>(calls) * count);
+    return (process_seconds() - begin) * 1e9 / (static_cast<double>(calls) * count);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/contact/blade.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/saw/heat_partition.hpp"
 #include "dsp/saw/kerf_heat.hpp"
 #include "dsp/saw/published.hpp"
@@ -34,12 +35,6 @@ struct SawBenchChoice : BenchChoice {
     std::string figure;
     std::vector<std::string> bones;
 };
-
-double cpu_seconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct Row {
     std::string what, published, tactus, how_far;
@@ -139,13 +134,13 @@ Cost cost_of(int rounds, Call&& call) {
     Cost cost;
     std::vector<double> walls;
     for (int round = 0; round < rounds; ++round) {
-        const double before = cpu_seconds();
+        const double before = thread_seconds();
         for (int n = 0; n < calls; ++n) {
             const auto start = std::chrono::steady_clock::now();
             call(n);
             walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         }
-        cost.cpu = std::min(cost.cpu, (cpu_seconds() - before) / calls);
+        cost.cpu = std::min(cost.cpu, (thread_seconds() - before) / calls);
     }
     std::ranges::sort(walls);
     cost.wall_p99 = walls[walls.size() * 99 / 100];
@@ -180,11 +175,11 @@ double carve_cost(bool fronts, int rounds) {
                 samples.push_back({pose, 0.001, 7.0, 228.0, true});
             }
             if (n % 17 != 16) continue;
-            const double before = cpu_seconds();
+            const double before = thread_seconds();
             if (fronts) carver.update(*bone, path);
             else carver.update(*bone, samples);
             bone->reclaim(bone->publish().version);
-            spent += cpu_seconds() - before;
+            spent += thread_seconds() - before;
             path.clear();
             samples.clear();
         }

@@ -2,6 +2,7 @@
 // A hand that slides the saw to and fro over a bone that is narrower than the blade.
 #include "tests/dsp/saw/sawing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/line_amplitude.hpp"
 
 #include <complex>
 #include <numbers>
@@ -39,19 +40,6 @@ Slid slide(double thrust, double reach, double voxel = 0.33e-3) {
     return slid;
 }
 
-/// Amplitude at `hz` under a Hann window.
-double line(const std::vector<double>& samples, double hz) {
-    double mean = 0.0;
-    for (const double x : samples) mean += x / static_cast<double>(samples.size());
-    std::complex<double> sum = 0.0;
-    for (std::size_t n = 0; n < samples.size(); ++n) {
-        const double share = static_cast<double>(n) / static_cast<double>(samples.size());
-        sum += (samples[n] - mean) * (1.0 - std::cos(2.0 * std::numbers::pi * share)) *
-               std::polar(1.0, -2.0 * std::numbers::pi * hz * static_cast<double>(n) / 1000.0);
-    }
-    return 2.0 * std::abs(sum) / static_cast<double>(samples.size());
-}
-
 }  // namespace
 
 TEST_CASE("a hand that slides the saw over a narrow bone cuts about as fast as one that holds still", "[slow]") {
@@ -72,9 +60,10 @@ TEST_CASE("the force of a saw that slides does not show when the bone has a new 
             const Slid slid = slide(thrust, reach);
             double floor = 0.0;
             for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0})
-                floor += line(slid.thrust, hz) / 8.0;
-            CAPTURE(thrust, reach, floor, line(slid.thrust, 60.0), line(slid.thrust, 120.0));
-            CHECK(line(slid.thrust, 60.0) < floor + 0.01);
-            CHECK(line(slid.thrust, 120.0) < floor + 0.01);
+                floor += test::line_amplitude(slid.thrust, hz) / 8.0;
+            CAPTURE(thrust, reach, floor, test::line_amplitude(slid.thrust, 60.0),
+                    test::line_amplitude(slid.thrust, 120.0));
+            CHECK(test::line_amplitude(slid.thrust, 60.0) < floor + 0.01);
+            CHECK(test::line_amplitude(slid.thrust, 120.0) < floor + 0.01);
         }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random walks on real fractures, beside scikit-image, and their cost.
 #include "assets/file/json.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/segment/random_walk.hpp"
 #include "dsp/segment/uncertain.hpp"
 #include "tools/bench/bench.hpp"
@@ -24,12 +25,6 @@ struct SegmentChoice {
     int seedings = 20, dabs = 6, peers = 3;
     bool no_costs = false, json = false;
 };
-
-double processor_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Mean and half the 95 % interval by Student's t.
 struct Interval {
@@ -78,9 +73,9 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
     for (int n = 0; n < choice.seedings; ++n) {
         std::vector<std::uint8_t> seed =
             painted_seeds(real, choice.dabs, Random{first + static_cast<std::uint64_t>(n)});
-        double begin = processor_seconds();
+        double begin = process_seconds();
         segment::Walks walks = segment::random_walks(real.graph, seed, real.labels);
-        out.first_seconds.push_back(processor_seconds() - begin);
+        out.first_seconds.push_back(process_seconds() - begin);
         double dice = mean_dice(real, segment::labels_of(walks));
         out.dice.push_back(dice);
         if (n < choice.peers) {
@@ -95,9 +90,9 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
         auto looked = seed;
         for (int dab = 1; dab <= 3; ++dab) {
             if (dab_largest(real, segment::certainty_of(walks), looked)) {
-                begin = processor_seconds();
+                begin = process_seconds();
                 walks = segment::random_walks(real.graph, looked, real.labels, {}, &walks);
-                out.dab_seconds.push_back(processor_seconds() - begin);
+                out.dab_seconds.push_back(process_seconds() - begin);
             }
             (dab == 1   ? out.one_dab
              : dab == 2 ? out.two_dabs
@@ -179,9 +174,9 @@ Json cost_row(int edge, int labels, bool quiet) {
             static_cast<std::uint8_t>(l + 1);
     timespec wall{}, done_at{};
     clock_gettime(CLOCK_MONOTONIC, &wall);
-    const double begin = processor_seconds();
+    const double begin = process_seconds();
     const segment::Walks walks = segment::random_walks(graph, seed, labels, {}, nullptr, study::on_threads());
-    const double seconds = processor_seconds() - begin;
+    const double seconds = process_seconds() - begin;
     clock_gettime(CLOCK_MONOTONIC, &done_at);
     const double elapsed =
         static_cast<double>(done_at.tv_sec - wall.tv_sec) + 1e-9 * static_cast<double>(done_at.tv_nsec - wall.tv_nsec);

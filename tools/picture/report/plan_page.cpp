@@ -300,7 +300,7 @@ std::string warnings(const Case& c, const std::vector<std::string>& overlaps) {
     return "<div class=\"fail\"><h2>Warnings</h2>\n" + list_of(all) + "</div>\n";
 }
 
-/// What hangs together.
+/// Which fragments are connected by fits.
 std::string connections(const Case& c) {
     const std::vector<std::string> lines = study::connection_words(c.plan, c.state);
     return lines.empty() ? "" : "<h2>Connections</h2>\n" + list_of(lines);

@@ -3,6 +3,7 @@
 #include "assets/vessel/track_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/processor_time.hpp"
 
 #include <fmt/format.h>
 
@@ -15,12 +16,6 @@ namespace {
 
 constexpr double air = -200.0, bone = 900.0;  // HU; vessels in a CT angiography reach about 700
 constexpr double least_hu = -150.0;                // below fat
-
-double processor_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 /// Mean of the 27 samples around the seed.
 void check_seed(const volume::Grid& grid, const Vec3& seed) {
@@ -54,11 +49,11 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
     const volume::Grid grid = volume::lps_grid(std::move(scan));
     if (is_hu) check_seed(grid, settings.seed);
 
-    const double before = processor_seconds();
+    const double before = thread_seconds();
     vessel::TrackSettings track_settings = settings.track;
     if (is_hu) track_settings.clip_below = least_hu;
     result.found = vessel::follow(grid, settings.seed, track_settings);
-    result.seconds = processor_seconds() - before;
+    result.seconds = thread_seconds() - before;
     const vessel::Track& track = result.found.track;
     if (settings.leg) result.run_off = vessel::run_off(track, *settings.leg);
     if (track.branches.empty()) return result;

@@ -3,6 +3,7 @@
 
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/segment/random_walk.hpp"
 #include "dsp/segment/strokes.hpp"
 #include "dsp/segment/uncertain.hpp"
@@ -16,12 +17,6 @@
 namespace tactus::study {
 
 namespace {
-
-double processor_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Throws Error when painting would take minutes: many wide strokes.
 void check_work(const ScanGraph& scan, std::span<const segment::SeedLabel> labels, const std::string& file) {
@@ -108,11 +103,11 @@ std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::Labe
 SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,
                            const SegmentSettings& settings, const std::string& seeds_file) {
     const std::vector<std::uint8_t> seed = seeds_in(scan, seeds, seeds_file);
-    const double begin = processor_seconds();
+    const double begin = process_seconds();
     const segment::Walks walks =
         segment::random_walks(scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
     SegmentedScan out;
-    out.seconds = processor_seconds() - begin;
+    out.seconds = process_seconds() - begin;
     out.residual = walks.residual;
     out.iterations = walks.iterations;
     const std::vector<std::uint8_t> label = segment::labels_of(walks);
@@ -121,7 +116,7 @@ SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedL
     out.map = {scan.scan.size, std::vector<std::uint8_t>(scan.scan.count(), 0)};
     out.certainty = {scan.scan.size, scan.scan.origin, scan.scan.spacing, std::vector<float>(scan.scan.count(), 0.0f)};
     std::vector<float> labelled;
-    // Outside of the labels no region is uncertain: islands are reported by themselves.
+    // A voxel without a label counts as certain: islands are reported by themselves.
     std::vector<float> of_labelled(certainty.size(), 1.0f);
     for (std::size_t n = 0; n < label.size(); ++n) {
         const auto at = scan.graph.place(n);

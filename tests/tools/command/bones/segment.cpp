@@ -5,22 +5,17 @@
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace fs = std::filesystem;
 using namespace tactus;
@@ -28,30 +23,11 @@ using nlohmann::json;
 
 namespace {
 
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("tactus_segment_" + std::to_string(::getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-
+struct Folder : test::Folder {
     std::string operator/(const std::string& name) const { return (path / name).string(); }
-    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-
-    struct Outcome {
-        int code;
-        std::string out, err;
-    };
-    Outcome tactus(const std::string& arguments) const {
-        const auto slurp = [](const std::string& file) {
-            std::ostringstream text;
-            text << std::ifstream(file, std::ios::binary).rdbuf();
-            return text.str();
-        };
-        const int status = std::system(
-            (test::command() + " segment " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr").c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(*this / "stdout"), slurp(*this / "stderr")};
-    }
+    test::Outcome tactus(const std::string& arguments) const { return test::Folder::tactus("segment " + arguments); }
     json answer(const std::string& arguments) const {
-        const Outcome done = tactus(arguments + " --json");
+        const test::Outcome done = tactus(arguments + " --json");
         INFO(arguments << "\n" << done.err);
         REQUIRE(done.code == 0);
         return json::parse(done.out);

@@ -3,14 +3,11 @@
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -20,7 +17,6 @@
 #include <fstream>
 #include <map>
 #include <numbers>
-#include <sstream>
 
 namespace fs = std::filesystem;
 using namespace tactus;
@@ -28,26 +24,9 @@ using nlohmann::json;
 
 namespace {
 
-struct Answer {
-    int code;
-    std::string out, err;
-};
-
-Answer plan_fibula(const std::string& inputs) {
-    const fs::path folder = fs::temp_directory_path() / ("tactus_fibula_" + std::to_string(::getpid()));
-    fs::create_directories(folder);
-    std::ofstream(folder / "inputs.json") << inputs;
-    const auto slurp = [](const fs::path& file) {
-        std::ostringstream text;
-        text << std::ifstream(file).rdbuf();
-        return text.str();
-    };
-    const std::string command = test::command() + " plan fibula --json " + (folder / "inputs.json").string() + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string();
-    const int status = std::system(command.c_str());
-    Answer answer{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder / "out"), slurp(folder / "err")};
-    fs::remove_all(folder);
-    return answer;
+test::Outcome plan_fibula(const std::string& inputs) {
+    const test::Folder folder;
+    return folder.tactus("plan fibula --json " + folder.write("inputs.json", inputs).string());
 }
 
 using Rim = std::vector<Vec3>;
@@ -104,7 +83,7 @@ TEST_CASE("plan fibula agrees with the pieces of a published plan") {
     json inputs;
     std::ifstream(folder / "brp_plan_inputs.json") >> inputs;
     // As published: lengths and angles need no place along the line.
-    const Answer plain = plan_fibula(inputs.dump());
+    const test::Outcome plain = plan_fibula(inputs.dump());
     INFO(plain.err);
     REQUIRE(plain.code == 0);
 
@@ -118,7 +97,7 @@ TEST_CASE("plan fibula agrees with the pieces of a published plan") {
     for (int n = 0; n < 3; ++n)
         pieces.push_back(rims_of(mesh::load_mesh(folder / ("brp_fibula_segment" + std::to_string(n) + ".ply"))));
     for (const auto& piece : pieces) inputs["along_line_mm"].push_back(where_line_meets(piece[0]));
-    const Answer placed = plan_fibula(inputs.dump());
+    const test::Outcome placed = plan_fibula(inputs.dump());
     INFO(placed.err);
     REQUIRE(placed.code == 0);
     const json plan = json::parse(placed.out);
@@ -157,12 +136,12 @@ TEST_CASE("plan fibula refuses wrong inputs with one line") {
                       {{"origin", {25, 3, 0}}},
                       {{"origin", {50, 0, 0}}, {"normal", {1, 0, 0}}}}},
                     {"fibula_line", {{"point", {0, 0, 0}}, {"direction", {0, 0, 1}}}}};
-    const Answer done = plan_fibula(good.dump());
+    const test::Outcome done = plan_fibula(good.dump());
     INFO(done.err);
     CHECK(done.code == 0);
     CHECK(json::parse(done.out)["segments"].size() == 2);
     const auto refused = [&](const std::string& inputs, const std::string& text) {
-        const Answer answer = plan_fibula(inputs);
+        const test::Outcome answer = plan_fibula(inputs);
         CHECK(answer.code == 2);
         CHECK(answer.out.empty());
         CHECK_THAT(answer.err, ContainsSubstring(text));

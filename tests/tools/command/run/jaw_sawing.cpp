@@ -2,6 +2,7 @@
 // The library's saw on the library's jaw, as a hand feels it.
 #include "assets/table/number_table.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/line_amplitude.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,22 +16,7 @@
 
 using namespace tactus;
 
-namespace {
-
-/// Peak amplitude at `hz` of samples at 1 kHz, under a Hann window.
-double line(std::span<const double> samples, double hz) {
-    double mean = 0.0;
-    for (const double x : samples) mean += x / static_cast<double>(samples.size());
-    std::complex<double> sum = 0.0;
-    for (std::size_t n = 0; n < samples.size(); ++n) {
-        const double share = static_cast<double>(n) / static_cast<double>(samples.size());
-        sum += (samples[n] - mean) * (1.0 - std::cos(2.0 * std::numbers::pi * share)) *
-               std::polar(1.0, -2.0 * std::numbers::pi * hz * static_cast<double>(n) / 1000.0);
-    }
-    return 2.0 * std::abs(sum) / static_cast<double>(samples.size());
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw, pushed gently or hard", "[slow]") {
     for (const char* thrust : {"7.5 N", "20 N"}) {
@@ -43,9 +29,10 @@ TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw, pushed 
         for (std::size_t begin = 1500; begin + 2000 <= all.size(); begin += 1000) {
             const std::span<const double> part = std::span(all).subspan(begin, 2000);
             double floor = 0.0;
-            for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0}) floor += line(part, hz) / 8.0;
-            CAPTURE(thrust, begin, floor, line(part, 60.0));
-            CHECK(line(part, 60.0) < floor + 0.01);
+            for (const double hz : {50.0, 52.0, 54.0, 56.0, 64.0, 66.0, 68.0, 70.0})
+                floor += test::line_amplitude(part, hz) / 8.0;
+            CAPTURE(thrust, begin, floor, test::line_amplitude(part, 60.0));
+            CHECK(test::line_amplitude(part, 60.0) < floor + 0.01);
         }
     }
 }
