@@ -54,8 +54,11 @@ public:
         thread_.join();
         if (master_ >= 0) ::close(master_);
     }
-    /// The cable is pulled: the host's line is gone for good.
-    void disconnect() { cut_ = true; }
+    /// The cable is pulled: the host's line is gone for good. Returns when it is.
+    void disconnect() {
+        cut_ = true;
+        while (!is_cut_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
 
     std::string path;
     LineTrouble trouble;
@@ -76,6 +79,7 @@ private:
             if (cut_ && master_ >= 0) {
                 ::close(master_);
                 master_ = -1;
+                is_cut_ = true;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             if (master_ < 0) continue;
@@ -118,7 +122,7 @@ private:
 
     int master_ = -1;
     simulate::Finger finger_;
-    std::atomic<bool> ending_{false}, cut_{false};
+    std::atomic<bool> ending_{false}, cut_{false}, is_cut_{false};
     std::thread thread_;
 };
 
