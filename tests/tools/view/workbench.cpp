@@ -110,7 +110,7 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
 }
 
 TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands",
-          "[slow]") {
+          "[live]") {
     const Folder folder;
     Workbench bench(choice_in(folder));
     bench.run();
@@ -142,7 +142,7 @@ TEST_CASE("edits at the bench reach the run: parameters as such, all else as a n
 }
 
 TEST_CASE("a file saved elsewhere is taken over by what runs, parameters that were turned among it, and can be undone",
-          "[slow]") {
+          "[live]") {
     const Folder folder;
     const RunChoice choice = choice_in(folder);
     Workbench bench(choice);
@@ -195,7 +195,7 @@ TEST_CASE(
     CHECK(slurp(choice.patch) == mine);
 }
 
-TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[slow]") {
+TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[live]") {
     const Folder folder;
     Workbench bench(choice_in(folder));
     CHECK(bench.take().empty());
@@ -240,7 +240,7 @@ TEST_CASE("record pressed while a patch runs leaves the run alone and makes a ta
     CHECK(bench.is_recording());
 }
 
-TEST_CASE("an output that two look at stays looked at when one of them turns away") {
+TEST_CASE("an output that two look at stays looked at when one of them turns away", "[live]") {
     const Folder folder;
     Workbench bench(choice_in(folder));
     bench.run();
