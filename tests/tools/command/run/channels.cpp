@@ -103,6 +103,68 @@ TEST_CASE("each channel of a card plays its own node, sample by sample with the 
     if (!played) tactus::test::skip("this machine was too busy to play without gaps");
 }
 
+TEST_CASE("an edit takes a channel away and brings it back, and the others play on sample by sample", "[live]") {
+    if (!has_server()) return;
+    const Folder folder;
+    const std::string file = folder.write("channels.toml", patch).string();
+    const Outcome done = folder.tactus("render " + file + " --seconds 3 --out " + (folder.path / "r").string());
+    REQUIRE(done.code == 0);
+    const Server server(folder, 256, 8);
+    Recorder recorder(3);
+    INFO(server.said());
+    REQUIRE(recorder.is_there());
+    auto playing = std::async(std::launch::async, [&] {
+        return folder.tactus("run " + file + " --seconds 3 --audio default --audio-margin 500 --out " +
+                             (folder.path / "live").string());
+    });
+    CHECK(recorder.listen_to("tactus:right", 2));
+    CHECK(recorder.listen_to("tactus:left", 0));
+    CHECK(recorder.listen_to("tactus:centre", 1));
+    recorder.wait_for(10'000);
+    std::string without = patch;
+    const std::string wire = "\"middle.signal -> centre.signal\", ", node = "centre = ";
+    without.erase(without.find(wire), wire.size());
+    const std::size_t line = without.find(node);
+    without.erase(line, without.find('\n', line) + 1 - line);
+    folder.write("channels.toml", without);
+    recorder.wait_for(70'000);
+    folder.write("channels.toml", patch);
+    const Outcome outcome = playing.get();
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const json summary = json::parse(slurp(folder.path / "live/summary.json"));
+    const json& sound = summary["sound"][0];
+    INFO(sound.dump());
+    REQUIRE(summary["sound"].size() == 1);
+    CHECK(outcome.err.find("edit 2 takes effect") != std::string::npos);
+    if (sound["underflows"] > 0 || sound["frames_dropped"] > 0 || sound["frames_left_out"] > 0 ||
+        summary["groups"][0]["skipped"] > 0) {
+        tactus::test::skip("this machine was too busy to play without gaps");
+        return;
+    }
+    for (const auto& [k, name] : {std::pair{0, "left"}, {2, "right"}}) {
+        std::vector<float> heard = recorder.heard(static_cast<std::size_t>(k)), wanted = rendered(folder, name);
+        wanted.erase(wanted.begin());
+        REQUIRE(heard.size() >= wanted.size());
+        heard.resize(wanted.size());
+        CHECK(heard == wanted);
+    }
+    // The channel sounds, is silent over one stretch, and sounds again.
+    const std::vector<float> centre = recorder.heard(1), wanted = rendered(folder, "centre");
+    const auto silent = [&](std::size_t at) {
+        return std::all_of(centre.begin() + static_cast<std::ptrdiff_t>(at),
+                           centre.begin() + static_cast<std::ptrdiff_t>(at + 480), [](float x) { return x == 0.0F; });
+    };
+    std::size_t gone = 0;
+    while (gone + 480 < wanted.size() && !silent(gone)) gone += 48;
+    std::size_t back = gone;
+    while (back + 480 < wanted.size() && silent(back)) back += 48;
+    CHECK(gone > 9'000);
+    CHECK(back > gone + 4'800);
+    CHECK(back < wanted.size() - 4'800);
+    CHECK_FALSE(silent(wanted.size() - 4'800));
+}
+
 TEST_CASE("a channel that two nodes play, a card with two rates and an unknown actuator are refused") {
     const Folder folder;
     using Catch::Matchers::ContainsSubstring;
