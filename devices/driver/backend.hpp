@@ -53,8 +53,12 @@ public:
     /// Closes what is open: no force, then all else. Also after an `open` that threw.
     virtual void close() noexcept = 0;
 
-    /// Time from one round to the next; 0: `round` itself waits for the device.
+    /// Time from one round to the next.
     virtual std::int64_t round_ns() const noexcept { return 500'000; }
+
+    /// True when somebody else decides how much there is to read, as at a socket or a line: then the thread runs below
+    /// every tick, so that a flood takes time from nobody.
+    virtual bool is_peer() const noexcept { return false; }
 };
 
 }  // namespace tactus::driver

@@ -40,10 +40,11 @@ private:
     locale_t locale_, before_;
 };
 
-/// As the thread that serves a device in its process: above every group, below the watchdogs.
-void make_real_time() noexcept {
+constexpr int above_groups = 82, below_groups = 5;  // below the watchdogs; above what is not real-time
+
+void make_real_time(int priority) noexcept {
     sched_param parameters{};
-    parameters.sched_priority = 82;
+    parameters.sched_priority = priority;
     ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
 }
 
@@ -112,8 +113,8 @@ bool ThreadedDevice::Shared::serve() noexcept {
     while (!must_end.load(std::memory_order_acquire)) {
         if (!backend->round(*exchange)) return true;
         const std::int64_t step = backend->round_ns(), now = hosted::steady_ns();
-        if (step == 0) continue;
-        next = std::max(next + step, now);
+        // Also a round that takes longer leaves time to others.
+        next = std::max(next + step, now + step / 4);
         hosted::sleep_until(next);
     }
     return false;
@@ -136,7 +137,7 @@ void ThreadedDevice::Shared::run() noexcept {
         fail(error_now.what());
         return;
     }
-    make_real_time();
+    make_real_time(backend->is_peer() ? below_groups : above_groups);
     bool is_open = true;
     while (!must_end.load(std::memory_order_acquire)) {
         if (is_open && !serve()) break;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/catalogue.hpp"
 
+#include "devices/board/serial_board.hpp"
 #include "devices/forcedimension/dhd_device.hpp"
 #include "devices/gripper/serial_gripper.hpp"
 #include "devices/gripper/simulated_gripper.hpp"
+#include "devices/haply/inverse3.hpp"
 #include "devices/haptic/mouse.hpp"
 #include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
 #include "devices/openhaptics/hd_device.hpp"
+#include "devices/spacenav/space_mouse.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,6 +48,26 @@ std::vector<HapticDriver>& drivers() {
          .summary = "3D Systems Touch, Touch X and PHANTOM, by OpenHaptics",
          .is_real = true,
          .backend = openhaptics::make_touch,
+         .is_untested = true},
+        {.name = "haply",
+         .summary = "Haply Inverse3 and Minverse with a VerseGrip, by the maker's service",
+         .is_real = true,
+         .backend = haply::make_inverse3,
+         .is_untested = true},
+        {.name = "haply_2diy",
+         .summary = "Haply's 2diy kit with its first board, on a serial line",
+         .is_real = true,
+         .backend = board::make_haply_2diy,
+         .is_untested = true},
+        {.name = "serial_board",
+         .summary = "a Hapkit, or a pantograph of one's own, with a board that speaks Tactus' frames",
+         .is_real = true,
+         .backend = board::make_serial_board,
+         .is_untested = true},
+        {.name = "space_mouse",
+         .summary = "a hand that a 3D mouse steers, by spacenavd; it yields to force",
+         .is_real = true,
+         .backend = spacenav::make_space_mouse,
          .is_untested = true},
     };
     return all;
