@@ -171,7 +171,7 @@ private:
             if (std::chrono::steady_clock::now() - heard > std::chrono::milliseconds(20)) {
                 held_.clear();
                 const std::lock_guard lock(mutex_);
-                torque_ = {};  // by itself, as boards must
+                if (speaks_frames_) torque_ = {};  // Haply's board holds what it was told last
             }
         }
     }
