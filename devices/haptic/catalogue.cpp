@@ -10,6 +10,7 @@
 #include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
 #include "devices/openhaptics/hd_device.hpp"
+#include "devices/openigtlink/tracker.hpp"
 #include "devices/spacenav/space_mouse.hpp"
 
 #include <fmt/format.h>
@@ -68,6 +69,11 @@ std::vector<HapticDriver>& drivers() {
          .summary = "a hand that a 3D mouse steers, by spacenavd; it yields to force",
          .is_real = true,
          .backend = spacenav::make_space_mouse,
+         .is_untested = true},
+        {.name = "openigtlink",
+         .summary = "a tool that a tracker or 3D Slicer follows, by OpenIGTLink; it gives no force",
+         .is_real = true,
+         .backend = openigtlink::make_tracker,
          .is_untested = true},
     };
     return all;
