@@ -91,6 +91,7 @@
     X(Not, logic)                       \
     X(OnePole, vibration)               \
     X(Onset, event)                     \
+    X(OpenigtlinkOutput, device)        \
     X(Or, logic)                        \
     X(Oscillator, vibration)            \
     X(Panner, vibration)                \

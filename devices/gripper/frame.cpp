@@ -120,7 +120,7 @@ bool FrameReader::look() noexcept {
     while (size_ > 0) {
         const std::uint8_t* p = held_.data();
         const bool sync = p[0] == first_sync && (size_ < 2 || p[1] == second_sync);
-        const bool head = sync && (size_ < 3 || p[2] == version) && (size_ < 4 || p[3] == 1 || p[3] == 2) &&
+        const bool head = sync && (size_ < 3 || p[2] == version) && (size_ < 4 || (p[3] >= 1 && p[3] <= 4)) &&
                           (size_ < header || get16(p + 6) <= most_payload);
         if (!head) {
             if (sync && size_ >= 3) ++counts_.bad_header;

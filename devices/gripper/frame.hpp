@@ -4,7 +4,7 @@
 //     offset  bytes
 //     0       2      A5 5A
 //     2       1      version, 1
-//     3       1      kind: 1 drive (host to controller), 2 sample (controller to host)
+//     3       1      kind: 1 drive (host to controller), 2 sample (controller to host); 3, 4: devices/board/board_frames.hpp
 //     4       2      sequence number of the sender, one more with each frame, wraps
 //     6       2      n, length of the payload, at most 64
 //     8       n      payload
@@ -28,7 +28,7 @@
 
 namespace tactus::gripper {
 
-enum class FrameKind : std::uint8_t { drive = 1, sample = 2 };
+enum class FrameKind : std::uint8_t { drive = 1, sample = 2, torque = 3, joints = 4 };
 
 inline constexpr std::size_t most_payload = 64, frame_overhead = 12;
 

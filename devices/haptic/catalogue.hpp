@@ -2,6 +2,8 @@
 // The catalogue of haptic drivers.
 #pragma once
 
+#include "devices/driver/backend.hpp"
+#include "devices/driver/threaded_device.hpp"
 #include "devices/haptic/replay.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/options.hpp"
@@ -22,11 +24,14 @@ struct HardwareOutline {
 struct HapticDriver {
     std::string name;
     std::string summary;  ///< one line, shown to users
-    std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve);
+    std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve) = nullptr;
     bool is_real = false;  ///< hardware; runs in real time only
     /// Of hardware: reads the options as `open` does and opens nothing. Null: the driver cannot say.
     HardwareOutline (*describe)(Options& options, const PathResolver& resolve) = nullptr;
     bool needs_window = false;  ///< a person at the window of a live run moves it
+    /// Of a device behind a Backend, instead of `open` and `describe`: reads all options.
+    std::unique_ptr<driver::Backend> (*backend)(Options& options) = nullptr;
+    bool is_untested = false;  ///< nobody has tried it with its device
 };
 
 /// All drivers, in the order of listings.
@@ -41,6 +46,10 @@ bool is_real_driver(std::string_view driver);
 
 /// True for a driver that a person at a window moves.
 bool needs_window(std::string_view driver);
+
+/// Opens a device behind a Backend to look at it, whether or not its pushes were confirmed. Throws Error, also for a
+/// driver that has none.
+std::unique_ptr<driver::ThreadedDevice> open_to_look(std::string_view driver, Options& options, driver::OpenMode mode);
 
 /// Opens a device with the options of a patch. `where`: position of the driver's name in the patch. Throws Error for an
 /// unknown driver, listing all, and for invalid options.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/device_host.hpp"
 
+#include "devices/driver/threaded_device.hpp"
 #include "devices/hosted/clocks.hpp"
 #include "devices/hosted/driver_loop.hpp"
 #include "devices/hosted/host_process.hpp"
@@ -15,7 +16,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <clocale>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -49,7 +52,7 @@ public:
         while (!loop_.is_over() && steady_ns() < give_up) sleep_until(steady_ns() + 1'000'000);
         tell(reason);
         // Neither joined nor unwound: who does not return from a driver never will.
-        if (!loop_.is_over()) ::_exit(3);
+        if (!loop_.is_over() || driver::abandoned_threads() > 0) ::_exit(3);
         thread_.join();
         return loop_.has_failed() ? 2 : 0;
     }
@@ -89,6 +92,9 @@ private:
 int run_device_host() noexcept {
     try {
         ::signal(SIGPIPE, SIG_IGN);
+        // Before any thread: vendors' libraries ask for the user's language and then misread their own files.
+        ::setenv("LC_ALL", "C", 1);
+        std::setlocale(LC_ALL, "C");
         if (::fcntl(socket_descriptor, F_SETFD, FD_CLOEXEC) != 0 || ::fcntl(block_descriptor, F_SETFD, FD_CLOEXEC) != 0)
             throw Error("this program runs a driver for tactus, which starts it by itself");
         SharedBlock block = SharedBlock::open(block_descriptor);

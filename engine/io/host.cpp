@@ -199,6 +199,20 @@ RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocatio
     return *opened_.streams.back();
 }
 
+RecordStream& EngineHost::send(const StreamFormat& format, const SourceLocation& where) {
+    std::unique_ptr<Sink> sink = make_null_sink();
+    if (live_) {
+        try {
+            format.keeper->open({});
+        } catch (const Error& error) {
+            throw Error(where, error.message());
+        }
+        sink = std::make_unique<AsyncSink>(format.keeper, format.type->size);
+    }
+    uses_->streams.push_back(opened_.streams.emplace_back(std::make_unique<Stream>(format, std::move(sink))).get());
+    return *opened_.streams.back();
+}
+
 bool EngineHost::service_devices() {
     bool lost = false;
     for (const auto& slot : devices) {

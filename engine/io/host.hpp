@@ -51,6 +51,7 @@ public:
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
+    RecordStream& send(const StreamFormat& format, const SourceLocation& where) override;
 
     /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
     void begin(const patch::Patch& patch);

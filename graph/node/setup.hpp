@@ -107,6 +107,8 @@ public:
     /// Sound for a listener or an actuator: to the sound card in a live run with a card, otherwise to the format's
     /// file. Throws Error.
     virtual RecordStream& audio(const StreamFormat& format, const SoundPlace& place) = 0;
+    /// Values for another program, which the format's keeper sends, in a live run; otherwise they go nowhere. Throws Error.
+    virtual RecordStream& send(const StreamFormat& format, const SourceLocation& where) = 0;
 };
 
 /// What `prepare` is given.

@@ -57,6 +57,8 @@ RecordStream& FakeHost::audio(const StreamFormat& format, const SoundPlace&) {
     return *sounds.emplace_back(std::make_unique<MemoryStream>(format, 1 << 21));
 }
 
+RecordStream& FakeHost::send(const StreamFormat& format, const SourceLocation& where) { return record(format, where); }
+
 struct NodeHarness::InputSlot {
     std::string name;
     Input* port;

@@ -39,6 +39,7 @@ struct FakeHost final : Host {
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
+    RecordStream& send(const StreamFormat& format, const SourceLocation& where) override;
 
     std::map<std::string, std::unique_ptr<DevicePort>> devices;
     bool driven = false;  ///< a node asked to drive one

@@ -19,6 +19,7 @@ public:
     DevicePort& device(const std::string&, DeviceUse, const SourceLocation& where) override { refuse(where); }
     RecordStream& record(const StreamFormat&, const SourceLocation& where) override { refuse(where); }
     RecordStream& audio(const StreamFormat&, const SoundPlace& place) override { refuse(place.where); }
+    RecordStream& send(const StreamFormat&, const SourceLocation& where) override { refuse(where); }
 
 private:
     [[noreturn]] static void refuse(const SourceLocation& where) { throw Error(where, "not of this host"); }

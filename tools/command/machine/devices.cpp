@@ -3,6 +3,7 @@
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/command/machine/look_at_device.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
 
 namespace tactus::command {
 
@@ -18,7 +20,10 @@ namespace {
 int devices(bool json) {
     file::Json list{{"haptic", file::Json::array()}, {"audio", file::Json::array()}};
     for (const haptic::HapticDriver& driver : haptic::haptic_drivers())
-        list["haptic"].push_back({{"driver", driver.name}, {"about", driver.summary}});
+        list["haptic"].push_back({{"driver", driver.name},
+                                   {"about", driver.summary},
+                                   {"real", driver.is_real},
+                                   {"untested_on_hardware", driver.is_untested}});
     std::string no_sound = "none";
     try {
         for (const audio::AudioOutput& output : audio::list_audio_outputs())
@@ -36,7 +41,8 @@ int devices(bool json) {
     }
     fmt::print("haptic drivers\n");
     for (const auto& driver : list["haptic"])
-        fmt::print("  {:<12} {}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>());
+        fmt::print("  {:<16} {}{}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>(),
+                   driver["untested_on_hardware"].get<bool>() ? " (untested on hardware)" : "");
     fmt::print("sound outputs{}\n", list["audio"].empty() ? ": " + no_sound : "");
     for (const auto& output : list["audio"])
         fmt::print("  {} ({}, {:.0f} Hz, {:.1f} ms{})\n", output["name"].get<std::string>(),
@@ -46,9 +52,29 @@ int devices(bool json) {
 }
 
 Action add(VerbOptions& verb) {
-    const auto json = std::make_shared<bool>(false);
-    verb.flag("--json", *json, "as JSON");
-    return [json] { return devices(*json); };
+    struct Choice {
+        std::string probe, verify;
+        DeviceLook look;
+    };
+    const auto choice = std::make_shared<Choice>();
+    Option probe = verb.add("--probe", choice->probe,
+                            "read one real device and give no force: versions, pose, rate, or the step that failed");
+    probe.value_name("DRIVER");
+    Option verify = verb.add("--verify", choice->verify,
+                             "let one real device push gently and say which way: lifts the cap of 0.5 N");
+    verify.value_name("DRIVER").excludes(probe);
+    verb.add("--option", choice->look.options, "of the device, as in a patch; may be given several times")
+        .value_name("NAME=VALUE")
+        .one_each();
+    verb.flag("--json", choice->look.json, "as JSON");
+    return [choice] {
+        if (choice->probe.empty() && choice->verify.empty()) {
+            if (!choice->look.options.empty()) throw Error("--option needs --probe or --verify");
+            return devices(choice->look.json);
+        }
+        choice->look.driver = choice->probe.empty() ? choice->verify : choice->probe;
+        return choice->probe.empty() ? verify_device(choice->look) : probe_device(choice->look);
+    };
 }
 
 }  // namespace

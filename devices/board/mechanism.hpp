@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a board's motors turn: the place of the handle and the torques of a force on it.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <array>
+#include <optional>
+
+namespace tactus::board {
+
+/// Angles in rad, torques in N·m. Frame of the mechanism: x to the right of it, y from the motors to the handle.
+class Mechanism {
+public:
+    /// One motor that moves the handle along x: a sector of this radius in m.
+    static Mechanism sector(double radius) noexcept;
+    /// A five-bar linkage: motors at (−spacing/2, 0) and (spacing/2, 0), angles from x counter-clockwise, the handle on
+    /// the side of larger y. m.
+    static Mechanism pantograph(double proximal, double distal, double spacing) noexcept;
+
+    int motors() const noexcept { return is_sector_ ? 1 : 2; }
+    /// Where the handle is; nothing when the linkage cannot be closed at these angles.
+    std::optional<Vec3> position(const std::array<double, 2>& angles) const noexcept;
+    /// τ = Jᵀ F. Zero where the linkage cannot be closed or is stretched out.
+    std::array<double, 2> torques(const std::array<double, 2>& angles, const Vec3& force) const noexcept;
+
+private:
+    bool is_sector_ = true;
+    double proximal_ = 0.0, distal_ = 0.0, spacing_ = 0.0;
+};
+
+}  // namespace tactus::board

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/haply/inverse3.hpp"
+
+#include "devices/haply/inverse_messages.hpp"
+#include "devices/haply/web_socket.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::haply {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds longest_opening{2000};
+constexpr std::int64_t longest_silence_ns = 250'000'000, tell_again_ns = 5'000'000;
+constexpr int most_at_once = 64;
+constexpr const char* no_device = "the service knows no Inverse3; is it connected and switched on?";
+
+struct Settings {
+    std::string address;
+    int port = 10001;
+    std::size_t force_key = 0;  // auto, vector, values
+    double max_force = 4.0;
+};
+
+class Inverse3 final : public driver::Backend {
+public:
+    explicit Inverse3(Settings settings) : settings_(std::move(settings)) {}
+
+    driver::Outline outline() const override {
+        driver::Outline outline;
+        outline.info = info();
+        try {
+            WebSocket look;
+            look.open(settings_.address, settings_.port, milliseconds(300));
+        } catch (const Error& error) {
+            outline.absence = error.message();
+        }
+        return outline;
+    }
+
+    driver::Opened open(driver::OpenMode mode, const std::shared_ptr<driver::Exchange>&,
+                        const driver::StepLog& step) override {
+        step(fmt::format("connect to the Inverse Service at {}:{}", settings_.address, settings_.port));
+        service_.open(settings_.address, settings_.port, longest_opening);
+        step("hear what devices there are");
+        const InverseState state = first_state();
+        step("check its axes");
+        if (!state.changed_axes.empty())
+            throw Error(fmt::format("the service has {} for this device, so directions would be wrong; reset it in "
+                                    "Haply's hub",
+                                    state.changed_axes));
+        device_ = state.device;
+        key_ = settings_.force_key == 0 ? force_key_of(state.version)
+                                        : (settings_.force_key == 1 ? ForceKey::vector : ForceKey::values);
+        is_first_ = true;
+        waits_ = false;
+        gives_ = mode == driver::OpenMode::run;
+        heard_ns_ = hosted::steady_ns();
+        driver::Opened opened;
+        opened.info = info();
+        if (!state.type.empty()) opened.info.name = fmt::format("Haply {}", state.type);
+        opened.serial = state.device;
+        opened.versions = {state.version.empty() ? "service of unknown version" : "service " + state.version};
+        return opened;
+    }
+
+    /// The service says one state for each text: it is asked again when it has answered, or seems to have lost a text.
+    bool round(driver::Exchange& exchange) noexcept override {
+        try {
+            const std::int64_t now = hosted::steady_ns();
+            if (!waits_ || now - told_ns_ > tell_again_ns) {
+                const Wrench force = gives_ ? exchange.force() : Wrench{};
+                if (!service_.send(force_text(device_, force.force, key_, is_first_))) return false;
+                is_first_ = false;
+                waits_ = true;
+                told_ns_ = now;
+            }
+            WebSocket::Heard heard = service_.receive(milliseconds(2));
+            if (heard == WebSocket::Heard::nothing) return now - heard_ns_ < longest_silence_ns;
+            // Of what waits only the newest counts.
+            for (int i = 0; i < most_at_once && heard == WebSocket::Heard::message; ++i) {
+                newest_ = service_.text();
+                heard = service_.receive(milliseconds(0));
+            }
+            if (heard == WebSocket::Heard::closed) return false;
+            waits_ = false;
+            const std::optional<InverseState> state = read_inverse(newest_);
+            if (!state || !state->has_pose) return now - heard_ns_ < longest_silence_ns;
+            if (state->device != device_ || !state->changed_axes.empty()) return false;
+            heard_ns_ = now;
+            exchange.publish(state->reading);
+            return true;
+        } catch (const std::exception&) {
+            return false;  // no memory for a text
+        }
+    }
+
+    void close() noexcept override {
+        try {
+            if (!device_.empty()) service_.send(force_text(device_, Vec3(0.0), key_, false));
+        } catch (const std::exception&) {
+            // A service that hears nothing lets go by itself.
+        }
+        device_.clear();
+        service_.close();
+    }
+
+    std::int64_t round_ns() const noexcept override { return 500'000; }
+    bool is_peer() const noexcept override { return true; }
+
+private:
+    DeviceInfo info() const {
+        DeviceInfo info;
+        info.name = "Haply Inverse3";
+        info.max_force = settings_.max_force;
+        info.max_stiffness = 1000.0;
+        info.resolution = 50e-6;
+        info.angular_resolution = 2e-3;
+        info.delay = 2e-3;
+        info.senses_rotation = true;
+        return info;
+    }
+
+    InverseState first_state() {
+        const auto until = std::chrono::steady_clock::now() + longest_opening;
+        std::string why = "it says nothing";
+        while (std::chrono::steady_clock::now() < until) {
+            const auto heard = service_.receive(milliseconds(100));
+            if (heard == WebSocket::Heard::closed) throw Error("the service hung up");
+            if (heard == WebSocket::Heard::nothing) continue;
+            std::optional<InverseState> state = read_inverse(service_.text());
+            if (state && !state->device.empty()) return *state;
+            why = no_device;
+        }
+        throw Error(fmt::format("no inventory from the service: {}", why));
+    }
+
+    Settings settings_;
+    WebSocket service_;
+    std::string device_, newest_;
+    ForceKey key_ = ForceKey::vector;
+    bool is_first_ = true, waits_ = false, gives_ = false;
+    std::int64_t told_ns_ = 0, heard_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<driver::Backend> make_inverse3(Options& options) {
+    static const std::vector<std::string> keys{"auto", "vector", "values"};
+    Settings settings;
+    settings.address = options.text("address", "127.0.0.1");
+    settings.port = static_cast<int>(options.quantity("port", "10001", "1", "65535"));
+    settings.force_key = options.choice("force_key", keys, "auto");
+    settings.max_force = options.quantity("max_force", "4 N", "0.1 N", "10 N");
+    return std::make_unique<Inverse3>(std::move(settings));
+}
+
+}  // namespace tactus::haply

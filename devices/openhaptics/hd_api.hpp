@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions of OpenHaptics' device layer (HD, 3.x) that are used, by the vendor's reference, appendix A.
+#pragma once
+
+#include "devices/driver/shared_library.hpp"
+
+#include <string>
+
+namespace tactus::openhaptics {
+
+inline constexpr unsigned invalid_device = 0xFFFFFFFFu;
+
+/// As the vendor returns it, by value.
+struct HdError {
+    unsigned code;
+    int internal;
+    unsigned device;
+};
+
+// Parameters, capabilities, answers.
+inline constexpr unsigned current_buttons = 0x2000, current_transform = 0x2052, current_force = 0x2700,
+                          current_torque = 0x2701;
+inline constexpr unsigned model_type = 0x2501, driver_version = 0x2502, serial_number = 0x2504,
+                          firmware_version = 0x2505, output_freedom = 0x2554, calibration_style = 0x2555,
+                          max_stiffness = 0x2602, max_force = 0x2603, max_torque = 0x2622;
+inline constexpr unsigned force_output = 0x4000, max_force_clamping = 0x4001;
+inline constexpr unsigned calibration_ok = 0x5000, calibration_needs_update = 0x5001;
+/// From here on an error means that the device itself is gone.
+inline constexpr unsigned first_device_error = 0x0300, last_device_error = 0x03FF;
+
+using HdCallback = unsigned (*)(void*);
+inline constexpr unsigned callback_continue = 1;
+
+class HdApi {
+public:
+    /// Throws Error that names a file or function that is missing. `library`: a file, or "" for the usual places.
+    explicit HdApi(const std::string& library);
+
+    const std::string& path() const { return library_.path(); }
+    /// Empties the stack of errors; the text of the oldest, or "".
+    std::string pop_errors() const;
+
+private:
+    driver::SharedLibrary library_;
+
+public:
+    unsigned (*init_device)(const char*) = nullptr;
+    void (*disable_device)(unsigned) = nullptr;
+    void (*make_current)(unsigned) = nullptr;
+    void (*begin_frame)(unsigned) = nullptr;
+    void (*end_frame)(unsigned) = nullptr;
+    HdError (*get_error)() = nullptr;
+    const char* (*error_string)(unsigned) = nullptr;
+    void (*enable)(unsigned) = nullptr;
+    void (*disable)(unsigned) = nullptr;
+    void (*get_double)(unsigned, double*) = nullptr;
+    void (*set_double)(unsigned, const double*) = nullptr;
+    void (*get_integer)(unsigned, int*) = nullptr;
+    const char* (*get_string)(unsigned) = nullptr;
+    unsigned (*check_calibration)() = nullptr;
+    void (*update_calibration)(unsigned) = nullptr;
+    unsigned long (*schedule)(HdCallback, void*, unsigned short) = nullptr;
+    void (*unschedule)(unsigned long) = nullptr;
+    void (*start_scheduler)() = nullptr;
+    void (*stop_scheduler)() = nullptr;
+    void (*set_rate)(unsigned long) = nullptr;  ///< null in old versions: 1 kHz
+};
+
+}  // namespace tactus::openhaptics

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Haply's service: its messages, a WebSocket that is cut, flooded or far too long, and both names of a force.
+#include "devices/haply/inverse3.hpp"
+#include "devices/haply/inverse_messages.hpp"
+#include "devices/haply/web_socket.hpp"
+#include "tests/devices/driver/service_peer.hpp"
+#include "tests/devices/hosted/with_host.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace tactus;
+using namespace tactus::test;
+using Catch::Matchers::ContainsSubstring;
+using haply::MessageReader;
+
+namespace {
+
+std::string frame(int first, const std::string& payload) {
+    std::string out(1, static_cast<char>(first));
+    out += static_cast<char>(payload.size());
+    return out + payload;
+}
+
+void add(MessageReader& reader, const std::string& bytes) { reader.add({bytes.data(), bytes.size()}); }
+
+std::unique_ptr<driver::ThreadedDevice> open(const HaplyService& service, std::vector<OptionText> more = {}) {
+    more.push_back({"port", std::to_string(service.port), {}});
+    Options options = options_of(more);
+    driver::DeviceOptions how{.driver = "haply", .is_untested = false};
+    how.reopen_every = std::chrono::milliseconds(20);
+    auto device = std::make_unique<driver::ThreadedDevice>(haply::make_inverse3(options), how);
+    device->prepare(1e-3);
+    return device;
+}
+
+}  // namespace
+
+TEST_CASE("messages of a WebSocket are put together from any pieces and any parts") {
+    const std::string all = frame(0x01, "one ") + frame(0x89, "ping") + frame(0x00, "two ") + frame(0x80, "three") +
+                            frame(0x81, "next");
+    MessageReader reader;
+    std::vector<std::string> found;
+    for (const char byte : all) {
+        reader.add({&byte, 1});
+        for (auto what = reader.next(); what != MessageReader::Found::nothing; what = reader.next()) {
+            REQUIRE((what == MessageReader::Found::message || what == MessageReader::Found::ping));
+            found.push_back(reader.text());
+        }
+    }
+    CHECK(found == std::vector<std::string>{"ping", "one two three", "next"});
+}
+
+TEST_CASE("what no server may send breaks a WebSocket at once") {
+    for (const std::string& bad :
+         {std::string("\x81\x7f\0\0\0\0\1\0\0\0", 10), frame(0xC1, "x"), std::string("\x81\x81", 2), frame(0x80, "x"),
+          std::string("\x09\x01", 2) + "x", std::string("\x89\x7e\x00\x80", 4), frame(0x83, "x")}) {
+        MessageReader reader;
+        add(reader, bad);
+        CHECK(reader.next() == MessageReader::Found::broken);
+        add(reader, frame(0x81, "good"));
+        CHECK(reader.next() == MessageReader::Found::broken);
+    }
+    MessageReader parts;
+    for (int i = 0; i < 2000; ++i) {
+        add(parts, frame(i == 0 ? 0x01 : 0x00, std::string(100, 'x')));
+        if (parts.next() == MessageReader::Found::broken) return;
+    }
+    FAIL("a message in parts has no end");
+}
+
+TEST_CASE("a client's frame is masked, and its length is written in the right form") {
+    for (const std::size_t size : {std::size_t(5), std::size_t(125), std::size_t(126), std::size_t(70'000)}) {
+        const std::string text(size, 'a'), out = haply::client_frame(1, text, 0x01020304u);
+        const std::size_t head = out.size() - size;
+        CHECK(head == (size < 126 ? 6u : size < 65536 ? 8u : 14u));
+        CHECK((out[1] & 0x80) != 0);
+        CHECK((out[head] ^ out[head - 4]) == 'a');
+        CHECK((out[head + 3] ^ out[head - 1]) == 'a');
+    }
+}
+
+TEST_CASE("a state of the Inverse Service is read, and changed axes are noticed") {
+    const auto state = haply::read_inverse(
+        R"({"version":"3.1.2","inverse3":[{"device_id":"A1","config":{"type":"minverse","mount":{"position":{"x":0,"y":0,"z":0}}},)"
+        R"("state":{"cursor_position":{"x":0.01,"y":-0.02,"z":0.03}}}],)"
+        R"("wireless_verse_grip":[{"state":{"orientation":{"w":0,"x":1,"y":0,"z":0},"buttons":{"a":false,"b":true,"c":true}}}]})");
+    REQUIRE(state);
+    CHECK(state->device == "A1");
+    CHECK(state->type == "minverse");
+    CHECK(state->version == "3.1.2");
+    CHECK(state->has_pose);
+    CHECK(state->reading.pose.position == Vec3(0.01, -0.02, 0.03));
+    CHECK(state->reading.pose.orientation.x == 1.0);
+    CHECK(state->reading.buttons == (4u | 8u));
+    CHECK(state->changed_axes.empty());
+    const auto changed = [](const std::string& config) {
+        return haply::read_inverse(R"({"inverse3":[{"device_id":"A","config":{)" + config + "}}]}")->changed_axes;
+    };
+    CHECK(changed(R"("basis":{"permutation":"XZY"})") == "basis XZY");
+    CHECK(changed(R"("mount":{"rotation":{"w":0.7,"x":0.7,"y":0,"z":0}})") == "a mount that is turned");
+    CHECK(changed(R"("mount":{"position":{"x":0.1,"y":0,"z":0}})") == "a mount that is moved");
+    for (const std::string bad : {"", "[]", "{", "{\"inverse3\":7}", "{\"inverse3\":[]}", "{\"inverse3\":[1e999]}"})
+        CHECK_FALSE(haply::read_inverse(bad));
+    CHECK_FALSE(haply::read_inverse(R"({"inverse3":[{"device_id":"A","state":{"cursor_position":{"x":"1"}}}]})")->has_pose);
+}
+
+TEST_CASE("a force is told by the name that the service's version knows") {
+    CHECK(haply::force_key_of("3.1.0") == haply::ForceKey::values);
+    CHECK(haply::force_key_of("3.5") == haply::ForceKey::vector);
+    CHECK(haply::force_key_of("10.0.1") == haply::ForceKey::vector);
+    CHECK(haply::force_key_of("") == haply::ForceKey::vector);
+    CHECK(haply::force_text("A\"1", {0.5, -1.25, 0.0}, haply::ForceKey::vector, false) ==
+          R"({"inverse3":[{"device_id":"A\"1","commands":{"set_cursor_force":{"vector":{"x":0.5,"y":-1.25,"z":0}}}}]})");
+    CHECK_THAT(haply::force_text("A", {}, haply::ForceKey::values, true), ContainsSubstring("\"name\":\"tactus\""));
+}
+
+TEST_CASE("the service hears its own words, and the program's name once", "[live]") {
+    for (const std::string version : {"3.5.0", "3.1.0"}) {
+        HaplyService service;
+        service.version = version;
+        const auto device = open(service);
+        CHECK(wait_until([&] { return service.texts > 20; }));
+        CHECK(service.greetings == 1);
+        CHECK(service.said_key == (version == "3.5.0" ? "vector" : "values"));
+        CHECK(device->info().name == "Haply inverse3");
+    }
+    HaplyService turned;
+    turned.basis = "XZY";
+    CHECK_THROWS_WITH(open(turned), ContainsSubstring("the service has basis XZY"));
+}
+
+TEST_CASE("a service that lies, floods or hangs up is invalid for less than a second and delays no tick", "[live]") {
+    using Trouble = HaplyService::Trouble;
+    for (const Trouble trouble : {Trouble::huge, Trouble::bad_json, Trouble::half, Trouble::flood}) {
+        CAPTURE(static_cast<int>(trouble));
+        HaplyService service;
+        const auto device = open(service);
+        REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
+        service.trouble = trouble;
+        std::int64_t longest = 0;
+        for (int i = 0; i < 300; ++i) {
+            const std::int64_t begin = hosted::steady_ns();
+            device->commit({});
+            device->acquire(1e-3);
+            longest = std::max(longest, hosted::steady_ns() - begin);
+            hosted::sleep_until(hosted::steady_ns() + ms / 4);
+        }
+        CHECK(longest < 20 * ms);
+        CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
+    }
+}

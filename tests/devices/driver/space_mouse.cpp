@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3D mouse, with a daemon that a test plays. Where Debian's libspnav is installed it hears the same daemon.
+#include "devices/spacenav/space_mouse.hpp"
+
+#include "devices/spacenav/events.hpp"
+#include "tests/devices/driver/peer.hpp"
+#include "tests/devices/hosted/with_host.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+using Event = std::array<std::int32_t, 8>;
+
+Event motion(int x, int y, int z, int rx, int ry, int rz) { return {0, x, y, z, rx, ry, rz, 16}; }
+
+class Daemon {
+public:
+    Daemon() {
+        path = (std::filesystem::temp_directory_path() / ("tactus_spnav_" + std::to_string(::getpid()))).string();
+        listen();
+    }
+    ~Daemon() { leave(); }
+    void listen() {
+        listener_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        std::memcpy(address.sun_path, path.data(), path.size());
+        ::unlink(path.c_str());
+        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address);
+        ::listen(listener_, 4);
+    }
+    void leave() {
+        if (client_ >= 0) ::close(client_);
+        if (listener_ >= 0) ::close(listener_);
+        client_ = listener_ = -1;
+        ::unlink(path.c_str());
+    }
+    void accept() { client_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC); }
+    void send(const Event& event) { send_bytes(event.data(), sizeof event); }
+    void send_bytes(const void* bytes, std::size_t size) {
+        [[maybe_unused]] const auto sent = ::send(client_, bytes, size, MSG_NOSIGNAL);
+    }
+    int client() const { return client_; }
+
+    std::string path;
+
+private:
+    int listener_ = -1, client_ = -1;
+};
+
+std::unique_ptr<driver::ThreadedDevice> open(Daemon& daemon) {
+    Options options = options_of({{"socket", daemon.path, {}}, {"speed", "100 mm/s", {}}});
+    driver::DeviceOptions how{.driver = "space_mouse"};
+    how.reopen_every = std::chrono::milliseconds(20);
+    auto device = std::make_unique<driver::ThreadedDevice>(spacenav::make_space_mouse(options), how);
+    daemon.accept();
+    device->prepare(1e-3);
+    return device;
+}
+
+/// Ticks for that long; the last sample.
+DeviceSample ticks(HapticDevice& device, int count, const Vec3& force = Vec3(0.0)) {
+    DeviceSample sample;
+    for (int i = 0; i < count; ++i) {
+        device.commit({force, {}});
+        sample = device.acquire(1e-3);
+        hosted::sleep_until(hosted::steady_ns() + ms);
+    }
+    return sample;
+}
+
+}  // namespace
+
+TEST_CASE("events of spacenavd are put together from any pieces") {
+    spacenav::EventReader reader;
+    const Event moved = motion(10, -20, 30, 400, -9000, 6);
+    const Event pressed{1, 3, 0, 0, 0, 0, 0, 0}, other{17, 1, 1, 1, 1, 1, 1, 1};
+    std::array<std::uint8_t, 3 * sizeof(Event)> all;
+    std::memcpy(all.data(), moved.data(), sizeof moved);
+    std::memcpy(all.data() + sizeof(Event), other.data(), sizeof other);
+    std::memcpy(all.data() + 2 * sizeof(Event), pressed.data(), sizeof pressed);
+    for (std::size_t i = 0; i < all.size(); i += 5) reader.take({all.data() + i, std::min<std::size_t>(5, all.size() - i)});
+    CHECK(reader.state().deflection == std::array<int, 6>{10, -20, 30, 400, -500, 6});
+    CHECK(reader.state().buttons == 8u);
+    CHECK(reader.state().events == 2);
+}
+
+TEST_CASE("the cap steers the hand: right, up, and away from the user, turns with the right sign", "[live]") {
+    Daemon daemon;
+    const auto device = open(daemon);
+    REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
+    CHECK_FALSE(device->is_capped());
+    const struct {
+        Event event;
+        Vec3 way, turn;
+    } cases[] = {{motion(350, 0, 0, 0, 0, 0), {1, 0, 0}, {}},  {motion(0, 350, 0, 0, 0, 0), {0, 0, 1}, {}},
+                 {motion(0, 0, 350, 0, 0, 0), {0, 1, 0}, {}},  {motion(0, 0, 0, 350, 0, 0), {}, {-1, 0, 0}},
+                 {motion(0, 0, 0, 0, 350, 0), {}, {0, 0, -1}}, {motion(0, 0, 0, 0, 0, 350), {}, {0, -1, 0}}};
+    for (const auto& one : cases) {
+        daemon.send(one.event);
+        const DeviceSample moving = ticks(*device, 150);
+        CAPTURE(one.event[1], one.event[2], one.event[3]);
+        CHECK(glm::length(moving.twist.linear - 0.1 * one.way) < 0.02);
+        CHECK(glm::length(moving.twist.angular - one.turn) < 0.2);
+        daemon.send(motion(0, 0, 0, 0, 0, 0));
+        CHECK(glm::length(ticks(*device, 150).twist.linear) < 0.01);
+    }
+    daemon.send({1, 0, 0, 0, 0, 0, 0, 0});
+    daemon.send({1, 1, 0, 0, 0, 0, 0, 0});
+    CHECK(wait_until([&] { return device->acquire(1e-3).buttons == (1u | 4u); }));
+    daemon.send({2, 0, 0, 0, 0, 0, 0, 0});
+    CHECK(wait_until([&] { return device->acquire(1e-3).buttons == 4u; }));
+    const double before = ticks(*device, 20).pose.position.z;
+    CHECK(ticks(*device, 200, {0.0, 0.0, 4.0}).pose.position.z - before == Approx(2e-3).epsilon(0.1));  // 2 N/mm
+}
+
+TEST_CASE("a daemon that is gone, floods or sends pieces neither delays nor moves the hand by itself", "[live]") {
+    Daemon daemon;
+    const auto device = open(daemon);
+    REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
+    ::fcntl(daemon.client(), F_SETFL, O_NONBLOCK);
+    const Event nothing = motion(0, 0, 0, 0, 0, 0);
+    for (int i = 0; i < 3000; ++i) daemon.send(nothing);
+    CHECK(ticks(*device, 50).valid);
+    daemon.send_bytes(nothing.data(), 7);
+    CHECK(ticks(*device, 50).valid);
+    daemon.leave();
+    CHECK(wait_until([&] { return !device->acquire(1e-3).valid; }, 100));
+    daemon.listen();
+    daemon.accept();
+    CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
+}
+
+TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[live]") {
+    void* const library = ::dlopen("libspnav.so.0", RTLD_NOW | RTLD_LOCAL);
+    if (!library) return skip("libspnav is not installed");
+    Daemon daemon;
+    ::setenv("SPNAV_SOCKET", daemon.path.c_str(), 1);
+    std::thread answer([&] {
+        daemon.accept();
+        // It asks for a newer protocol first; a daemon that knows it says the same.
+        pollfd one{daemon.client(), POLLIN, 0};
+        std::int32_t asked = 0;
+        if (::poll(&one, 1, 1000) > 0 && ::recv(daemon.client(), &asked, sizeof asked, 0) == sizeof asked)
+            daemon.send_bytes(&asked, sizeof asked);
+    });
+    const auto open_it = reinterpret_cast<int (*)()>(::dlsym(library, "spnav_open"));
+    const auto close_it = reinterpret_cast<int (*)()>(::dlsym(library, "spnav_close"));
+    struct Heard {
+        int type, x, y, z, rx, ry, rz;
+        unsigned period;
+        int* data;
+        int room[8];
+    };
+    const auto wait = reinterpret_cast<int (*)(Heard*)>(::dlsym(library, "spnav_wait_event"));
+    REQUIRE(open_it() == 0);
+    answer.join();
+    const Event event = motion(11, -22, 33, -44, 55, -66);
+    daemon.send(event);
+    Heard heard{};
+    CHECK(wait(&heard) == 1);
+    spacenav::EventReader reader;
+    reader.take({reinterpret_cast<const std::uint8_t*>(event.data()), sizeof event});
+    CHECK(std::array<int, 6>{heard.x, heard.y, heard.z, heard.rx, heard.ry, heard.rz} == reader.state().deflection);
+    daemon.send({1, 2, 0, 0, 0, 0, 0, 0});
+    CHECK(wait(&heard) == 2);
+    CHECK(heard.x == 1);  // pressed
+    CHECK(heard.y == 2);  // button
+    close_it();
+    ::unsetenv("SPNAV_SOCKET");
+}

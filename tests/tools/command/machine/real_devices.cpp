@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real devices as a user has them: probed, confirmed, and under the hand of library patches, with stand-ins for the
+// vendors' libraries.
+#include "tests/support/catch.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace tactus::test;
+using Catch::Matchers::ContainsSubstring;
+using nlohmann::json;
+
+namespace {
+
+/// The stand-ins where the drivers look, a folder of settings, and devices that move by themselves.
+class Bench {
+public:
+    Bench() {
+        const fs::path built = fs::path(command()).parent_path() / "tests";
+        fs::create_directories(folder.path / "sdk/lib");
+        fs::create_symlink(built / "libfake_dhd.so", folder.path / "sdk/lib/libdhd.so.3");
+        fs::create_symlink(built / "libfake_hd.so", folder.path / "sdk/lib/libHD.so.3.4");
+        ::setenv("FDSDK", (folder.path / "sdk").c_str(), 1);
+        ::setenv("OH_SDK_BASE", (folder.path / "sdk").c_str(), 1);
+        ::setenv("XDG_CONFIG_HOME", (folder.path / "config").c_str(), 1);
+        ::setenv("FAKE_DEVICE_MOVES", "1", 1);
+    }
+    ~Bench() {
+        for (const char* name : {"FDSDK", "OH_SDK_BASE", "XDG_CONFIG_HOME", "FAKE_DEVICE_MOVES"}) ::unsetenv(name);
+    }
+    Folder folder;
+};
+
+}  // namespace
+
+TEST_CASE("a probe prints pose, rate and versions, or the step that failed", "[live]") {
+    const Bench bench;
+    const Outcome found = bench.folder.tactus("devices --probe force_dimension --json");
+    INFO(found.out << found.err);
+    REQUIRE(found.code == 0);
+    const json report = json::parse(found.out);
+    CHECK(report["serial"] == "4711");
+    CHECK(report["versions"][1] == "SDK 3.17.5.0");
+    CHECK(report["valid"] == true);
+    CHECK(report["rate_hz"].get<double>() > 500.0);
+    CHECK(report["directions_confirmed"] == false);
+    CHECK(std::abs(report["position_mm"][2].get<double>()) <= 40.0);
+    const Outcome missing = bench.folder.tactus("devices --probe touch --option library=/none/libHD.so");
+    CHECK(missing.code == 1);
+    CHECK_THAT(missing.out, ContainsSubstring("FAILED  load OpenHaptics"));
+    CHECK_THAT(missing.out, ContainsSubstring("/none/libHD.so"));
+    CHECK(bench.folder.tactus("devices --probe simulated").code == 2);
+    CHECK(bench.folder.tactus("devices --probe touch --option librari=x").code == 2);
+    CHECK(bench.folder.tactus("devices --option library=x").code == 2);
+    CHECK_THAT(bench.folder.tactus("devices").out, ContainsSubstring("(untested on hardware)"));
+}
+
+TEST_CASE("right answers about pushes lift the cap of that device, a wrong one keeps it", "[live]") {
+    const Bench bench;
+    const fs::path wrong = bench.folder.write("wrong", "right\naway\n"),
+                   right = bench.folder.write("right", "what\nright\ntowards\nup\n");
+    const Outcome no = bench.folder.tactus("devices --verify force_dimension < " + wrong.string());
+    INFO(no.out << no.err);
+    CHECK(no.code == 1);
+    CHECK_THAT(no.out, ContainsSubstring("it should have pushed to 'towards'"));
+    CHECK_FALSE(json::parse(bench.folder.tactus("devices --probe force_dimension --json").out)["directions_confirmed"]);
+    const Outcome yes = bench.folder.tactus("devices --verify force_dimension < " + right.string());
+    INFO(yes.out << yes.err);
+    CHECK(yes.code == 0);
+    CHECK(json::parse(bench.folder.tactus("devices --probe force_dimension --json").out)["directions_confirmed"]);
+    const Outcome ended = bench.folder.tactus("devices --verify touch < /dev/null");
+    CHECK(ended.code == 1);
+    CHECK(json::parse(slurp(bench.folder.path / "config/tactus/devices.json"))["confirmed"].size() == 1);
+}
+
+TEST_CASE("a library patch runs with a device by its driver's name alone, and its take repeats it", "[live]") {
+    const Bench bench;
+    for (const std::string driver : {"force_dimension", "touch"})
+        for (const std::string patch : {"saw-training", "planning-trauma"}) {
+            if (driver == "touch" && patch == "planning-trauma") continue;  // one of each kind
+            CAPTURE(driver, patch);
+            const fs::path take = bench.folder.path / (driver + patch);
+            const Outcome run = bench.folder.tactus("run " + patch + " --set hand.device=" + driver +
+                                                    " --audio none --seconds 2 --record " + take.string() + " --out " +
+                                                    take.string() + "-out");
+            INFO(run.out << run.err);
+            REQUIRE(run.code == 0);
+            CHECK_THAT(run.err, ContainsSubstring("untested on hardware: at most 0.5 N"));
+            const Outcome replay = bench.folder.tactus("replay " + take.string() + " --json");
+            INFO(replay.out << replay.err);
+            REQUIRE(replay.code == 0);
+            CHECK(json::parse(replay.out)["identical"] == true);
+        }
+}
