@@ -84,6 +84,7 @@ void FitEnergy::reserve(std::size_t points, std::size_t outline) {
     }
     kept_.reserve(points);
     chips_.reserve(points);
+    chip_tree_.reserve(points);
     links_.reserve(outline);
     depths_.reserve(2 * (points + outline));
 }
@@ -135,20 +136,17 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
 
 void FitEnergy::leave_out_chips(Side& side) noexcept {
     const std::vector<Vec3>& points = side.points->position;
-    const double reach2 = chip_rim * chip_rim * law.scale * law.scale;
     chips_.clear();
     for (std::size_t i = 0; i < points.size(); i += law.stride)
         if (side.seen[i].inside && side.seen[i].value > law.scale) chips_.push_back(points[i]);
+    chip_tree_.assign(chips_);
     kept_.assign(points.size(), 0.0);
     double before = 0.0, after = 0.0;
     for (std::size_t i = 0; i < points.size(); i += law.stride) {
         if (!(side.weight[i] > 0.0)) continue;
         before += side.weight[i];
-        const bool is_at_chip = std::ranges::any_of(chips_, [&](const Vec3& chip) {
-            const Vec3 apart = chip - points[i];
-            return glm::dot(apart, apart) < reach2;
-        });
-        if (!is_at_chip) after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
+        if (!chip_tree_.has_nearer(points[i], chip_rim * law.scale))
+            after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
     }
     if (after >= least_intact * before) {
         side.weight.swap(kept_);

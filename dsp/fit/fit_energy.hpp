@@ -25,6 +25,7 @@
 
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/fit/fit_surface.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <array>
 #include <cstddef>
@@ -121,6 +122,7 @@ private:
     std::vector<Link> links_;
     std::vector<double> depths_, kept_;
     std::vector<Vec3> chips_;
+    geometry::PointTree chip_tree_;
     std::size_t link_count_ = 0;
     Vec3 opening_{0.0};  ///< at the last look
 };
