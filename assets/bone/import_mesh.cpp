@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/import_steps.hpp"
+#include "assets/bone/mesh_part.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
 #include "assets/volume/length_unit.hpp"
@@ -62,53 +63,99 @@ mesh::Mesh largest_components(const mesh::Mesh& mesh, const mesh::MeshTopology& 
     return kept;
 }
 
-}  // namespace
+/// The part of a layout that covers a box; at least two samples along each axis. Its samples lie where they were.
+volume::Grid part_of(const volume::Grid& layout, const std::array<Vec3, 2>& box) {
+    volume::Grid part = layout;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const auto at = [&](double x) { return (x - layout.origin[axis]) / layout.spacing[axis]; };
+        const int first = static_cast<int>(std::clamp(std::floor(at(box[0][axis])), 0.0, layout.size[a] - 2.0));
+        const int last = static_cast<int>(std::clamp(std::ceil(at(box[1][axis])), first + 1.0, layout.size[a] - 1.0));
+        part.origin[axis] = layout.origin[axis] + first * layout.spacing[axis];
+        part.size[a] = last - first + 1;
+    }
+    return part;
+}
 
-Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
-    if (!options.crop.empty()) throw Error("--crop is for CT volumes; cut the mesh in a mesh editor");
-    const std::size_t keep = parse_component(options.component);
-    report(0.0, "reading");
+struct ReadMesh {
+    mesh::Mesh mesh;  ///< m
     mesh::MeshOrigin origin;
-    mesh::Mesh mesh = mesh::load_mesh(options.input, 1.0, &origin);
-    Vec3 low = mesh.vertices.front(), high = low;
-    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
-    const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
-    const Unit unit = unit_of(options, origin, widest(high - low));
-    for (Vec3& v : mesh.vertices) v *= unit.metres;
-    const mesh::MeshRepair repaired = mesh::repair(mesh, options.input.string());
-    if (!repaired.is_clean()) summary.notes.push_back(repaired.describe());
-    if (origin.without_area > 0)
-        summary.notes.push_back(fmt::format("{} triangles without area dropped", origin.without_area));
-    const mesh::MeshTopology topology = mesh::topology_of(mesh);
-    mesh = largest_components(mesh, topology, keep);
+    Unit unit;
+    std::size_t components = 0;
+};
+
+ReadMesh read_mesh(const ImportOptions& options, std::vector<std::string>& notes) {
+    const std::size_t keep = parse_component(options.component);
+    ReadMesh read;
+    read.mesh = mesh::load_mesh(options.input, 1.0, &read.origin);
+    Vec3 low = read.mesh.vertices.front(), high = low;
+    for (const Vec3& v : read.mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    read.unit = unit_of(options, read.origin, std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
+    for (Vec3& v : read.mesh.vertices) v *= read.unit.metres;
+    const mesh::MeshRepair repaired = mesh::repair(read.mesh, options.input.string());
+    if (!repaired.is_clean()) notes.push_back(repaired.describe());
+    if (read.origin.without_area > 0)
+        notes.push_back(fmt::format("{} triangles without area dropped", read.origin.without_area));
+    const mesh::MeshTopology topology = mesh::topology_of(read.mesh);
+    read.components = topology.components;
+    read.mesh = largest_components(read.mesh, topology, keep);
+    return read;
+}
+
+/// `coarser`: factor on the default spacing.
+volume::Grid layout_of(const mesh::Mesh& mesh, const std::optional<double>& spacing, double coarser = 1.0) {
     const auto corner = [&](const auto& t, std::size_t c) { return mesh.vertices[static_cast<std::size_t>(t[c])]; };
-    low = high = corner(mesh.triangles.front(), 0);
+    Vec3 low = corner(mesh.triangles.front(), 0), high = low;
     for (const auto& t : mesh.triangles)
         for (std::size_t c = 0; c < 3; ++c) low = glm::min(low, corner(t, c)), high = glm::max(high, corner(t, c));
-    volume::Grid layout{{}, {}, Vec3(options.spacing.value_or(std::max(0.4 * mm, widest(high - low) / 400.0))), {}};
+    const Vec3 extent = high - low;
+    const double default_spacing = std::max(0.4 * mm, std::max({extent.x, extent.y, extent.z}) / 400.0);
+    volume::Grid layout{{}, {}, Vec3(spacing.value_or(coarser * default_spacing)), {}};
     layout.origin = low - 4.0 * layout.spacing;
     for (int axis = 0; axis < 3; ++axis) {
         const double steps = std::ceil((high[axis] - low[axis]) / layout.spacing[axis]) + 9.0;
         if (steps > 100000.0) throw Error("the spacing gives more than 100000 voxels along an axis; use a larger one");
         layout.size[static_cast<std::size_t>(axis)] = static_cast<int>(steps);
     }
+    return layout;
+}
+
+}  // namespace
+
+Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
+    if (!options.crop.empty()) throw Error("--crop is for CT volumes; cut the mesh in a mesh editor");
+    report(0.0, "reading");
+    const ReadMesh read = read_mesh(options, summary.notes);
+    const volume::Grid layout = layout_of(read.mesh, options.spacing);
     check_layout(layout, most_mesh_voxels);
     report(0.3, "distance");
     Bone bone;
-    bone.distance = volume::signed_distance(layout, mesh, options.run);
+    bone.distance = volume::signed_distance(layout, read.mesh, options.run);
     bone.density = assumed_density(bone.distance);
     if (options.mesh_density)
         for (std::size_t n = 0; n < bone.density.values.size(); ++n)
             bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
     summary.hu = "none";
-    summary.components = topology.components;
+    summary.components = read.components;
     bone.provenance["calibration"] = options.mesh_density
                                          ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
                                          : assumed_density_law();
     bone.provenance["file_frame"] =
-        fmt::format("{}{}", volume::name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
-    bone.provenance["unit"] = fmt::format("{} m{}", unit.metres, unit.from);
+        fmt::format("{}{}", volume::name_of(read.origin.frame), read.origin.frame_stated ? "" : " (assumed)");
+    bone.provenance["unit"] = fmt::format("{} m{}", read.unit.metres, read.unit.from);
     return bone;
+}
+
+volume::Grid distance_of_mesh(const MeshPart& part) {
+    ImportOptions options;
+    options.input = part.input;
+    options.unit = part.unit;
+    std::vector<std::string> notes;
+    const ReadMesh read = read_mesh(options, notes);
+    volume::Grid layout = layout_of(read.mesh, {}, part.is_coarse ? 2.0 : 1.0);
+    if (part.within) layout = part_of(layout, *part.within);
+    check_layout(layout, most_mesh_voxels);
+    return volume::signed_distance(layout, read.mesh, part.run);
 }
 
 }  // namespace tactus::bone

@@ -2,6 +2,7 @@
 #include "assets/cases/case_bones.hpp"
 
 #include "assets/bone/import.hpp"
+#include "assets/cases/mesh_unit.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/propose_paint.hpp"
 #include "assets/mesh/mesh.hpp"
@@ -18,11 +19,9 @@
 
 namespace tactus::cases {
 
-namespace {
-
 // A plan has no place for a unit, and fragments may be smaller than whole bones: mm, unless a mesh is far too small or
 // too large for that; then import refuses it.
-std::optional<std::string> unit_of(const std::filesystem::path& path) {
+std::optional<std::string> unit_of_file(const std::filesystem::path& path) {
     if (volume::is_volume_file(path)) return "mm";
     mesh::MeshOrigin origin;
     const mesh::Mesh mesh = mesh::load_mesh(path, 1.0, &origin);
@@ -33,14 +32,12 @@ std::optional<std::string> unit_of(const std::filesystem::path& path) {
     return "mm";
 }
 
-}  // namespace
-
 bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run) {
     if (bone::file_of_bone(path).extension() == ".vdb") return bone::load_bone(path);
     bone::ImportOptions options;
     options.input = path;
     options.run = run;
-    options.unit = unit_of(path);
+    options.unit = unit_of_file(path);
     return bone::import_bone(options);
 }
 

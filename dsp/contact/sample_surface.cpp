@@ -3,12 +3,12 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/geometry/point_cubes.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -23,57 +23,6 @@ constexpr double candidates_per_point = 10.0;
 constexpr double finest = 1.0 / 3.0;  // of the spacing, at high curvature
 // Points whose normals differ by more than this lie on different sides of an edge or of a thin wall.
 constexpr double same_side = -0.3;
-
-/// Spatial hash of points by cubes of two radii: a ball touches at most eight of them, its own first.
-class Cubes {
-public:
-    /// `radius`: the greatest of a query.
-    Cubes(std::size_t expected, double radius) : side_(2.001 * radius), head_(std::bit_ceil(expected + 1), none) {}
-
-    void add(const Vec3& p) {
-        const std::size_t slot = slot_of(cell(p.x), cell(p.y), cell(p.z));
-        points_.push_back({p, head_[slot]});
-        head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
-    }
-
-    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
-    /// when two cubes share a slot.
-    template <class Visit>
-    void around(const Vec3& p, double radius, const Visit& visit) const {
-        const std::int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
-        const std::int64_t bx = beside(p.x, x), by = beside(p.y, y), bz = beside(p.z, z);
-        for (int n = 0; n < 8; ++n) {
-            const std::size_t slot = slot_of(x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0));
-            for (std::uint32_t i = head_[slot]; i != none; i = points_[i].next) {
-                const Vec3 apart = points_[i].place - p;
-                const double d2 = glm::dot(apart, apart);
-                if (d2 <= radius * radius && !visit(i, d2)) return;
-            }
-        }
-    }
-
-private:
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-    struct Entry {
-        Vec3 place;
-        std::uint32_t next;  // in the same slot
-    };
-
-    std::int64_t cell(double x) const { return static_cast<std::int64_t>(std::floor(x / side_)); }
-    /// The nearer neighbour of a cube along an axis.
-    std::int64_t beside(double x, std::int64_t cell) const {
-        return x / side_ - static_cast<double>(cell) < 0.5 ? -1 : 1;
-    }
-    std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
-        return mix(bits(x) | bits(y) << 21 | bits(z) << 42) & (head_.size() - 1);
-    }
-
-    double side_;
-    std::vector<std::uint32_t> head_;
-    std::vector<Entry> points_;
-};
 
 struct Candidates {
     std::vector<Vec3> position, normal;
@@ -116,18 +65,50 @@ Candidates scatter(const geometry::TriangleSurface& surface, double per_area, co
     return made;
 }
 
+/// The normals of a cube's points: those who compare with a normal that has at least this cosine with the axis have none
+/// of them more than the allowed turn away.
+struct NormalCone {
+    Vec3 axis{0.0};
+    double enough = 2.0;  // more than any cosine: none
+};
+
+NormalCone cone_of(std::span<const geometry::PackedCubes::Entry> points, double turn) {
+    NormalCone cone;
+    for (const auto& point : points) cone.axis += point.normal;
+    const double length = glm::length(cone.axis);
+    if (!(length > 0.0)) return cone;
+    cone.axis /= length;
+    double least = 1.0;
+    for (const auto& point : points) least = std::min(least, glm::dot(cone.axis, point.normal));
+    // A little narrower, so that rounding leaves out nothing that counts.
+    const double left = 0.999 * turn - std::acos(std::clamp(least, -1.0, 1.0));
+    if (left > 0.0) cone.enough = std::cos(left);
+    return cone;
+}
+
 void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
-    Cubes cubes(all.position.size(), sampling.spacing);
-    for (const Vec3& p : all.position) cubes.add(p);
-    for (std::size_t i = 0; i < all.position.size(); ++i) {
+    const geometry::PackedCubes cubes(all.position, all.normal, sampling.spacing);
+    // Within this turn the radius is at its greatest: cubes whose normals all are count for nothing.
+    std::vector<NormalCone> cones(cubes.slots());
+    for (std::size_t s = 0; s < cones.size(); ++s) cones[s] = cone_of(cubes.in(s), sampling.most_turn);
+    // A turn at which the radius is at its least; a little more, so that rounding changes nothing.
+    const double tight = std::cos(std::min(1.01 * sampling.most_turn / finest, 3.1));
+    const double radius2 = sampling.spacing * sampling.spacing;
+    geometry::PackedCubes::Block block;
+    for (const auto& own : cubes.all()) {
         double least = 1.0;
-        cubes.around(all.position[i], sampling.spacing, [&](std::uint32_t j, double) {
-            const double along = glm::dot(all.normal[i], all.normal[j]);
-            if (along > same_side) least = std::min(least, along);
-            return true;
-        });
+        for (const std::uint32_t slot : cubes.around(own.place, block).slots) {
+            if (glm::dot(own.normal, cones[slot].axis) >= cones[slot].enough) continue;
+            for (const auto& other : cubes.in(slot)) {
+                const Vec3 apart = other.place - own.place;
+                if (!(glm::dot(apart, apart) <= radius2)) continue;
+                const double along = glm::dot(own.normal, other.normal);
+                if (along > same_side) least = std::min(least, along);
+            }
+            if (least < tight) break;
+        }
         const double turn = std::acos(std::clamp(least, -1.0, 1.0));
-        all.radius[i] *= std::clamp(sampling.most_turn / std::max(turn, 1e-9), finest, 1.0);
+        all.radius[own.index] *= std::clamp(sampling.most_turn / std::max(turn, 1e-9), finest, 1.0);
     }
 }
 
@@ -139,7 +120,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(count);
     for (std::uint32_t n = 0; n < count; ++n) order[n] = {random.bits(n), n};
     std::ranges::sort(order);
-    Cubes cubes(count / 8, sampling.spacing);
+    geometry::GrowingCubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
     for (const auto& drawn : order) {
         const std::uint32_t c = drawn.second;
@@ -158,15 +139,26 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     }
     std::vector<SurfacePoint> points;
     for (const std::uint32_t c : kept) points.push_back({all.position[c], all.normal[c], 0.0, surface_label::none});
+    std::vector<Vec3> places, normals;
+    for (const SurfacePoint& point : points) {
+        places.push_back(point.position);
+        normals.push_back(point.normal);
+    }
+    const geometry::PackedCubes owners(places, normals, sampling.spacing);
+    const double radius2 = sampling.spacing * sampling.spacing;
+    geometry::PackedCubes::Block block;
     for (std::size_t i = 0; i < count; ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         std::uint32_t owner = 0;
-        cubes.around(all.position[i], sampling.spacing, [&](std::uint32_t k, double d2) {
-            // Ties go to the lower index, for any order of visits.
-            const bool better = d2 < nearest || (d2 == nearest && k < owner);
-            if (better && glm::dot(all.normal[i], all.normal[kept[k]]) >= same_side) nearest = d2, owner = k;
-            return true;
-        });
+        for (const std::uint32_t slot : owners.around(all.position[i], block).slots)
+            for (const auto& point : owners.in(slot)) {
+                const Vec3 apart = point.place - all.position[i];
+                const double d2 = glm::dot(apart, apart);
+                if (!(d2 <= radius2)) continue;
+                // Ties go to the lower index, for any order of visits.
+                const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
+                if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
+            }
         points[owner].area += all.area[i];
     }
     return points;

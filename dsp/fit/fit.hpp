@@ -41,7 +41,7 @@ struct FitSettings {
     double polish = 0.1e-3;  ///< m, scale of the last steps: with lost bone, a wider one pulls into the gap
     double polish_power = 6.0;  ///< exponent of the collinearity in the last steps
     double intact = 0.1e-3;  ///< m, scale of the very last steps, which leave out what is chipped
-    double kerf = 0.0;  ///< m, width of the bone that a blade took away along the faces; the fit leaves it open
+    double kerf = 0.0;  ///< m, mean width of the bone that was lost all along the faces; the fit leaves it open
     double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: limits of an extended fit's motion from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score

@@ -15,6 +15,7 @@ constexpr double outline_reach2 = 9e-6;  // m²: partners 3 mm apart count half
 constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline has constant force
 constexpr double chip_rim = 6.0;  // scales: how far the rounded rim of a chip reaches
 constexpr double least_intact = 0.2;  // of the weight
+constexpr double least_cosine = 0.5;  // mean of a face's slopes; less is no face with a direction to open along
 
 struct Pull {
     double energy, force, stiffness;  // per weight: force = d energy / d d
@@ -83,6 +84,7 @@ void FitEnergy::reserve(std::size_t points, std::size_t outline) {
     }
     kept_.reserve(points);
     chips_.reserve(points);
+    chip_tree_.reserve(points);
     links_.reserve(outline);
     depths_.reserve(2 * (points + outline));
 }
@@ -109,10 +111,8 @@ void FitEnergy::read(Side& side, const Pose& into) const noexcept {
         return;
     const Mat3 rotation = glm::mat3_cast(into.orientation);
     const std::vector<Vec3>& points = side.points->position;
-    for (std::size_t i = 0; i < points.size(); i += law.stride) {
+    for (std::size_t i = 0; i < points.size(); i += law.stride)
         side.seen[i] = side.field->field.sample(into.position + rotation * points[i]);
-        side.seen[i].value -= law.kerf;
-    }
     side.seen_at = into;
     side.seen_stride = law.stride;
 }
@@ -136,20 +136,17 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
 
 void FitEnergy::leave_out_chips(Side& side) noexcept {
     const std::vector<Vec3>& points = side.points->position;
-    const double reach2 = chip_rim * chip_rim * law.scale * law.scale;
     chips_.clear();
     for (std::size_t i = 0; i < points.size(); i += law.stride)
         if (side.seen[i].inside && side.seen[i].value > law.scale) chips_.push_back(points[i]);
+    chip_tree_.assign(chips_);
     kept_.assign(points.size(), 0.0);
     double before = 0.0, after = 0.0;
     for (std::size_t i = 0; i < points.size(); i += law.stride) {
         if (!(side.weight[i] > 0.0)) continue;
         before += side.weight[i];
-        const bool is_at_chip = std::ranges::any_of(chips_, [&](const Vec3& chip) {
-            const Vec3 apart = chip - points[i];
-            return glm::dot(apart, apart) < reach2;
-        });
-        if (!is_at_chip) after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
+        if (!chip_tree_.has_nearer(points[i], chip_rim * law.scale))
+            after += kept_[i] = side.weight[i] * intact_weight(side.seen[i].value / law.scale);
     }
     if (after >= least_intact * before) {
         side.weight.swap(kept_);
@@ -184,9 +181,25 @@ void FitEnergy::link(const Pose& pose) noexcept {
     }
 }
 
+Vec3 FitEnergy::opening(const Pose& pose) const noexcept {
+    if (!(law.kerf > 0.0)) return Vec3(0.0);
+    // The length of a mean normal is the mean cosine of the relief's slopes, so that a gap along it is wider than the
+    // distance of the surfaces.
+    const Vec3 &fixed = fixed_->mean_normal, both = 0.5 * (fixed - pose.rotate(moving_->mean_normal));
+    const Vec3& normal = glm::length(both) > least_cosine ? both : fixed;
+    const double length = glm::length(normal);
+    return length > 0.0 ? law.kerf / std::max(length, least_cosine) / length * normal : Vec3(0.0);
+}
+
+Pose FitEnergy::closed(const Pose& pose, const Vec3& opening) noexcept {
+    return {pose.position - opening, pose.orientation};
+}
+
 void FitEnergy::look(const Pose& pose) noexcept {
-    look(sides_[0], pose);
-    if (law.two_sided) look(sides_[1], pose.inverse());
+    opening_ = opening(pose);
+    const Pose shut = closed(pose, opening_);
+    look(sides_[0], shut);
+    if (law.two_sided) look(sides_[1], shut.inverse());
     link(pose);
 }
 
@@ -238,8 +251,9 @@ void FitEnergy::add_outline(contact::ContactSum& sum, const Pose& pose) const no
 
 contact::ContactSum FitEnergy::operator()(const Pose& pose, contact::ContactParts) noexcept {
     contact::ContactSum sum;
-    add(sum, sides_[0], pose, pose, 1.0);
-    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0);
+    const Pose shut = closed(pose, opening_);
+    add(sum, sides_[0], shut, shut, 1.0);
+    if (law.two_sided) add(sum, sides_[1], shut, shut.inverse(), -1.0);
     add_outline(sum, pose);
     mirror(sum.stiffness);
     return sum;
@@ -247,14 +261,16 @@ contact::ContactSum FitEnergy::operator()(const Pose& pose, contact::ContactPart
 
 contact::ContactSum FitEnergy::look_at_half(FitHalf half, const Pose& pose) noexcept {
     contact::ContactSum sum;
+    opening_ = opening(pose);
+    const Pose shut = closed(pose, opening_);
     if (half == FitHalf::moving_points) {
-        look(sides_[0], pose);
+        look(sides_[0], shut);
         link(pose);
-        add(sum, sides_[0], pose, pose, 1.0);
+        add(sum, sides_[0], shut, shut, 1.0);
         add_outline(sum, pose);
     } else if (law.two_sided) {
-        look(sides_[1], pose.inverse());
-        add(sum, sides_[1], pose, pose.inverse(), -1.0);
+        look(sides_[1], shut.inverse());
+        add(sum, sides_[1], shut, shut.inverse(), -1.0);
     }
     mirror(sum.stiffness);
     return sum;
@@ -265,24 +281,26 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     double squares = 0.0, covered = 0.0, signed_sum = 0.0, area = 0.0;
     std::size_t seen = 0;
     const Pose poses[2] = {pose, pose.inverse()};
+    const Pose shut = closed(pose, opening(pose)), closed_poses[2] = {shut, shut.inverse()};
     for (std::size_t s = 0; s < 2; ++s) {
         const Mat3 rotation = glm::mat3_cast(poses[s].orientation);
         const FitSurface& points = *sides_[s].points;
         const contact::Voxmap& field = sides_[s].field->field;
         for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
-            const Vec3 at = poses[s].position + rotation * points.position[i];
-            const volume::Sample here = field.sample(at);
+            const volume::Sample there = field.sample(poses[s].position + rotation * points.position[i]);
+            if (there.inside) depths_[seen++] = there.value;
+            const Vec3 at = closed_poses[s].position + rotation * points.position[i];
+            const volume::Sample here = law.kerf > 0.0 ? field.sample(at) : there;
             if (!here.inside) continue;
-            depths_[seen++] = here.value;
             const double against = std::clamp(-glm::dot(rotation * points.normal[i], here.gradient), 0.0, 1.0);
-            const double off = here.value - law.kerf;
+            const double off = here.value;
             if (!(against > 0.0) || std::abs(off) > 5.0 * sigma || !sides_[s].field->is_painted_near(at)) continue;
             const double share = points.share[i] * static_cast<double>(law.stride);
             q.score += 0.5 * share * against * std::exp(-0.5 * off * off / (sigma * sigma));
             if (std::abs(off) > 2.0 * sigma || against < 0.7) continue;
             covered += share;
             squares += share * off * off;
-            signed_sum += share * here.value;
+            signed_sum += share * there.value;
             area += 0.5 * share * points.area;
             if (s == 0) q.overlap += share * points.area;
         }

@@ -17,10 +17,15 @@
 // points of the outline pull along ½(n_x + n_y) towards their nearest partner y, which is zero for two points of one
 // circular arc, so that a curved contour continues without a step. The weights are those of the last update: they are
 // constant within one solve, so that the energy has the stated gradient.
+//
+// A kerf is bone that was lost all along. Both faces are those of one fracture that opened along its mean normal: the
+// energy at a pose is that of the closed faces, with the moving one shifted back by the opening. The distance of rough
+// faces varies with their slopes, so that it says less: w is the mean distance, and w / (mean cosine) the opening.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/fit/fit_surface.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <array>
 #include <cstddef>
@@ -46,7 +51,7 @@ struct FitLaw {
     double outline = 0.0;  ///< weight of the outline relative to the paint
     double contact = 0.0;  ///< N/m for each moving point that is inside of the fixed bone
     std::size_t stride = 1;  ///< uses every n-th painted point
-    double kerf = 0.0;  ///< m, width of the bone that was lost all along: d is the distance less this
+    double kerf = 0.0;  ///< m, mean width of the bone that was lost all along, see FitEnergy
 };
 
 /// How well two surfaces fit at a pose.
@@ -57,7 +62,7 @@ struct FitQuality {
     double overlap = 0.0;  ///< m² of the moving paint that is covered
     double share = 0.0;  ///< covered area of both, on average, as a share of the smaller paint; at most 1
     double penetration = 0.0;  ///< m, exceeded by 1 % of the points of paint and outline of both sides
-    double gap = 0.0;  ///< m, mean signed distance within the overlap, kerf included: positive when bone is missing
+    double gap = 0.0;  ///< m, mean signed distance of what overlaps, kerf included: positive when bone is missing
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline
 };
 
@@ -100,6 +105,9 @@ private:
         double weight = 0.0;
     };
 
+    /// How far the moving face has opened at this pose, m, fixed frame; zero without a kerf.
+    Vec3 opening(const Pose& pose) const noexcept;
+    static Pose closed(const Pose& pose, const Vec3& opening) noexcept;
     /// Samples the field at all points, unless the last call had the same pose: most poses are evaluated twice.
     void read(Side& side, const Pose& into) const noexcept;
     void look(Side& side, const Pose& into) noexcept;
@@ -114,7 +122,9 @@ private:
     std::vector<Link> links_;
     std::vector<double> depths_, kept_;
     std::vector<Vec3> chips_;
+    geometry::PointTree chip_tree_;
     std::size_t link_count_ = 0;
+    Vec3 opening_{0.0};  ///< at the last look
 };
 
 }  // namespace tactus::fit

@@ -22,11 +22,24 @@ namespace tactus::geometry {
 /// are left out by their distance from the place on all axes (Arya and Mount 1993).
 class PointTree {
 public:
-    explicit PointTree(std::span<const Vec3> points)
-        : index_(points.size()), rank_(points.size()), axis_(points.size(), 0) {
+    PointTree() = default;
+    explicit PointTree(std::span<const Vec3> points) { assign(points); }
+
+    /// Memory for this many points.
+    void reserve(std::size_t points) {
+        points_.reserve(points);
+        index_.reserve(points);
+        rank_.reserve(points);
+        axis_.reserve(points);
+    }
+    /// Replaces the points; does not allocate within the reserved memory.
+    void assign(std::span<const Vec3> points) {
+        index_.resize(points.size());
+        rank_.resize(points.size());
+        axis_.assign(points.size(), 0);
         std::iota(index_.begin(), index_.end(), std::uint32_t{0});
         arrange(points, 0, points.size());
-        points_.reserve(points.size());
+        points_.clear();
         for (std::size_t n = 0; n < points.size(); ++n) {
             points_.push_back(points[index_[n]]);
             rank_[index_[n]] = static_cast<std::uint32_t>(n);
@@ -34,6 +47,14 @@ public:
     }
 
     bool empty() const noexcept { return points_.empty(); }
+
+    /// Whether a point is nearer to `place` than `distance`, m. Does not allocate.
+    bool has_nearer(const Vec3& place, double distance) const noexcept {
+        // Nothing at this distance or beyond is found; the search ends at the first point within.
+        Search search{place, distance * distance, 0, false};
+        if (!points_.empty()) look_for_any(search, 0, points_.size(), Vec3(0.0), 0.0);
+        return search.is_found;
+    }
 
     /// Index of the nearest point, the lowest of several; 0 for an empty tree. Does not allocate.
     std::size_t nearest(const Vec3& place) const noexcept {
@@ -54,7 +75,35 @@ private:
         Vec3 place;
         double least;
         std::uint32_t best;
+        bool is_found = false;
     };
+
+    void look_for_any(Search& search, std::size_t first, std::size_t last, const Vec3& outside,
+                      double away2) const noexcept {
+        const auto is_near = [&](std::size_t n) {
+            const Vec3 difference = search.place - points_[n];
+            return search.is_found = glm::dot(difference, difference) < search.least;
+        };
+        if (last - first <= leaf) {
+            for (std::size_t n = first; n < last; ++n)
+                if (is_near(n)) return;
+            return;
+        }
+        const std::size_t middle = (first + last) / 2;
+        const int axis = axis_[middle];
+        const double side = search.place[axis] - points_[middle][axis];
+        const auto half = [&](bool lower, const Vec3& from, double from2) {
+            if (lower) look_for_any(search, first, middle, from, from2);
+            else look_for_any(search, middle + 1, last, from, from2);
+        };
+        half(side < 0.0, outside, away2);
+        if (search.is_found || is_near(middle)) return;
+        const double other2 = away2 + side * side - outside[axis] * outside[axis];
+        if (other2 * (1.0 - 1e-12) > search.least) return;
+        Vec3 beyond = outside;
+        beyond[axis] = side;
+        half(!(side < 0.0), beyond, other2);
+    }
 
     std::size_t found(Search search) const noexcept {
         if (points_.empty()) return 0;

@@ -25,8 +25,9 @@ TEST_CASE("dsp: the gradient of the fit is the slope of its energy, in every mod
     const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
     const fit::FitSurface moving = a.surface(), fixed = b.surface();
     fit::FitEnergy energy(moving, fixed);
-    for (const bool is_robust : {true, false}) {
+    for (const auto& [is_robust, kerf] : {std::pair(true, 0.0), std::pair(true, 0.7 * mm), std::pair(false, 0.0)}) {
         energy.law = {};
+        energy.law.kerf = kerf;
         energy.law.kernel = is_robust ? fit::FitKernel::robust : fit::FitKernel::steady;
         energy.law.scale = 1.0 * mm;
         energy.law.outline = is_robust ? 0.3 : 0.0;
@@ -77,6 +78,11 @@ TEST_CASE("dsp: looking and evaluating take no memory") {
     const RealtimeViolations seen = watch([&] {
         energy.look(Pose{});
         sum = energy(Pose{}, contact::ContactParts::all);
+        energy.law.kernel = fit::FitKernel::intact;
+        energy.law.scale = 0.1 * mm;
+        energy.law.kerf = 0.5 * mm;
+        energy.look(Pose{});
+        energy.quality(Pose{}, 0.2 * mm);
     });
     CHECK(seen.allocations == 0);
     CHECK(seen.releases == 0);

@@ -3,6 +3,8 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/fit/joint_refinement.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/volume/surface_distance.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
 
@@ -197,6 +199,71 @@ TEST_CASE("dsp: a kerf that is told stays open, from nearby and from anywhere") 
     REQUIRE_FALSE(pairs.empty());
     fit::refine_jointly(matcher, pairs, body, std::vector<char>{0, 1}, both);
     CHECK(error_of(near_side, both[0]) < 0.12 * mm);
+}
+
+namespace {
+
+/// The same half with true distances: those of `bar_half` are along the bar, which are none beside a steep relief.
+Half measured(Half half) {
+    half.distance = volume::signed_distance(
+        half.distance, geometry::iso_surface(half.distance, 0.0f, /*inside_above=*/false), run_in_turn);
+    return half;
+}
+
+/// Mean cosine of the slopes of a break, over the area of its surface.
+double mean_cosine(const Relief& relief) {
+    double flat = 0.0, area = 0.0;
+    for (double y = -5.0 * mm; y < 5.0 * mm; y += 0.1 * mm)
+        for (double z = -9.0 * mm; z < 9.0 * mm; z += 0.1 * mm) {
+            const double h = 0.01 * mm;
+            const double along_y = (relief(y + h, z) - relief(y - h, z)) / (2.0 * h);
+            const double along_z = (relief(y, z + h) - relief(y, z - h)) / (2.0 * h);
+            flat += 1.0;
+            area += std::hypot(1.0, along_y, along_z);
+        }
+    return flat / area;
+}
+
+}  // namespace
+
+TEST_CASE("dsp: rough faces that lost bone all along stay open and straight to the far end of a shaft", "[slow]") {
+    for (const std::uint64_t seed : {3u, 8u}) {
+        CAPTURE(seed);
+        const Relief coarse = rough_relief(seed, 0.8 * mm), fine = rough_relief(seed + 100, 0.3 * mm);
+        const Relief rough = [&](double y, double z) { return coarse(y, z) + fine(2.5 * y, 2.5 * z); };
+        const BarOptions lost{.voxel = Vec3(0.35 * mm), .gap = 0.8 * mm};
+        const Half near_side = measured(bar_half(-1.0, rough, lost)), far_side = measured(bar_half(1.0, rough, lost));
+        const std::vector<fit::FragmentSurface> surfaces{surface_of(near_side), surface_of(far_side)};
+        fit::MatcherSettings settings;
+        settings.fit.kerf = mean_cosine(rough) * 0.8 * mm;  // between the faces; 0.8 mm along the bar
+        fit::FragmentMatcher matcher(surfaces, settings);
+        const fit::FragmentMatch open =
+            matcher.near(0, std::vector<Pose>{beside(2 * mm, 6 * degree, seed), {}}, std::vector<char>{0, 1});
+        REQUIRE(open.verdict == fit::FitVerdict::fit);
+        CHECK(glm::length(rotation_between(Quat(1.0, 0.0, 0.0, 0.0), open.pose.orientation)) < 0.25 * degree);
+        const Vec3 end(-150.0 * mm, 0.0, 0.0);
+        CHECK(glm::length(open.pose.apply(end) - end) < 0.5 * mm);
+        CHECK(open.quality.gap > 0.5 * mm);
+        CHECK(open.quality.gap < 0.8 * mm);
+    }
+}
+
+TEST_CASE("dsp: the faces of a saw cut stay parallel and as far apart as its blade is thick") {
+    const Relief flat = [](double y, double) { return 0.3 * y; };  // cut askew
+    const Half near_side = measured(bar_half(-1.0, flat, {.gap = 1.0 * mm}));
+    const Half far_side = measured(bar_half(1.0, flat, {.gap = 1.0 * mm}));
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(near_side), surface_of(far_side)};
+    fit::MatcherSettings settings;
+    settings.fit.kerf = 1.0 * mm / std::hypot(1.0, 0.3);
+    fit::FragmentMatcher matcher(surfaces, settings);
+    const fit::FragmentMatch open =
+        matcher.near(0, std::vector<Pose>{beside(2 * mm, 4 * degree, 7), {}}, std::vector<char>{0, 1});
+    // It may slide and spin on a flat face, and says so; across the face it is where it was.
+    CHECK(open.verdict == fit::FitVerdict::sliding);
+    const Vec3 normal = glm::normalize(Vec3(1.0, -0.3, 0.0));
+    CHECK(std::abs(glm::dot(open.pose.apply(Vec3(0.0)), normal)) < 0.03 * mm);
+    CHECK(glm::length(open.pose.rotate(normal) - normal) < 0.1 * degree);
+    CHECK(open.quality.gap == Approx(settings.fit.kerf).margin(0.03 * mm));
 }
 
 TEST_CASE("dsp: faces that slide on each other fit with the healthy side in the same fit") {

@@ -29,7 +29,7 @@ constexpr double goal_angle = 0.25, goal_error = 0.5e-3;  // degrees, m
 
 struct ShaftsChoice {
     int first = 0, count = 20;
-    double chips = 0.2, kerf = 0.0;  // share, mm
+    double chips = 0.2, kerf = 0.0, roughness = 0.8;  // share, mm, mm
     bool told = false, json = false;
     std::filesystem::path bone;
 };
@@ -55,6 +55,7 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
     settings.seed = 7001 + static_cast<std::uint64_t>(number);
     settings.chips = choice.chips;
     settings.kerf = choice.kerf * 1e-3;
+    settings.roughness = choice.roughness * 1e-3;
     std::vector<study::CaseFragment> fragments;
     std::vector<Pose> place;
     study::break_and_scan(bone, settings, [&](study::ScannedFragment one) {
@@ -150,6 +151,9 @@ Verb shafts_verb() {
             verb.add("--count", choice->count, "number of shafts").shows_default().range(1, 10'000);
             verb.add("--chips", choice->chips, "share of the faces that is chipped").shows_default().range(0.0, 0.9);
             verb.add("--kerf", choice->kerf, "mm of bone lost along the faces").shows_default().range(0.0, 4.0);
+            verb.add("--roughness", choice->roughness, "mm rms of the faces' relief; 0.1 is a saw cut")
+                .shows_default()
+                .range(0.0, 4.0);
             verb.flag("--told", choice->told, "the fit knows the kerf");
             verb.add("--bone", choice->bone, "file of the long bone (default: the library's fibula)");
             verb.flag("--json", choice->json, "as JSON");

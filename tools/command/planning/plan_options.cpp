@@ -9,7 +9,8 @@ void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
 }
 
 void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
-    verb.add("--kerf", choice.kerf, "mm of bone that a blade took away along nearly flat faces; the fit leaves it open")
+    verb.add("--kerf", choice.kerf,
+             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open")
         .shows_default()
         .range(0.0, 4.0);
     verb.flag("--healthy", choice.with_healthy,

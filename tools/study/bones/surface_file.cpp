@@ -23,10 +23,10 @@ geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, con
     return mesh::export_surface(bone.distance);
 }
 
-std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path) {
+std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing) {
     if (!is_mesh(path)) {
         const bone::Bone bone = bone_of_file(path);
-        return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
+        return bone.points.empty() ? contact::sample_surface(bone.distance, {.spacing = spacing}) : bone.points;
     }
     const mesh::Mesh mesh = mesh::load_mesh(path, 1e-3);
     std::vector<contact::SurfacePoint> points(mesh.vertices.size());

@@ -16,8 +16,9 @@ namespace tactus::study {
 bool is_mesh(const std::filesystem::path& path);
 /// The surface in the frame of the file, m: triangles of a mesh, or the zero surface of a bone.
 geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone);
-/// The vertices of a mesh, or the surface points of a bone. Meshes need not be closed. Throws Error.
-std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path);
+/// The vertices of a mesh, or the surface points of a bone; `spacing`, m: of a bone without points. Meshes need not be
+/// closed. Throws Error.
+std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing = 0.5e-3);
 
 /// Rotation angle of a pose, degrees.
 double angle_deg(const Pose& pose);

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_mirror.hpp"
 
+#include "assets/bone/mesh_part.hpp"
+#include "assets/cases/mesh_unit.hpp"
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/study/bones/kept_numbers.hpp"
 #include "tools/study/bones/kept_result.hpp"
+#include "tools/study/workers.hpp"
+
+#include <glm/common.hpp>
+
+#include <limits>
 
 namespace tactus::study {
 
@@ -10,7 +19,11 @@ namespace {
 
 // To be raised with every change of code that changes a registration: dsp/fit/registration.cpp, mirror.cpp, gap.cpp,
 // sampling and import of what is registered.
-constexpr int algorithm = 1;
+constexpr int algorithm = 2;
+
+// m: of surfaces that only a registration uses; it takes some thousand points, and distances are from their planes.
+constexpr double registered_spacing = 1e-3;
+constexpr double beside = 8e-3;  // m around a fragment: more than the distance of faces that face each other
 
 }  // namespace
 
@@ -21,10 +34,9 @@ MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::pat
     cases::CasePlan named;
     cases::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
     ResultKey key("mirrored side on a fragment", algorithm);
-    key.add_file(healthy).add_file(cases::file_of(plan.fragments[static_cast<std::size_t>(main)].file, folder));
-    NumberReader read(known(key, mirror_fit_numbers, [&] {
-        return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), loaded(main_).bone.points));
-    }));
+    key.add_file(healthy).add_file(file_of_fragment(main));
+    NumberReader read(known(key, mirror_fit_numbers,
+                            [&] { return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), main_points())); }));
     fit_ = read.mirror_fit();
     target_.file = named.fragments[0].file;
     target_.hash = named.fragments[0].hash;
@@ -43,6 +55,10 @@ std::vector<double> MirrorStudy::known(const ResultKey& key, std::size_t count,
     return numbers;
 }
 
+std::filesystem::path MirrorStudy::file_of_fragment(int fragment) const {
+    return cases::file_of(plan_.fragments[static_cast<std::size_t>(fragment)].file, folder_);
+}
+
 const CaseFragment& MirrorStudy::loaded(int fragment) {
     auto& one = loaded_[static_cast<std::size_t>(fragment)];
     if (!one) one = load_fragment(plan_.fragments[static_cast<std::size_t>(fragment)], folder_);
@@ -50,8 +66,39 @@ const CaseFragment& MirrorStudy::loaded(int fragment) {
 }
 
 const std::vector<contact::SurfacePoint>& MirrorStudy::healthy_points() {
-    if (points_.empty()) points_ = points_of_file(healthy_);
+    if (points_.empty()) points_ = points_of_file(healthy_, registered_spacing);
     return points_;
+}
+
+std::vector<contact::SurfacePoint> MirrorStudy::main_points() {
+    const std::filesystem::path file = file_of_fragment(main_);
+    if (!is_mesh(file)) return loaded(main_).bone.points;
+    try {
+        const volume::Grid coarse = bone::distance_of_mesh(
+            {.input = file, .unit = cases::unit_of_file(file), .is_coarse = true, .within = {}, .run = on_threads()});
+        std::vector<contact::SurfacePoint> points = contact::sample_surface(coarse, {.spacing = registered_spacing});
+        if (!points.empty()) return points;
+    } catch (const Error&) {
+        // Loading it whole says the same, and names the fragment.
+    }
+    return loaded(main_).bone.points;
+}
+
+contact::Voxmap MirrorStudy::main_map(int other, std::span<const Pose> poses) {
+    const std::filesystem::path file = file_of_fragment(main_);
+    if (!is_mesh(file)) return loaded(main_).map;
+    // A whole bone in fine voxels takes most of the time; only what is near the other fragment is looked at.
+    std::array<Vec3, 2> box{Vec3(std::numeric_limits<double>::infinity()),
+                            Vec3(-std::numeric_limits<double>::infinity())};
+    for (const Pose& pose : poses) {
+        const Pose into = stands_.inverse() * pose;
+        for (const contact::SurfacePoint& p : loaded(other).bone.points) {
+            box[0] = glm::min(box[0], into.apply(p.position) - Vec3(beside));
+            box[1] = glm::max(box[1], into.apply(p.position) + Vec3(beside));
+        }
+    }
+    return contact::make_voxmap(bone::distance_of_mesh(
+        {.input = file, .unit = cases::unit_of_file(file), .is_coarse = false, .within = box, .run = on_threads()}));
 }
 
 const fit::RegistrationTarget& MirrorStudy::surface() {
@@ -59,11 +106,11 @@ const fit::RegistrationTarget& MirrorStudy::surface() {
     return *surface_;
 }
 
-FacesThere MirrorStudy::faces_there(int moving, const Pose& at) {
-    const CaseFragment &other = loaded(moving), &main = loaded(main_);
-    const fit::SurfaceGap gap = fit::gap_between(other.bone.points, at, main.map, stands_);
+FacesThere MirrorStudy::faces_there(int moving, const Pose& at, const contact::Voxmap& main) {
+    const CaseFragment& other = loaded(moving);
+    const fit::SurfaceGap gap = fit::gap_between(other.bone.points, at, main, stands_);
     return {gap.facing_area, gap.contact_area, gap.median, gap.deepest,
-            fit::overlap_volume(other.bone.distance, at, main.map, stands_)};
+            fit::overlap_volume(other.bone.distance, at, main, stands_)};
 }
 
 namespace {
@@ -93,8 +140,7 @@ MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
     constexpr std::size_t count = registration_numbers + 12;
     const auto key_at = [&](const Pose& pose) {
         ResultKey key("fragment on the mirrored side", algorithm);
-        for (const int n : {main_, other})
-            key.add_file(cases::file_of(plan_.fragments[static_cast<std::size_t>(n)].file, folder_));
+        for (const int n : {main_, other}) key.add_file(file_of_fragment(n));
         key.add_file(healthy_);
         for (const Pose& p : {target_.pose, stands_, pose}) add_pose(key, p);
         return key;
@@ -106,8 +152,9 @@ MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
         const std::vector<contact::SurfacePoint>& points = loaded(other).bone.points;
         made.registration = fit::register_surface(points, surface(), from, settings);
         made.away = motion_between(from, made.registration.pose, middle_of(points));
-        made.before = faces_there(other, from);
-        made.after = faces_there(other, made.registration.pose);
+        const contact::Voxmap main = main_map(other, std::array{from, made.registration.pose});
+        made.before = faces_there(other, from, main);
+        made.after = faces_there(other, made.registration.pose, main);
         // A fragment that has been moved there is there.
         MirrorComparison there = made;
         there.registration.before = made.registration.median;

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,11 @@ private:
     const CaseFragment& loaded(int fragment);
     const std::vector<contact::SurfacePoint>& healthy_points();
     const fit::RegistrationTarget& surface();
-    FacesThere faces_there(int moving, const Pose& at);
+    std::filesystem::path file_of_fragment(int fragment) const;
+    std::vector<contact::SurfacePoint> main_points();
+    /// Distances of the main fragment around another one at these poses.
+    contact::Voxmap main_map(int other, std::span<const Pose> poses);
+    FacesThere faces_there(int moving, const Pose& at, const contact::Voxmap& main);
     std::vector<double> known(const ResultKey& key, std::size_t count,
                               const std::function<std::vector<double>()>& make);
 

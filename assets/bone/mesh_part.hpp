@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances of a closed mesh where they are needed, or coarse: a whole bone in fine voxels takes seconds.
+#pragma once
+
+#include "dsp/core/jobs.hpp"
+#include "dsp/volume/grid.hpp"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tactus::bone {
+
+struct MeshPart {
+    std::filesystem::path input;
+    std::optional<std::string> unit;  ///< "mm", "cm" or "m"; default: as import_bone
+    bool is_coarse = false;  ///< twice the voxels' width of an import
+    std::optional<std::array<Vec3, 2>> within;  ///< m, corners of a box; default: all
+    RunJobs run = run_in_turn;
+};
+
+/// Signed distance, m, negative inside. Not coarse, its samples are those of import_bone; beyond a few millimetres from
+/// the surface, those within a box may be a little larger. Throws Error as import_bone.
+volume::Grid distance_of_mesh(const MeshPart& part);
+
+}  // namespace tactus::bone

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points within a radius, by hashing them into cubes of space.
+#pragma once
+
+#include "dsp/core/random.hpp"
+#include "dsp/core/types.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace tactus::geometry {
+
+/// Cubes of space in the slots of a table. Two cubes may share a slot.
+class CubeTable {
+public:
+    using Cell = std::array<std::int64_t, 3>;
+
+    /// `side` of a cube, m; `slots`: a power of two.
+    CubeTable(double side, std::size_t slots) : side_(side), mask_(slots - 1) {}
+
+    Cell cell(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
+    std::uint32_t slot(const Cell& c) const {
+        const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
+        return static_cast<std::uint32_t>(mix(bits(c[0]) | bits(c[1]) << 21 | bits(c[2]) << 42) & mask_);
+    }
+    /// The nearer neighbour of a cube along an axis.
+    std::int64_t beside(double x, std::int64_t cell) const {
+        return x / side_ - static_cast<double>(cell) < 0.5 ? -1 : 1;
+    }
+
+private:
+    std::int64_t along(double x) const { return static_cast<std::int64_t>(std::floor(x / side_)); }
+
+    double side_;
+    std::size_t mask_;
+};
+
+/// Points that are added one by one, in cubes of two radii: a ball touches at most eight of them, its own first.
+class GrowingCubes {
+public:
+    /// `radius`: the greatest of a query.
+    GrowingCubes(std::size_t expected, double radius)
+        : table_(2.001 * radius, std::bit_ceil(expected + 1)), head_(std::bit_ceil(expected + 1), none) {}
+
+    void add(const Vec3& p) {
+        const std::uint32_t slot = table_.slot(table_.cell(p));
+        points_.push_back({p, head_[slot]});
+        head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
+    }
+
+    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
+    /// when two cubes share a slot.
+    template <class Visit>
+    void around(const Vec3& p, double radius, const Visit& visit) const {
+        const auto [x, y, z] = table_.cell(p);
+        const std::int64_t bx = table_.beside(p.x, x), by = table_.beside(p.y, y), bz = table_.beside(p.z, z);
+        for (int n = 0; n < 8; ++n) {
+            const std::uint32_t slot = table_.slot({x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0)});
+            for (std::uint32_t i = head_[slot]; i != none; i = points_[i].next) {
+                const Vec3 apart = points_[i].place - p;
+                const double d2 = glm::dot(apart, apart);
+                if (d2 <= radius * radius && !visit(i, d2)) return;
+            }
+        }
+    }
+
+private:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    struct Entry {
+        Vec3 place;
+        std::uint32_t next;  // in the same slot
+    };
+
+    CubeTable table_;
+    std::vector<std::uint32_t> head_;
+    std::vector<Entry> points_;
+};
+
+/// Points with normals that are all known. Those of a slot lie side by side in memory.
+class PackedCubes {
+public:
+    struct Entry {
+        Vec3 place, normal;
+        std::uint32_t index = 0;  ///< in the given lists
+    };
+    /// The slots of a cube and of those around it. Queries in spatial order keep it from one to the next.
+    struct Block {
+        CubeTable::Cell cell{std::numeric_limits<std::int64_t>::max(), 0, 0};
+        std::array<std::uint32_t, 27> slots{};
+    };
+
+    /// `radius`: the greatest of a query.
+    PackedCubes(std::span<const Vec3> places, std::span<const Vec3> normals, double radius)
+        : table_(1.001 * radius, std::bit_ceil(places.size() / 4 + 1)),
+          first_(std::bit_ceil(places.size() / 4 + 1) + 1, 0),
+          entries_(places.size()) {
+        std::vector<std::uint32_t> slot(places.size());
+        for (std::size_t n = 0; n < places.size(); ++n) {
+            slot[n] = table_.slot(table_.cell(places[n]));
+            ++first_[slot[n] + 1];
+        }
+        for (std::size_t s = 1; s < first_.size(); ++s) first_[s] += first_[s - 1];
+        std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+        for (std::size_t n = 0; n < places.size(); ++n)
+            entries_[next[slot[n]]++] = {places[n], normals[n], static_cast<std::uint32_t>(n)};
+    }
+
+    std::size_t slots() const { return first_.size() - 1; }
+    std::span<const Entry> in(std::size_t slot) const {
+        return std::span(entries_).subspan(first_[slot], first_[slot + 1] - first_[slot]);
+    }
+    /// All points, in the order of the slots.
+    std::span<const Entry> all() const { return entries_; }
+
+    /// Slots that hold all points within the radius of `p`.
+    const Block& around(const Vec3& p, Block& block) const {
+        const CubeTable::Cell cell = table_.cell(p);
+        if (cell == block.cell) return block;
+        block.cell = cell;
+        std::size_t n = 0;
+        for (std::int64_t z = -1; z <= 1; ++z)
+            for (std::int64_t y = -1; y <= 1; ++y)
+                for (std::int64_t x = -1; x <= 1; ++x)
+                    block.slots[n++] = table_.slot({cell[0] + x, cell[1] + y, cell[2] + z});
+        return block;
+    }
+
+private:
+    CubeTable table_;
+    std::vector<std::uint32_t> first_;  // entry of each slot; the last is the number of all
+    std::vector<Entry> entries_;
+};
+
+}  // namespace tactus::geometry
