@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tactus::reconstruct {
 
@@ -89,6 +90,15 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
                                     planes.size() - 1));
         for (const Json& start : *along) inputs.along_line.push_back(start.get<double>() * mm);
     }
+    if (const Json* roll = json.find("roll_deg")) {
+        const double angle = roll->is_number() ? roll->get<double>() : 1e9;
+        if (!(std::abs(angle) <= 360.0)) throw Error(fmt::format("{}: 'roll_deg' must be -360 to 360", file));
+        inputs.roll = angle * std::numbers::pi / 180.0;
+    }
+    if (const Json* reversed = json.find("reversed")) {
+        if (!reversed->is_boolean()) throw Error(fmt::format("{}: 'reversed' must be true or false", file));
+        inputs.reversed = reversed->get<bool>();
+    }
     if (const Json* mesh = json.find("donor")) {
         if (!mesh->is_string() || mesh->as_text().empty())
             throw Error(fmt::format("{}: 'donor' must be the path of a mesh", file));
@@ -100,7 +110,10 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path) {
     std::string donor;
     FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor);
-    if (!donor.empty()) inputs.donor = mesh::load_mesh(path.parent_path() / donor, mm);
+    if (donor.empty()) return inputs;
+    mesh::MeshOrigin origin;
+    inputs.donor = mesh::load_mesh(path.parent_path() / donor, 1.0, &origin);
+    for (Vec3& v : inputs.donor->vertices) v *= origin.unit.value_or(mm);
     return inputs;
 }
 

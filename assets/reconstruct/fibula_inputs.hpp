@@ -13,9 +13,10 @@ namespace tactus::reconstruct {
 /// Reads
 ///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],
 ///      "fibula_line": {"point": [...], "direction": [...]}, "leg": "left", "between_space_mm": 1.5,
-///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "donor": "fibula.stl"}
+///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "roll_deg": 0, "reversed": false,
+///      "donor": "fibula.stl"}
 /// in LPS; all from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
-/// read. The donor's path is relative to the file. Throws Error.
+/// read. The donor's path is relative to the file; its unit is mm unless the mesh states another. Throws Error.
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path);
 
 /// The same from the text of a file, without the donor, whose path is returned in `donor` (empty: none); `file` is the

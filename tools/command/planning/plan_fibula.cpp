@@ -40,7 +40,7 @@ Json matrix_of(const Pose& pose) {
 }
 
 Json json_of(const FibulaPlan& plan) {
-    Json segments = Json::array(), wedges = Json::array(), clearances = Json::array(), warnings = Json::array();
+    Json segments = Json::array(), clearances = Json::array(), warnings = Json::array();
     for (const FibulaSegment& s : plan.segments) {
         Json one = Json::object();
         one["length_centre_mm"] = s.length_centre * 1e3;
@@ -52,14 +52,24 @@ Json json_of(const FibulaPlan& plan) {
         one["along_line_mm"] = Json::array({s.along_line[0] * 1e3, s.along_line[1] * 1e3});
         segments.push_back(one);
     }
-    for (const double wedge : plan.wedges) wedges.push_back(degrees(wedge));
+    const auto in_degrees = [](const std::vector<double>& angles) {
+        Json list = Json::array();
+        for (const double angle : angles) list.push_back(degrees(angle));
+        return list;
+    };
     for (const auto& clearance : plan.clearances) clearances.push_back(in_mm(clearance));
     for (const reconstruct::FibulaWarning& w : plan.warnings)
-        warnings.push_back({{"code", reconstruct::name_of(w.code)}, {"text", w.text}, {"segment", w.segment}});
+        warnings.push_back({{"code", reconstruct::name_of(w.code)},
+                            {"text", w.text},
+                            {"segment", w.segment < 0 ? Json(nullptr) : Json(w.segment)}});
     Json json = Json::object();
     json["segments"] = segments;
-    json["wedges_deg"] = wedges;
+    json["wedges_deg"] = in_degrees(plan.wedges);
+    json["off_bisector_deg"] = in_degrees(plan.off_bisector);
+    json["rolls_deg"] = in_degrees(plan.rolls);
     json["clearances_mm"] = clearances;
+    json["left_distal_mm"] = in_mm(plan.left_distal);
+    json["left_proximal_mm"] = in_mm(plan.left_proximal);
     json["warnings"] = warnings;
     return json;
 }
