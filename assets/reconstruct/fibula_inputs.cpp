@@ -40,6 +40,40 @@ double length_of(const Json& json, const char* key, double otherwise, double mos
     return value * mm;
 }
 
+std::vector<JawPlane> planes_of(const Json& planes, const std::string& file) {
+    if (planes.size() < 2 || planes.size() > most_planes)
+        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
+    std::vector<JawPlane> found;
+    for (const Json& one : planes) {
+        const std::string where = fmt::format("{}: plane {}", file, found.size() + 1);
+        if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
+        JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
+        if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
+        if (one.contains("y")) plane.y = vector_of(one, "y", where);
+        found.push_back(plane);
+    }
+    return found;
+}
+
+CurveSplit curve_of(const Json& json, const std::string& file) {
+    std::vector<Vec3> curve;
+    for (const Json& point : json["jaw_curve"]) {
+        const std::optional<Vec3> v = file::vector_of(point, farthest_mm);
+        if (!v) throw Error(fmt::format("{}: point {} of 'jaw_curve' is no list of three numbers", file, curve.size()));
+        curve.push_back(*v * mm);
+    }
+    const Json* count = json.find("segments");
+    const double segments = count && count->is_number() ? count->get<double>() : 0.0;
+    if (!(segments >= 1.0 && segments <= 5.0 && segments == std::floor(segments)))
+        throw Error(fmt::format("{}: 'jaw_curve' needs 'segments', a number from 1 to 5", file));
+    const double least = length_of(json, "least_segment_mm", 20.0 * mm, 1000.0, file);
+    try {
+        return split_curve(curve, static_cast<std::size_t>(segments), least);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file, error.message()));
+    }
+}
+
 }  // namespace
 
 FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor) {
@@ -49,22 +83,18 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
     } catch (const file::JsonSyntaxError& error) {
         throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
     }
-    if (!json.is_object() || !json.contains("mandible_planes") || !json["mandible_planes"].is_array() ||
-        !json.contains("fibula_line") || !json["fibula_line"].is_object())
-        throw Error(fmt::format("{}: expected an object with 'mandible_planes' (a list) and 'fibula_line'", file));
+    const bool has_planes = json.is_object() && json.contains("mandible_planes") && json["mandible_planes"].is_array(),
+               has_curve = json.is_object() && json.contains("jaw_curve") && json["jaw_curve"].is_array();
+    if (has_planes == has_curve || !json.contains("fibula_line") || !json["fibula_line"].is_object())
+        throw Error(fmt::format(
+            "{}: expected an object with 'fibula_line' and either 'mandible_planes' or 'jaw_curve' (a list)", file));
     if (const Json* units = json.find("units"); units && !(units->is_string() && units->as_text() == "mm"))
         throw Error(fmt::format("{}: 'units' must be \"mm\"", file));
-    const Json& planes = json["mandible_planes"];
-    if (planes.size() < 2 || planes.size() > most_planes)
-        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
     FibulaInputs inputs;
-    for (const Json& one : planes) {
-        const std::string where = fmt::format("{}: plane {}", file, inputs.planes.size() + 1);
-        if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
-        JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
-        if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
-        if (one.contains("y")) plane.y = vector_of(one, "y", where);
-        inputs.planes.push_back(plane);
+    if (has_planes) inputs.planes = planes_of(json["mandible_planes"], file);
+    else {
+        inputs.from_curve = curve_of(json, file);
+        inputs.planes = planes_on(*inputs.from_curve);
     }
     const std::string line = file + ": fibula_line";
     inputs.line_point = vector_of(json["fibula_line"], "point", line) * mm;
@@ -80,14 +110,15 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
     inputs.between = length_of(json, "between_space_mm", inputs.between, 100.0, file);
     inputs.distal_margin = length_of(json, "distal_margin_mm", inputs.distal_margin, 1000.0, file);
     inputs.proximal_margin = length_of(json, "proximal_margin_mm", inputs.proximal_margin, 1000.0, file);
+    inputs.kerf = length_of(json, "kerf_mm", inputs.kerf, 9.0, file);
     if (const Json* along = json.find("along_line_mm")) {
-        const bool is_list = along->is_array() && along->size() + 1 == planes.size() &&
+        const bool is_list = along->is_array() && along->size() + 1 == inputs.planes.size() &&
                              std::all_of(along->begin(), along->end(), [](const Json& x) {
                                  return x.is_number() && std::abs(x.get<double>()) <= farthest_mm;
                              });
         if (!is_list)
             throw Error(fmt::format("{}: 'along_line_mm' must be a list of {} numbers, one per segment", file,
-                                    planes.size() - 1));
+                                    inputs.planes.size() - 1));
         for (const Json& start : *along) inputs.along_line.push_back(start.get<double>() * mm);
     }
     if (const Json* roll = json.find("roll_deg")) {

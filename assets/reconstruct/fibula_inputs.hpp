@@ -14,8 +14,9 @@ namespace tactus::reconstruct {
 ///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],
 ///      "fibula_line": {"point": [...], "direction": [...]}, "leg": "left", "between_space_mm": 1.5,
 ///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "roll_deg": 0, "reversed": false,
-///      "donor": "fibula.stl"}
-/// in LPS; all from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
+///      "kerf_mm": 0.4, "donor": "fibula.stl"}
+/// in LPS; in place of the planes a curve along the jaw, "jaw_curve": [[x, y, z], ...] with "segments": 3 and, if wanted,
+/// "least_segment_mm": 20. All from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
 /// read. The donor's path is relative to the file; its unit is mm unless the mesh states another. Throws Error.
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path);
 

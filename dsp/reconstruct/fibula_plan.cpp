@@ -168,6 +168,9 @@ FibulaSegment segment_at(const JawSide& jaw, const Donor& donor, std::size_t n, 
         const Vec3 normal = back * jaw.planes[n + end].normal;
         segment.donor_plane[end] = {donor.at(segment.along_line[end]), normal};
         segment.tilt[end] = angle_between(normal, donor.axis);
+        const Vec3 medial = donor.frame[0], anterior = donor.inputs.leg == Leg::left ? donor.frame[1] : -donor.frame[1];
+        segment.lean_medial[end] = std::atan2(glm::dot(normal, medial), glm::dot(normal, donor.axis));
+        segment.lean_anterior[end] = std::atan2(glm::dot(normal, anterior), glm::dot(normal, donor.axis));
     }
     segment.end_angle = angle_between(segment.donor_plane[0].normal, segment.donor_plane[1].normal);
     return segment;
@@ -202,14 +205,44 @@ void measure_lengths(FibulaSegment& segment, const Donor& donor, const std::arra
     segment.length_longest = lengths.high;
 }
 
+using Cuts = std::vector<std::array<Section, 2>>;  // per segment
+
 /// From donor order to the order of the jaw's planes.
-void to_jaw_order(FibulaPlan& plan) {
+void to_jaw_order(FibulaPlan& plan, Cuts& cuts) {
     std::ranges::reverse(plan.segments);
     std::ranges::reverse(plan.clearances);
+    std::ranges::reverse(cuts);
+    for (auto& pair : cuts) std::swap(pair[0], pair[1]);
     for (FibulaSegment& segment : plan.segments) {
         std::swap(segment.tilt[0], segment.tilt[1]);
         std::swap(segment.along_line[0], segment.along_line[1]);
         std::swap(segment.donor_plane[0], segment.donor_plane[1]);
+        std::swap(segment.lean_medial[0], segment.lean_medial[1]);
+        std::swap(segment.lean_anterior[0], segment.lean_anterior[1]);
+    }
+}
+
+Section mapped(Section section, const Pose& pose) {
+    for (Vec3& p : section.points) p = pose.apply(p);
+    return section;
+}
+
+void measure_faces(FibulaPlan& plan, const FibulaInputs& inputs, const Cuts& cuts) {
+    plan.contact.resize(plan.segments.size() - 1);
+    if (cuts.empty()) return;
+    plan.kerf_loss = 0.0;
+    for (std::size_t n = 0; n < plan.segments.size(); ++n) {
+        FibulaSegment& s = plan.segments[n];
+        for (std::size_t end = 0; end < 2; ++end) {
+            s.area[end] = overlap_area(cuts[n][end], cuts[n][end], s.donor_plane[end]);
+            *plan.kerf_loss += *s.area[end] * inputs.kerf;
+        }
+        if (n + 1 == plan.segments.size()) continue;
+        const FibulaSegment& after = plan.segments[n + 1];
+        const Plane joint{s.donor_to_target.apply(s.donor_plane[1].origin),
+                          s.donor_to_target.rotate(s.donor_plane[1].normal)};
+        plan.contact[n] =
+            overlap_area(mapped(cuts[n][1], s.donor_to_target), mapped(cuts[n + 1][0], after.donor_to_target), joint);
     }
 }
 
@@ -304,16 +337,27 @@ const char* name_of(PlanWarning warning) {
     return "";
 }
 
+std::vector<JawPlane> planes_on(const CurveSplit& split) {
+    std::vector<JawPlane> planes;
+    for (const Vec3& joint : split.joints) planes.push_back({joint, {}, {}});
+    if (planes.size() < 2) return planes;
+    planes.front().normal = split.joints[1] - split.joints[0];
+    planes.back().normal = split.joints.back() - split.joints[split.joints.size() - 2];
+    return planes;
+}
+
 FibulaPlan plan_fibula(const FibulaInputs& inputs) {
     const JawSide jaw = jaw_side(inputs);
     const Donor donor(inputs);
     const std::size_t count = jaw.axis.size();
+    if (!(inputs.kerf >= 0.0 && inputs.kerf < 0.01)) throw Error("the kerf must be 0 to 10 mm");
     if (!std::isfinite(inputs.roll)) throw Error("the roll of the donor is no angle");
     const std::vector<double> places = places_of(inputs, count);
     const auto jaw_number = [&](std::size_t n) { return inputs.reversed ? count - 1 - n : n; };
     FibulaPlan plan;
     double free_from = donor.bone ? donor.whole.low + inputs.distal_margin : 0.0;
     Extent used;
+    Cuts cuts;
     for (std::size_t n = 0; n < count; ++n) {
         const double start = !places.empty() ? places[n] : donor.bone ? start_for(jaw, donor, n, free_from) : free_from;
         plan.segments.push_back(segment_at(jaw, donor, n, start));
@@ -323,8 +367,9 @@ FibulaPlan plan_fibula(const FibulaInputs& inputs) {
             if (n > 0) plan.clearances.push_back({});
             continue;
         }
-        const std::array<Section, 2> sections{donor.section(segment.donor_plane[0], jaw_number(n)),
-                                              donor.section(segment.donor_plane[1], jaw_number(n))};
+        cuts.push_back({donor.section(segment.donor_plane[0], jaw_number(n)),
+                        donor.section(segment.donor_plane[1], jaw_number(n))});
+        const std::array<Section, 2>& sections = cuts.back();
         measure_lengths(segment, donor, sections);
         if (!(*segment.length_shortest > 0.0))
             throw Error(
@@ -341,7 +386,8 @@ FibulaPlan plan_fibula(const FibulaInputs& inputs) {
         plan.left_distal = used.low - donor.whole.low;
         plan.left_proximal = donor.whole.high - used.high;
     }
-    if (inputs.reversed) to_jaw_order(plan);
+    if (inputs.reversed) to_jaw_order(plan, cuts);
+    measure_faces(plan, inputs, cuts);
     measure_joints(plan, jaw, donor);
     warn_of(plan, inputs, donor);
     return plan;

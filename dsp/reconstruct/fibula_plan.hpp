@@ -4,6 +4,7 @@
 
 #include "dsp/core/types.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/reconstruct/jaw_curve.hpp"
 #include "dsp/reconstruct/section.hpp"
 
 #include <array>
@@ -41,6 +42,8 @@ struct FibulaInputs {
     std::vector<double> along_line;
     double roll = 0.0;  ///< rad: the donor's turn about its axis, right-handed about the direction from plane to plane
     bool reversed = false;  ///< end to end: the donor's line runs against the order of the planes
+    double kerf = 0.4e-3;  ///< m of bone that the blade takes beside a segment: a placeholder, not from a source
+    std::optional<CurveSplit> from_curve;  ///< what the planes were made from
     std::optional<geometry::TriangleSurface> donor;  ///< its surface; gaps and margins need it
 };
 
@@ -48,6 +51,8 @@ struct FibulaSegment {
     double length_centre = 0.0;  ///< m, between the origins of its planes
     std::optional<double> length_shortest, length_longest;  ///< m, along the line between the outlines of its sections
     std::array<double, 2> tilt{};  ///< rad, between each plane's normal and the axis
+    std::array<double, 2> lean_medial{}, lean_anterior{};  ///< rad: each cut's tilt seen along the other of the two
+    std::array<std::optional<double>, 2> area{};  ///< m², of each cut, without the marrow cavity
     double end_angle = 0.0;  ///< rad, between its two planes
     std::array<double, 2> along_line{};  ///< m, where the line meets its planes, from line_point; falls when reversed
     std::array<Plane, 2> donor_plane;  ///< normals along the line
@@ -76,10 +81,15 @@ struct FibulaPlan {
     std::vector<double> wedges;  ///< rad, at each joint: the angle of the wedge between two segments in the donor
     std::vector<double> off_bisector;  ///< rad, at each joint: between its plane and the one that bisects
     std::vector<double> rolls;  ///< rad, at each joint: by how much the donor's outlines are turned about its axis
+    std::vector<std::optional<double>> contact;  ///< m², at each joint: in which the two cuts overlap on its plane
+    std::optional<double> kerf_loss;  ///< m³: bone that the blade takes at all cuts, each as deep as its section
     std::optional<double> left_distal, left_proximal;  ///< m of donor at the ankle and at the knee; none: no donor
     std::vector<std::optional<double>> clearances;  ///< m, along the line between neighbouring segments; none: no donor
     std::vector<FibulaWarning> warnings;
 };
+
+/// Planes at the joints of a split; the ends get normals along the first and last segments.
+std::vector<JawPlane> planes_on(const CurveSplit& split);
 
 /// Each segment's axis runs from one plane's origin to the next one's. The frame of a segment in the jaw has z along its
 /// axis and x = y of its first plane × z; that of the donor has z along the line and x medial (line × posterior). Both

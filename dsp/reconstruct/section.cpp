@@ -91,12 +91,14 @@ Section section_of(const geometry::TriangleSurface& surface, const Plane& plane,
                 const double t = ha / (ha - hb);
                 all.points.push_back(glm::mix(surface.vertices[static_cast<std::size_t>(a)],
                                               surface.vertices[static_cast<std::size_t>(b)], t));
+                all.edge.push_back({a, b});
                 outline.push_back(outline.size());
             }
             if (count < 2) met[count++] = entry->second;
         }
         if (count != 2) continue;
         all.pieces.push_back(met);
+        all.triangle.push_back(static_cast<std::size_t>(&triangle - surface.triangles.data()));
         outline[root(met[0])] = root(met[1]);
     }
     if (all.pieces.empty()) return {};
@@ -110,10 +112,14 @@ Section section_of(const geometry::TriangleSurface& surface, const Plane& plane,
         if (wanted[root_of[n]]) {
             number[n] = chosen.points.size();
             chosen.points.push_back(all.points[n]);
+            chosen.edge.push_back(all.edge[n]);
+            chosen.outline.push_back(root_of[n]);
         }
     double length = 0.0;
-    for (const auto& [a, b] : all.pieces) {
+    for (std::size_t n = 0; n < all.pieces.size(); ++n) {
+        const auto [a, b] = all.pieces[n];
         if (!wanted[root_of[a]]) continue;
+        chosen.triangle.push_back(all.triangle[n]);
         chosen.pieces.push_back({number[a], number[b]});
         const double piece = glm::length(all.points[b] - all.points[a]);
         chosen.centre += 0.5 * piece * (all.points[a] + all.points[b]);

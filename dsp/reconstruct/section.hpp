@@ -19,7 +19,10 @@ struct Plane {
 
 struct Section {
     std::vector<Vec3> points;  ///< in which the plane meets edges of the surface
+    std::vector<std::array<int, 2>> edge;  ///< of each point: its two vertices, the lesser first
+    std::vector<std::size_t> outline;  ///< of each point: the same number for the points of one outline
     std::vector<std::array<std::size_t, 2>> pieces;  ///< of the outlines, one per triangle, as indices into points
+    std::vector<std::size_t> triangle;  ///< of each piece
     Vec3 centre{0.0};  ///< of the outlines, each piece by its length
 };
 

@@ -36,6 +36,20 @@ inline geometry::TriangleSurface tube_of(
     return out;
 }
 
+/// The same, closed at both ends.
+inline geometry::TriangleSurface closed_tube(const Vec3& from, const Vec3& axis, double length, int round, int rings,
+                                             const std::function<double(double, double)>& radius) {
+    geometry::TriangleSurface out = tube_of(from, axis, length, round, rings, radius);
+    const int low = static_cast<int>(out.vertices.size()), first = (rings - 1) * round;
+    out.vertices.push_back(from);
+    out.vertices.push_back(from + axis * length);
+    for (int n = 0; n < round; ++n) {
+        out.triangles.push_back({low, (n + 1) % round, n});
+        out.triangles.push_back({low + 1, first + n, first + (n + 1) % round});
+    }
+    return out;
+}
+
 inline void append(geometry::TriangleSurface& to, const geometry::TriangleSurface& more) {
     const int first = static_cast<int>(to.vertices.size());
     to.vertices.insert(to.vertices.end(), more.vertices.begin(), more.vertices.end());

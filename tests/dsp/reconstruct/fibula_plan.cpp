@@ -216,6 +216,33 @@ TEST_CASE("dsp: the centre of a section does not depend on how finely its sides 
     CHECK(glm::length(section.centre - Vec3(0.0, 0.0, 0.05)) < 0.4 * mm);
 }
 
+TEST_CASE("dsp: cuts of a tube have the area of their ellipses and meet in it") {
+    FibulaInputs inputs = chin();
+    inputs.donor = tube(inputs.line_point, glm::normalize(inputs.line_direction));
+    const FibulaPlan plan = plan_fibula(inputs);
+    double all = 0.0;
+    for (const FibulaSegment& s : plan.segments)
+        for (std::size_t end = 0; end < 2; ++end) {
+            const double ellipse = 49.0 * std::numbers::pi * mm * mm / std::cos(s.tilt[end]);
+            CHECK(*s.area[end] == Approx(ellipse).epsilon(0.005));
+            all += *s.area[end];
+            // The two leans are the tilt seen from two sides.
+            CHECK(std::hypot(std::tan(s.lean_medial[end]), std::tan(s.lean_anterior[end])) ==
+                  Approx(std::tan(s.tilt[end])).margin(1e-9));
+        }
+    CHECK(*plan.kerf_loss == Approx(0.4 * mm * all));
+    // Joints that bisect: the whole faces meet, whatever the roll of a round bone.
+    for (std::size_t n = 0; n < 2; ++n) CHECK(*plan.contact[n] == Approx(*plan.segments[n].area[1]).epsilon(0.01));
+    // A joint that is turned by 30° against its bisector meets in less than its larger face.
+    inputs.planes[1].normal = glm::angleAxis(0.5, Vec3(0.0, 0.0, 1.0)) *
+                              glm::normalize(glm::normalize(inputs.planes[1].origin - inputs.planes[0].origin) +
+                                             glm::normalize(inputs.planes[2].origin - inputs.planes[1].origin));
+    const FibulaPlan skew = plan_fibula(inputs);
+    CHECK(*skew.contact[0] < 0.97 * std::max(*skew.segments[0].area[1], *skew.segments[1].area[0]));
+    inputs.kerf = -1.0;
+    CHECK(refusal(inputs) == "the kerf must be 0 to 10 mm");
+}
+
 TEST_CASE("dsp: a fibula that is turned or reversed lies on the same axes") {
     FibulaInputs inputs = chin();
     const Vec3 line = glm::normalize(inputs.line_direction);
