@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tactus::reconstruct {
 
@@ -76,7 +77,8 @@ CurveSplit curve_of(const Json& json, const std::string& file) {
 
 }  // namespace
 
-FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor) {
+FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor,
+                                   std::string* jaw) {
     Json json;
     try {
         json = Json::parse(text);
@@ -130,21 +132,27 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
         if (!reversed->is_boolean()) throw Error(fmt::format("{}: 'reversed' must be true or false", file));
         inputs.reversed = reversed->get<bool>();
     }
-    if (const Json* mesh = json.find("donor")) {
+    for (const auto& [key, path] : {std::pair{"donor", donor}, std::pair{"jaw", jaw}}) {
+        const Json* mesh = json.find(key);
+        if (!mesh) continue;
         if (!mesh->is_string() || mesh->as_text().empty())
-            throw Error(fmt::format("{}: 'donor' must be the path of a mesh", file));
-        if (donor) *donor = mesh->as_text();
+            throw Error(fmt::format("{}: '{}' must be the path of a mesh", file, key));
+        if (path) *path = mesh->as_text();
     }
     return inputs;
 }
 
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path) {
-    std::string donor;
-    FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor);
-    if (donor.empty()) return inputs;
-    mesh::MeshOrigin origin;
-    inputs.donor = mesh::load_mesh(path.parent_path() / donor, 1.0, &origin);
-    for (Vec3& v : inputs.donor->vertices) v *= origin.unit.value_or(mm);
+    std::string donor, jaw;
+    FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor, &jaw);
+    const auto load = [&path](const std::string& name) {
+        mesh::MeshOrigin origin;
+        geometry::TriangleSurface surface = mesh::load_mesh(path.parent_path() / name, 1.0, &origin);
+        for (Vec3& v : surface.vertices) v *= origin.unit.value_or(mm);
+        return surface;
+    };
+    if (!donor.empty()) inputs.donor = load(donor);
+    if (!jaw.empty()) inputs.jaw = load(jaw);
     return inputs;
 }
 

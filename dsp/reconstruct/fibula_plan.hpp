@@ -44,6 +44,7 @@ struct FibulaInputs {
     bool reversed = false;  ///< end to end: the donor's line runs against the order of the planes
     double kerf = 0.4e-3;  ///< m of bone that the blade takes beside a segment: a placeholder, not from a source
     std::optional<CurveSplit> from_curve;  ///< what the planes were made from
+    std::optional<geometry::TriangleSurface> jaw;  ///< for resection; plan_fibula does not read it
     std::optional<geometry::TriangleSurface> donor;  ///< its surface; gaps and margins need it
 };
 
