@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace tactus::reconstruct {
 
@@ -39,31 +41,62 @@ double length_of(const Json& json, const char* key, double otherwise, double mos
     return value * mm;
 }
 
+std::vector<JawPlane> planes_of(const Json& planes, const std::string& file) {
+    if (planes.size() < 2 || planes.size() > most_planes)
+        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
+    std::vector<JawPlane> found;
+    for (const Json& one : planes) {
+        const std::string where = fmt::format("{}: plane {}", file, found.size() + 1);
+        if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
+        JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
+        if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
+        if (one.contains("y")) plane.y = vector_of(one, "y", where);
+        found.push_back(plane);
+    }
+    return found;
+}
+
+CurveSplit curve_of(const Json& json, const std::string& file) {
+    std::vector<Vec3> curve;
+    for (const Json& point : json["jaw_curve"]) {
+        const std::optional<Vec3> v = file::vector_of(point, farthest_mm);
+        if (!v) throw Error(fmt::format("{}: point {} of 'jaw_curve' is no list of three numbers", file, curve.size()));
+        curve.push_back(*v * mm);
+    }
+    const Json* count = json.find("segments");
+    const double segments = count && count->is_number() ? count->get<double>() : 0.0;
+    if (!(segments >= 1.0 && segments <= 5.0 && segments == std::floor(segments)))
+        throw Error(fmt::format("{}: 'jaw_curve' needs 'segments', a number from 1 to 5", file));
+    const double least = length_of(json, "least_segment_mm", 20.0 * mm, 1000.0, file);
+    try {
+        return split_curve(curve, static_cast<std::size_t>(segments), least);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file, error.message()));
+    }
+}
+
 }  // namespace
 
-FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor) {
+FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor,
+                                   std::string* jaw) {
     Json json;
     try {
         json = Json::parse(text);
     } catch (const file::JsonSyntaxError& error) {
         throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
     }
-    if (!json.is_object() || !json.contains("mandible_planes") || !json["mandible_planes"].is_array() ||
-        !json.contains("fibula_line") || !json["fibula_line"].is_object())
-        throw Error(fmt::format("{}: expected an object with 'mandible_planes' (a list) and 'fibula_line'", file));
+    const bool has_planes = json.is_object() && json.contains("mandible_planes") && json["mandible_planes"].is_array(),
+               has_curve = json.is_object() && json.contains("jaw_curve") && json["jaw_curve"].is_array();
+    if (has_planes == has_curve || !json.contains("fibula_line") || !json["fibula_line"].is_object())
+        throw Error(fmt::format(
+            "{}: expected an object with 'fibula_line' and either 'mandible_planes' or 'jaw_curve' (a list)", file));
     if (const Json* units = json.find("units"); units && !(units->is_string() && units->as_text() == "mm"))
         throw Error(fmt::format("{}: 'units' must be \"mm\"", file));
-    const Json& planes = json["mandible_planes"];
-    if (planes.size() < 2 || planes.size() > most_planes)
-        throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
     FibulaInputs inputs;
-    for (const Json& one : planes) {
-        const std::string where = fmt::format("{}: plane {}", file, inputs.planes.size() + 1);
-        if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
-        JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
-        if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
-        if (one.contains("y")) plane.y = vector_of(one, "y", where);
-        inputs.planes.push_back(plane);
+    if (has_planes) inputs.planes = planes_of(json["mandible_planes"], file);
+    else {
+        inputs.from_curve = curve_of(json, file);
+        inputs.planes = planes_on(*inputs.from_curve);
     }
     const std::string line = file + ": fibula_line";
     inputs.line_point = vector_of(json["fibula_line"], "point", line) * mm;
@@ -79,28 +112,47 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
     inputs.between = length_of(json, "between_space_mm", inputs.between, 100.0, file);
     inputs.distal_margin = length_of(json, "distal_margin_mm", inputs.distal_margin, 1000.0, file);
     inputs.proximal_margin = length_of(json, "proximal_margin_mm", inputs.proximal_margin, 1000.0, file);
+    inputs.kerf = length_of(json, "kerf_mm", inputs.kerf, 9.0, file);
     if (const Json* along = json.find("along_line_mm")) {
-        const bool is_list = along->is_array() && along->size() + 1 == planes.size() &&
+        const bool is_list = along->is_array() && along->size() + 1 == inputs.planes.size() &&
                              std::all_of(along->begin(), along->end(), [](const Json& x) {
                                  return x.is_number() && std::abs(x.get<double>()) <= farthest_mm;
                              });
         if (!is_list)
             throw Error(fmt::format("{}: 'along_line_mm' must be a list of {} numbers, one per segment", file,
-                                    planes.size() - 1));
+                                    inputs.planes.size() - 1));
         for (const Json& start : *along) inputs.along_line.push_back(start.get<double>() * mm);
     }
-    if (const Json* mesh = json.find("donor")) {
+    if (const Json* roll = json.find("roll_deg")) {
+        const double angle = roll->is_number() ? roll->get<double>() : 1e9;
+        if (!(std::abs(angle) <= 360.0)) throw Error(fmt::format("{}: 'roll_deg' must be -360 to 360", file));
+        inputs.roll = angle * std::numbers::pi / 180.0;
+    }
+    if (const Json* reversed = json.find("reversed")) {
+        if (!reversed->is_boolean()) throw Error(fmt::format("{}: 'reversed' must be true or false", file));
+        inputs.reversed = reversed->get<bool>();
+    }
+    for (const auto& [key, path] : {std::pair{"donor", donor}, std::pair{"jaw", jaw}}) {
+        const Json* mesh = json.find(key);
+        if (!mesh) continue;
         if (!mesh->is_string() || mesh->as_text().empty())
-            throw Error(fmt::format("{}: 'donor' must be the path of a mesh", file));
-        if (donor) *donor = mesh->as_text();
+            throw Error(fmt::format("{}: '{}' must be the path of a mesh", file, key));
+        if (path) *path = mesh->as_text();
     }
     return inputs;
 }
 
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path) {
-    std::string donor;
-    FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor);
-    if (!donor.empty()) inputs.donor = mesh::load_mesh(path.parent_path() / donor, mm);
+    std::string donor, jaw;
+    FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor, &jaw);
+    const auto load = [&path](const std::string& name) {
+        mesh::MeshOrigin origin;
+        geometry::TriangleSurface surface = mesh::load_mesh(path.parent_path() / name, 1.0, &origin);
+        for (Vec3& v : surface.vertices) v *= origin.unit.value_or(mm);
+        return surface;
+    };
+    if (!donor.empty()) inputs.donor = load(donor);
+    if (!jaw.empty()) inputs.jaw = load(jaw);
     return inputs;
 }
 

@@ -4,6 +4,7 @@
 
 #include "dsp/core/types.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/reconstruct/jaw_curve.hpp"
 #include "dsp/reconstruct/section.hpp"
 
 #include <array>
@@ -36,9 +37,14 @@ struct FibulaInputs {
     double farthest_from_line = 15e-3;  ///< m: sections of a straight donor have their centre nearer to the line
     double short_segment = 20e-3;  ///< m: contains a periosteal branch in 94 % (Laugharne 2015)
     double very_short_segment = 15e-3;  ///< m: in 83 %
-    /// Where the line meets the first plane of each segment, from line_point, m; empty: placed from the distal margin
-    /// (without a donor: from line_point) with the wanted space between.
+    /// Where the line meets the more distal plane of each segment, in the order of the jaw's planes, from line_point, m;
+    /// empty: placed from the distal margin (without a donor: from line_point) with the wanted space between.
     std::vector<double> along_line;
+    double roll = 0.0;  ///< rad: the donor's turn about its axis, right-handed about the direction from plane to plane
+    bool reversed = false;  ///< end to end: the donor's line runs against the order of the planes
+    double kerf = 0.4e-3;  ///< m of bone that the blade takes beside a segment: a placeholder, not from a source
+    std::optional<CurveSplit> from_curve;  ///< what the planes were made from
+    std::optional<geometry::TriangleSurface> jaw;  ///< for resection; plan_fibula does not read it
     std::optional<geometry::TriangleSurface> donor;  ///< its surface; gaps and margins need it
 };
 
@@ -46,8 +52,10 @@ struct FibulaSegment {
     double length_centre = 0.0;  ///< m, between the origins of its planes
     std::optional<double> length_shortest, length_longest;  ///< m, along the line between the outlines of its sections
     std::array<double, 2> tilt{};  ///< rad, between each plane's normal and the axis
+    std::array<double, 2> lean_medial{}, lean_anterior{};  ///< rad: each cut's tilt seen along the other of the two
+    std::array<std::optional<double>, 2> area{};  ///< m², of each cut, without the marrow cavity
     double end_angle = 0.0;  ///< rad, between its two planes
-    std::array<double, 2> along_line{};  ///< m, where the line meets its planes, from line_point
+    std::array<double, 2> along_line{};  ///< m, where the line meets its planes, from line_point; falls when reversed
     std::array<Plane, 2> donor_plane;  ///< normals along the line
     Pose donor_to_target;
 };
@@ -58,30 +66,40 @@ enum class PlanWarning {
     close_osteotomies,  ///< less space between two segments than wanted
     distal_margin,
     proximal_margin,
-    section_mismatch  ///< a joint does not bisect: its two sections differ
+    section_mismatch,  ///< a joint does not bisect: its two sections differ
+    line_downwards  ///< the line seems to run from the knee to the ankle
 };
 const char* name_of(PlanWarning warning);  ///< "short-segment", ...
 
 struct FibulaWarning {
     PlanWarning code;
     std::string text;
-    int segment = 0;  ///< from 0; of a joint: the segment before it
+    int segment = 0;  ///< from 0; of a joint: the segment before it; -1: of the whole plan
 };
 
 struct FibulaPlan {
     std::vector<FibulaSegment> segments;
     std::vector<double> wedges;  ///< rad, at each joint: the angle of the wedge between two segments in the donor
+    std::vector<double> off_bisector;  ///< rad, at each joint: between its plane and the one that bisects
+    std::vector<double> rolls;  ///< rad, at each joint: by how much the donor's outlines are turned about its axis
+    std::vector<std::optional<double>> contact;  ///< m², at each joint: in which the two cuts overlap on its plane
+    std::optional<double> kerf_loss;  ///< m³: bone that the blade takes at all cuts, each as deep as its section
+    std::optional<double> left_distal, left_proximal;  ///< m of donor at the ankle and at the knee; none: no donor
     std::vector<std::optional<double>> clearances;  ///< m, along the line between neighbouring segments; none: no donor
     std::vector<FibulaWarning> warnings;
 };
 
+/// Planes at the joints of a split; the ends get normals along the first and last segments.
+std::vector<JawPlane> planes_on(const CurveSplit& split);
+
 /// Each segment's axis runs from one plane's origin to the next one's. The frame of a segment in the jaw has z along its
 /// axis and x = y of its first plane × z; that of the donor has z along the line and x medial (line × posterior). Both
-/// have their origin where the axis meets the first plane. The transform maps one frame to the other, and the cuts of
+/// have their origin where the axis meets the first plane. A reversed donor has z against the line, and keeps what faces
+/// superior. Of the donor's surface only those parts count that lie along the line. The transform maps one frame to the other, and the cuts of
 /// the donor are the jaw's planes mapped back (after BoneReconstructionPlanner).
 /// Throws Error for fewer than two or more than six planes, origins nearer than 1 mm to each other, a plane without
-/// normal at an end, a plane that is nearly parallel to a segment (more than 75° of tilt), a donor that the line leaves,
-/// and a donor that is too short.
+/// normal at an end, a plane that is nearly parallel to a segment (more than 75° of tilt), a y that does not tell how a
+/// segment is turned, a donor that the line leaves, a donor that is too short, and places that are out of order.
 FibulaPlan plan_fibula(const FibulaInputs& inputs);
 
 }  // namespace tactus::reconstruct

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/section.hpp"
 
+#include "dsp/core/error.hpp"
+#include "dsp/geometry/closest_point.hpp"
+
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -13,15 +16,66 @@
 
 namespace tactus::reconstruct {
 
-std::vector<Vec3> section_points(const geometry::TriangleSurface& surface, const Plane& plane, const Vec3* near) {
+namespace {
+
+/// Two directions in the plane.
+struct InPlane {
+    Vec3 u, v;
+
+    explicit InPlane(const Vec3& normal) {
+        const Vec3 other = std::abs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+        u = glm::normalize(glm::cross(normal, other));
+        v = glm::cross(normal, u);
+    }
+};
+
+/// Where a piece from a to b meets the line v = height along u; false when it does not. Half open, so that two pieces
+/// that share a point on the line count once.
+bool meets_line(const InPlane& in, const Vec3& a, const Vec3& b, double height, double& at) {
+    const double va = glm::dot(in.v, a) - height, vb = glm::dot(in.v, b) - height;
+    if ((va < 0.0) == (vb < 0.0)) return false;
+    const double ua = glm::dot(in.u, a), ub = glm::dot(in.u, b);
+    at = ua + (ub - ua) * va / (va - vb);
+    return true;
+}
+
+/// The outlines that enclose `near` or, where none does, the nearest one, by their roots.
+std::vector<bool> wanted_outlines(const Section& all, const std::vector<std::size_t>& root_of, const Plane& plane,
+                                  const Vec3& near) {
+    const InPlane in(plane.normal);
+    const double height = glm::dot(in.v, near), from = glm::dot(in.u, near);
+    std::vector<bool> encloses(all.points.size(), false);
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : all.pieces) {
+        const Vec3 d = geometry::closest_on_segment(near, all.points[a], all.points[b]) - near;
+        if (glm::length(d) < least) least = glm::length(d), nearest = root_of[a];
+        if (double at = 0.0; meets_line(in, all.points[a], all.points[b], height, at) && at > from)
+            encloses[root_of[a]] = !encloses[root_of[a]];
+    }
+    if (std::find(encloses.begin(), encloses.end(), true) == encloses.end()) encloses[nearest] = true;
+    return encloses;
+}
+
+/// Sorted places at which the line v = height crosses the section.
+void crossings(const InPlane& in, const Section& section, double height, std::vector<double>& out) {
+    out.clear();
+    for (const auto& [a, b] : section.pieces)
+        if (double at = 0.0; meets_line(in, section.points[a], section.points[b], height, at)) out.push_back(at);
+    std::sort(out.begin(), out.end());
+}
+
+}  // namespace
+
+Section section_of(const geometry::TriangleSurface& surface, const Plane& plane, const Vec3* near) {
     std::vector<double> height;
     height.reserve(surface.vertices.size());
     for (const Vec3& v : surface.vertices) height.push_back(glm::dot(plane.normal, v - plane.origin));
     std::map<std::pair<int, int>, std::size_t> of_edge;
-    std::vector<Vec3> points;
+    Section all;
     std::vector<std::size_t> outline;  // union-find: points of a triangle belong together
     const auto root = [&](std::size_t n) {
-        while (outline[n] != n) n = outline[n];
+        while (outline[n] != n) n = outline[n] = outline[outline[n]];
         return n;
     };
     for (const auto& triangle : surface.triangles) {
@@ -32,27 +86,116 @@ std::vector<Vec3> section_points(const geometry::TriangleSurface& surface, const
             const double ha = height[static_cast<std::size_t>(a)], hb = height[static_cast<std::size_t>(b)];
             // A vertex on the plane counts as above, so that every outline is closed.
             if ((ha < 0.0) == (hb < 0.0)) continue;
-            const auto [entry, is_new] = of_edge.insert({{a, b}, points.size()});
+            const auto [entry, is_new] = of_edge.insert({{a, b}, all.points.size()});
             if (is_new) {
                 const double t = ha / (ha - hb);
-                points.push_back(glm::mix(surface.vertices[static_cast<std::size_t>(a)],
-                                          surface.vertices[static_cast<std::size_t>(b)], t));
+                all.points.push_back(glm::mix(surface.vertices[static_cast<std::size_t>(a)],
+                                              surface.vertices[static_cast<std::size_t>(b)], t));
+                all.edge.push_back({a, b});
                 outline.push_back(outline.size());
             }
             if (count < 2) met[count++] = entry->second;
         }
-        if (count == 2) outline[root(met[0])] = root(met[1]);
+        if (count != 2) continue;
+        all.pieces.push_back(met);
+        all.triangle.push_back(static_cast<std::size_t>(&triangle - surface.triangles.data()));
+        outline[root(met[0])] = root(met[1]);
     }
-    if (near == nullptr || points.empty()) return points;
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < points.size(); ++n)
-        if (const double d = glm::length(points[n] - *near); d < least) least = d, nearest = n;
-    const std::size_t wanted = root(nearest);
-    std::vector<Vec3> chosen;
-    for (std::size_t n = 0; n < points.size(); ++n)
-        if (root(n) == wanted) chosen.push_back(points[n]);
+    if (all.pieces.empty()) return {};
+    std::vector<bool> wanted(all.points.size(), true);
+    std::vector<std::size_t> root_of(all.points.size());
+    for (std::size_t n = 0; n < root_of.size(); ++n) root_of[n] = root(n);
+    if (near != nullptr) wanted = wanted_outlines(all, root_of, plane, *near);
+    Section chosen;
+    std::vector<std::size_t> number(all.points.size());
+    for (std::size_t n = 0; n < all.points.size(); ++n)
+        if (wanted[root_of[n]]) {
+            number[n] = chosen.points.size();
+            chosen.points.push_back(all.points[n]);
+            chosen.edge.push_back(all.edge[n]);
+            chosen.outline.push_back(root_of[n]);
+        }
+    double length = 0.0;
+    for (std::size_t n = 0; n < all.pieces.size(); ++n) {
+        const auto [a, b] = all.pieces[n];
+        if (!wanted[root_of[a]]) continue;
+        chosen.triangle.push_back(all.triangle[n]);
+        chosen.pieces.push_back({number[a], number[b]});
+        const double piece = glm::length(all.points[b] - all.points[a]);
+        chosen.centre += 0.5 * piece * (all.points[a] + all.points[b]);
+        length += piece;
+    }
+    chosen.centre = length > 0.0 ? chosen.centre / length : chosen.points.front();
     return chosen;
+}
+
+geometry::TriangleSurface parts_near_line(const geometry::TriangleSurface& surface, const Vec3& point,
+                                          const Vec3& direction, double farthest) {
+    std::vector<std::size_t> part(surface.vertices.size());
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    const auto root = [&](std::size_t n) {
+        while (part[n] != n) n = part[n] = part[part[n]];
+        return n;
+    };
+    std::vector<bool> is_used(part.size(), false);
+    for (const auto& t : surface.triangles)
+        for (const int corner : t) {
+            is_used[static_cast<std::size_t>(corner)] = true;
+            part[root(static_cast<std::size_t>(corner))] = root(static_cast<std::size_t>(t[0]));
+        }
+    std::vector<double> sum(part.size(), 0.0), count(part.size(), 0.0);
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (!is_used[n]) continue;
+        sum[root(n)] += glm::length(glm::cross(surface.vertices[n] - point, direction));
+        count[root(n)] += 1.0;
+    }
+    geometry::TriangleSurface chosen;
+    std::vector<int> number(part.size(), -1);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (!is_used[n]) continue;
+        const double mean = sum[root(n)] / count[root(n)];
+        nearest = std::min(nearest, mean);
+        if (!(mean <= farthest)) continue;
+        number[n] = static_cast<int>(chosen.vertices.size());
+        chosen.vertices.push_back(surface.vertices[n]);
+    }
+    if (chosen.vertices.empty())
+        throw Error(fmt::format(
+            "the donor's surface lies {:.1f} mm from the line on average, more than {:.1f} mm; the donor must be "
+            "straight and the line must follow it",
+            nearest * 1e3, farthest * 1e3));
+    for (const auto& t : surface.triangles)
+        if (const auto at = [&](int corner) { return number[static_cast<std::size_t>(corner)]; }; at(t[0]) >= 0)
+            chosen.triangles.push_back({at(t[0]), at(t[1]), at(t[2])});
+    return chosen;
+}
+
+double overlap_area(const Section& a, const Section& b, const Plane& plane, double step) {
+    if (a.pieces.empty() || b.pieces.empty() || !(step > 0.0)) return 0.0;
+    const InPlane in(plane.normal);
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+    for (const Section* section : {&a, &b}) {
+        double least = std::numeric_limits<double>::infinity(), greatest = -least;
+        for (const Vec3& p : section->points) {
+            least = std::min(least, glm::dot(in.v, p));
+            greatest = std::max(greatest, glm::dot(in.v, p));
+        }
+        low = std::max(low, least);
+        high = std::min(high, greatest);
+    }
+    if (!(high > low)) return 0.0;
+    const double rows = std::ceil((high - low) / step), width = (high - low) / rows;
+    std::vector<double> of_a, of_b;
+    double sum = 0.0;
+    for (double row = 0.5; row < rows; row += 1.0) {
+        crossings(in, a, low + row * width, of_a);
+        crossings(in, b, low + row * width, of_b);
+        for (std::size_t i = 0; i + 1 < of_a.size(); i += 2)
+            for (std::size_t j = 0; j + 1 < of_b.size(); j += 2)
+                sum += std::max(0.0, std::min(of_a[i + 1], of_b[j + 1]) - std::max(of_a[i], of_b[j]));
+    }
+    return sum * width;
 }
 
 }  // namespace tactus::reconstruct

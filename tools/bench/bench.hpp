@@ -34,5 +34,6 @@ Verb assembly_verb();
 Verb shafts_verb();
 Verb segment_verb();
 Verb vessel_verb();
+Verb rope_verb();
 
 }  // namespace tactus::bench

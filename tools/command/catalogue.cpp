@@ -63,7 +63,8 @@
     X(plan_gap, planning)         \
     X(plan_export, planning)      \
     X(plan_report, planning)      \
-    X(plan_fibula, planning)
+    X(plan_fibula, planning)      \
+    X(plan_reconstruct, planning)
 
 namespace tactus::command {
 

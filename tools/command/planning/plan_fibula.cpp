@@ -27,6 +27,8 @@ struct FibulaChoice {
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
+Json in_mm2(const std::optional<double>& area) { return area ? Json(*area * 1e6) : Json(nullptr); }
+
 Json in_mm(const std::optional<double>& metres) { return metres ? Json(*metres * 1e3) : Json(nullptr); }
 
 /// Row by row; lengths in mm.
@@ -39,32 +41,61 @@ Json matrix_of(const Pose& pose) {
     return rows;
 }
 
-Json json_of(const FibulaPlan& plan) {
-    Json segments = Json::array(), wedges = Json::array(), clearances = Json::array(), warnings = Json::array();
+Json json_of(const reconstruct::FibulaInputs& inputs, const FibulaPlan& plan) {
+    Json segments = Json::array(), clearances = Json::array(), warnings = Json::array();
     for (const FibulaSegment& s : plan.segments) {
         Json one = Json::object();
         one["length_centre_mm"] = s.length_centre * 1e3;
         one["length_shortest_mm"] = in_mm(s.length_shortest);
         one["length_longest_mm"] = in_mm(s.length_longest);
         one["tilt_deg"] = Json::array({degrees(s.tilt[0]), degrees(s.tilt[1])});
+        one["lean_medial_deg"] = Json::array({degrees(s.lean_medial[0]), degrees(s.lean_medial[1])});
+        one["lean_anterior_deg"] = Json::array({degrees(s.lean_anterior[0]), degrees(s.lean_anterior[1])});
+        one["area_mm2"] = Json::array({in_mm2(s.area[0]), in_mm2(s.area[1])});
         one["end_angle_deg"] = degrees(s.end_angle);
         one["donor_to_target"] = matrix_of(s.donor_to_target);
         one["along_line_mm"] = Json::array({s.along_line[0] * 1e3, s.along_line[1] * 1e3});
         segments.push_back(one);
     }
-    for (const double wedge : plan.wedges) wedges.push_back(degrees(wedge));
+    const auto in_degrees = [](const std::vector<double>& angles) {
+        Json list = Json::array();
+        for (const double angle : angles) list.push_back(degrees(angle));
+        return list;
+    };
     for (const auto& clearance : plan.clearances) clearances.push_back(in_mm(clearance));
     for (const reconstruct::FibulaWarning& w : plan.warnings)
-        warnings.push_back({{"code", reconstruct::name_of(w.code)}, {"text", w.text}, {"segment", w.segment}});
+        warnings.push_back({{"code", reconstruct::name_of(w.code)},
+                            {"text", w.text},
+                            {"segment", w.segment < 0 ? Json(nullptr) : Json(w.segment)}});
     Json json = Json::object();
     json["segments"] = segments;
-    json["wedges_deg"] = wedges;
+    json["wedges_deg"] = in_degrees(plan.wedges);
+    json["off_bisector_deg"] = in_degrees(plan.off_bisector);
+    json["rolls_deg"] = in_degrees(plan.rolls);
     json["clearances_mm"] = clearances;
+    Json contact = Json::array();
+    for (const auto& area : plan.contact) contact.push_back(in_mm2(area));
+    json["contact_mm2"] = contact;
+    json["kerf_loss_mm3"] = plan.kerf_loss ? Json(*plan.kerf_loss * 1e9) : Json(nullptr);
+    if (inputs.from_curve) {
+        Json joints = Json::array();
+        for (const Vec3& p : inputs.from_curve->joints)
+            joints.push_back(Json::array({p.x * 1e3, p.y * 1e3, p.z * 1e3}));
+        json["joints_mm"] = joints;
+        json["contour_deviation_mm"] =
+            Json{{"rms", inputs.from_curve->rms * 1e3}, {"greatest", inputs.from_curve->greatest * 1e3}};
+    }
+    json["left_distal_mm"] = in_mm(plan.left_distal);
+    json["left_proximal_mm"] = in_mm(plan.left_proximal);
     json["warnings"] = warnings;
     return json;
 }
 
-void print(const FibulaPlan& plan) {
+void print(const reconstruct::FibulaInputs& inputs, const FibulaPlan& plan) {
+    if (inputs.from_curve)
+        fmt::print("the jaw's curve lies {:.2f} mm rms from its segments, {:.2f} mm at most\n",
+                   inputs.from_curve->rms * 1e3, inputs.from_curve->greatest * 1e3);
+
     for (std::size_t n = 0; n < plan.segments.size(); ++n) {
         const FibulaSegment& s = plan.segments[n];
         fmt::print("segment {}: {:.2f} mm", n + 1, s.length_centre * 1e3);
@@ -76,9 +107,11 @@ void print(const FibulaPlan& plan) {
         if (n < plan.wedges.size()) {
             fmt::print("  then a wedge of {:.2f}°", degrees(plan.wedges[n]));
             if (plan.clearances[n]) fmt::print(", {:.2f} mm of bone between the cuts", *plan.clearances[n] * 1e3);
+            if (plan.contact[n]) fmt::print("; {:.0f} mm² of the cuts meet", *plan.contact[n] * 1e6);
             fmt::print("\n");
         }
     }
+    if (plan.kerf_loss) fmt::print("a kerf of {:.1f} mm takes {:.0f} mm³\n", inputs.kerf * 1e3, *plan.kerf_loss * 1e9);
     for (const reconstruct::FibulaWarning& w : plan.warnings) fmt::print("warning: {}\n", w.text);
     fmt::print("for research, not a medical device\n");
 }
@@ -86,8 +119,8 @@ void print(const FibulaPlan& plan) {
 int fibula(const FibulaChoice& choice) {
     const reconstruct::FibulaInputs inputs = reconstruct::read_fibula_inputs(choice.inputs);
     const FibulaPlan plan = reconstruct::plan_fibula(inputs);
-    if (choice.json) fmt::print("{}\n", json_of(plan).dump(2));
-    else print(plan);
+    if (choice.json) fmt::print("{}\n", json_of(inputs, plan).dump(2));
+    else print(inputs, plan);
     return done;
 }
 

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/reconstruct/cut.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace tactus::reconstruct {
+
+namespace {
+
+/// The middles of the caps on the two sides of a cut.
+struct Caps {
+    std::vector<int> below, above;
+};
+
+/// Opens the surface along the section and closes both sides. Vertices keep their numbers.
+Caps open_at(geometry::TriangleSurface& surface, const Plane& plane) {
+    const Section section = section_of(surface, plane, &plane.origin);
+    if (section.pieces.empty()) throw Error("a plane of the cut misses the bone");
+    const auto index = [](std::size_t n) { return static_cast<int>(n); };
+    const int below = index(surface.vertices.size()), above = below + index(section.points.size());
+    for (int side = 0; side < 2; ++side)
+        surface.vertices.insert(surface.vertices.end(), section.points.begin(), section.points.end());
+    // A middle per outline and side.
+    std::map<std::size_t, std::array<int, 2>> middle;
+    Caps caps;
+    for (const auto& [first, second] : section.pieces) {
+        const std::size_t outline = section.outline[first];
+        if (middle.contains(outline)) continue;
+        Vec3 sum(0.0);
+        double count = 0.0;
+        for (std::size_t n = 0; n < section.points.size(); ++n)
+            if (section.outline[n] == outline) sum += section.points[n], count += 1.0;
+        const int at = index(surface.vertices.size());
+        middle[outline] = {at, at + 1};
+        caps.below.push_back(at);
+        caps.above.push_back(at + 1);
+        surface.vertices.insert(surface.vertices.end(), 2, sum / count);
+    }
+    const auto is_above = [&](int n) {
+        return glm::dot(plane.normal, surface.vertices[static_cast<std::size_t>(n)] - plane.origin) >= 0.0;
+    };
+    for (std::size_t piece = 0; piece < section.pieces.size(); ++piece) {
+        auto& triangle = surface.triangles[section.triangle[piece]];
+        // The corner that is alone on its side comes first.
+        std::array<int, 3> t = triangle;
+        while (is_above(t[1]) != is_above(t[2])) std::ranges::rotate(t, t.begin() + 1);
+        const auto point_on = [&](int a, int b) {
+            const auto& [one, other] = section.pieces[piece];
+            const auto edge = std::minmax(a, b);
+            return index(section.edge[one] == std::array<int, 2>{edge.first, edge.second} ? one : other);
+        };
+        const int p = point_on(t[0], t[1]), q = point_on(t[0], t[2]);
+        const bool alone_above = is_above(t[0]);
+        const int alone = alone_above ? above : below, others = alone_above ? below : above;
+        const std::array<int, 2>& ends = middle[section.outline[section.pieces[piece][0]]];
+        triangle = {t[0], alone + p, alone + q};
+        surface.triangles.push_back({others + p, t[1], t[2]});
+        surface.triangles.push_back({others + p, t[2], others + q});
+        surface.triangles.push_back({alone + q, alone + p, ends[alone_above ? 1 : 0]});
+        surface.triangles.push_back({others + p, others + q, ends[alone_above ? 0 : 1]});
+    }
+    return caps;
+}
+
+}  // namespace
+
+CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& first, const std::optional<Plane>& last) {
+    geometry::TriangleSurface open = surface;
+    const Caps low = open_at(open, first);
+    const Caps high = last ? open_at(open, *last) : Caps{};
+    std::vector<std::size_t> part(open.vertices.size());
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    const auto root = [&](int corner) {
+        auto n = static_cast<std::size_t>(corner);
+        while (part[n] != n) n = part[n] = part[part[n]];
+        return n;
+    };
+    for (const auto& t : open.triangles)
+        for (const int corner : t) part[root(corner)] = root(t[0]);
+    std::vector<bool> is_between(part.size(), false);
+    for (const auto* side : {&low.above, &high.below})
+        for (const int middle : *side) is_between[root(middle)] = true;
+    for (const auto* side : {&low.below, &high.above})
+        for (const int middle : *side)
+            if (is_between[root(middle)])
+                throw Error(
+                    "the planes do not separate the bone: a part reaches from one side of a plane to the other; move "
+                    "the planes or add one");
+    CutPieces pieces;
+    std::map<std::size_t, std::size_t> number;  // of a part in the rest
+    std::vector<int> moved(part.size(), -1);
+    for (const auto& t : open.triangles) {
+        const std::size_t of = root(t[0]);
+        if (!is_between[of] && !number.contains(of)) {
+            number[of] = pieces.rest.size();
+            pieces.rest.emplace_back();
+        }
+        geometry::TriangleSurface& to = is_between[of] ? pieces.between : pieces.rest[number[of]];
+        std::array<int, 3> copied{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            int& at = moved[static_cast<std::size_t>(t[c])];
+            if (at < 0) {
+                at = static_cast<int>(to.vertices.size());
+                to.vertices.push_back(open.vertices[static_cast<std::size_t>(t[c])]);
+            }
+            copied[c] = at;
+        }
+        to.triangles.push_back(copied);
+    }
+    std::ranges::stable_sort(pieces.rest,
+                             [](const auto& a, const auto& b) { return a.triangles.size() > b.triangles.size(); });
+    return pieces;
+}
+
+}  // namespace tactus::reconstruct

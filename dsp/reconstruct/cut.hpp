@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cuts a bone's surface by bounded planes.
+#pragma once
+
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/reconstruct/section.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace tactus::reconstruct {
+
+struct CutPieces {
+    geometry::TriangleSurface between;  ///< what the planes bound
+    std::vector<geometry::TriangleSurface> rest;  ///< the other pieces, the one with most triangles first
+};
+
+/// Cuts a closed surface by two planes, `first` with its normal into the piece between them and `last` with its normal
+/// out of it; without `last`, all that is connected on the far side of `first` is cut off. Each plane cuts only the
+/// limb round its origin (section_of with `near`): a plane through one ramus of a jaw leaves the other one whole.
+/// Pieces of closed surfaces are closed: each outline gets a fan of triangles around its middle. On an outline that is
+/// not star-shaped the fan folds over itself, on a marrow cavity it overlaps the outer one; signed volumes and winding
+/// numbers stay right. Throws Error when a plane misses the surface, and when the planes do not separate it.
+CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& first, const std::optional<Plane>& last);
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a rope lies against.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace tactus::rope {
+
+class Obstacle {
+public:
+    virtual ~Obstacle() = default;
+    /// Signed distance to the surface, m, negative inside; `normal` becomes its gradient, of unit length. Called in
+    /// real-time ticks.
+    virtual double distance(const Vec3& place, Vec3& normal) const noexcept = 0;
+};
+
+class Ball final : public Obstacle {
+public:
+    Ball(const Vec3& centre, double radius) : centre_(centre), radius_(radius) {}
+    double distance(const Vec3& place, Vec3& normal) const noexcept override {
+        const Vec3 out = place - centre_;
+        const double length = glm::length(out);
+        normal = length > 1e-12 ? out / length : Vec3(1.0, 0.0, 0.0);
+        return length - radius_;
+    }
+
+private:
+    Vec3 centre_;
+    double radius_;
+};
+
+/// An endless cylinder.
+class Cylinder final : public Obstacle {
+public:
+    /// `axis` has unit length.
+    Cylinder(const Vec3& point, const Vec3& axis, double radius) : point_(point), axis_(axis), radius_(radius) {}
+    double distance(const Vec3& place, Vec3& normal) const noexcept override {
+        Vec3 out = place - point_;
+        out -= glm::dot(out, axis_) * axis_;
+        const double length = glm::length(out);
+        normal = length > 1e-12 ? out / length : Vec3(0.0);
+        return length - radius_;
+    }
+
+private:
+    Vec3 point_, axis_;
+    double radius_;
+};
+
+}  // namespace tactus::rope

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// A vessel or string that is pulled: stretches, bends, hangs and slides over bone.
+#pragma once
+
+#include "dsp/core/types.hpp"
+#include "dsp/rope/banded.hpp"
+#include "dsp/rope/obstacle.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tactus::rope {
+
+struct RopeMaterial {
+    double stiffness = 1.9;  ///< N per unit of strain; it resists stretch, not compression (see artery)
+    double bending = 0.0;  ///< N·m²: moment per curvature
+    double weight = 0.0;  ///< N/m, along -z
+    double drag = 0.02;  ///< N·s/m²: force per length and speed; keeps slack parts where they are
+    double radius = 0.0;  ///< m, kept between centreline and bone
+    double friction = 0.0;  ///< Coulomb's coefficient on bone
+};
+
+/// A fibular artery of 3.0 mm outer diameter and 0.45 mm wall: 3.6 mm² that bear 62 kPa at the stretch that it has in
+/// the leg, 1.12 (Struczewska and others 2024, PMC11456514). Its law is taken as linear between rest and that point.
+RopeMaterial artery();
+/// Length of a vessel when cut free over its length in the leg: 1 / 1.12.
+inline constexpr double free_over_in_situ = 0.89;
+
+struct RopeSettings {
+    int substeps = 4;  ///< of a tick, with contact
+    int most_iterations = 8;  ///< Newton steps per substep
+    double tolerance = 1e-5;  ///< N: largest unbalanced force at a point at which a substep ends
+    double contact_stiffness = 4e3;  ///< N/m per point in contact; implicit, so it may be high
+    double stick_stiffness = 4e3;  ///< N/m per point that sticks
+};
+
+struct RopeStep {
+    double residual = 0.0;  ///< N: largest unbalanced force at a free point after a substep
+    int iterations = 0;  ///< of all substeps
+    double lag = 0.0;  ///< m: how far a held point still is from where it was told to be
+    int contacts = 0;
+    bool is_solved = false;  ///< the residual of every substep was within the tolerance
+};
+
+/// A chain of points with given rest lengths between them. Each substep minimises
+///     stretch + bending + weight + contact + friction + drag · |x - x_before|² / 2h
+/// by Newton's method on the banded system of the whole chain. In every iteration an active set tells which segments are
+/// taut and which points touch: it is changed until it is that of the solution of the linear system. A step is halved,
+/// then damped, until the sum decreases. Friction is that of springs to anchor points, which follow when the limit μN, with N of the last
+/// substep, is reached: it does not creep. Stretch, bending and friction are convex functions of the points, so an
+/// implicit substep gives back no more energy than it stored. Ticks do not allocate.
+class Rope {
+public:
+    /// `rest`: one per segment, all positive, m. Throws Error for fewer than 3 points, or numbers that make no rope.
+    Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMaterial& material,
+         const RopeSettings& settings = {});
+
+    /// Holds a point: it moves to `place` during the next ticks, by at most half a segment per substep.
+    void hold(std::size_t point, const Vec3& place) noexcept;
+    void release(std::size_t point) noexcept;
+    /// A force on a point that is not held, N.
+    void load(std::size_t point, const Vec3& force) noexcept { load_[point] = force; }
+    /// Keeps the direction of the rope (unit length, from the first point to the last) at the first or last point.
+    void clamp_first(const std::optional<Vec3>& direction) noexcept { clamp_[0] = direction; }
+    void clamp_last(const std::optional<Vec3>& direction) noexcept { clamp_[1] = direction; }
+
+    /// A tick of h s. `bone` may be null.
+    RopeStep step(double h, const Obstacle* bone) noexcept;
+
+    std::span<const Vec3> points() const noexcept { return x_; }
+    std::span<const double> rest() const noexcept { return rest_; }
+    double tension(std::size_t segment) const noexcept;  ///< N, by the law at the present points
+    /// Force of the rope on what holds a point, N, by the law at the present points.
+    Vec3 pull_on(std::size_t point) const noexcept;
+    double energy() const noexcept;  ///< J, with that of contact and sticking
+    double length() const noexcept;
+    double rest_length() const noexcept;
+    const RopeMaterial& material() const noexcept { return material_; }
+    /// Points in contact at the end of the last tick.
+    bool touches(std::size_t point) const noexcept { return depth_[point] > 0.0; }
+
+private:
+    struct Stick {
+        Vec3 anchor{0.0}, normal{0.0};
+        double limit = 0.0;  ///< N; 0: the point did not touch
+    };
+
+    double potential(double drag) const noexcept;
+    double gradient(double drag) noexcept;
+    void assemble(double drag, double damping) noexcept;
+    bool find_move(double drag, double damping) noexcept;
+    void look_at(const Obstacle* bone) noexcept;
+    bool substep(double h, const Obstacle* bone, RopeStep& report) noexcept;
+    void begin_friction() noexcept;
+    void end_friction() noexcept;
+    double share(std::size_t point) const noexcept;
+    double bend_weight(std::size_t point) const noexcept;
+    Vec3 bend_at(std::size_t point) const noexcept;
+    Vec3 slip(std::size_t point) const noexcept;
+
+    RopeMaterial material_;
+    RopeSettings settings_;
+    std::vector<Vec3> x_, before_, trial_, move_, rest_of_gradient_, load_, target_, normal_;
+    std::vector<double> rest_, depth_;
+    std::vector<bool> held_;
+    std::vector<char> resists_, touching_;  // the active set
+    std::vector<Stick> stick_;
+    std::array<std::optional<Vec3>, 2> clamp_;
+    BlockBand band_;
+};
+
+}  // namespace tactus::rope

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/reconstruct/cut.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/dsp/reconstruct/donors.hpp"
+#include "tests/support/catch.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+using namespace tactus;
+using namespace tactus::reconstruct;
+
+namespace {
+
+constexpr double mm = 1e-3, pi = std::numbers::pi;
+
+double enclosed(const geometry::TriangleSurface& surface) {
+    double sum = 0.0;
+    for (const auto& t : surface.triangles) {
+        const auto at = [&](std::size_t c) { return surface.vertices[static_cast<std::size_t>(t[c])]; };
+        sum += glm::dot(at(0), glm::cross(at(1), at(2))) / 6.0;
+    }
+    return sum;
+}
+
+bool is_closed(const geometry::TriangleSurface& surface) {
+    std::map<std::pair<int, int>, int> balance;
+    for (const auto& t : surface.triangles)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const int a = t[c], b = t[(c + 1) % 3];
+            balance[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return std::ranges::all_of(balance, [](const auto& edge) { return edge.second == 0; });
+}
+
+// A jaw as half a ring of radius 40 mm in the plane z = 0: rami at x = ±40 mm, the chin at y = -40 mm.
+geometry::TriangleSurface half_ring() {
+    geometry::TriangleSurface straight =
+        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 40, 81, [](double, double) { return 6.0 * mm; });
+    for (Vec3& v : straight.vertices) {
+        const double a = pi * v.z;
+        const Vec3 out(-std::cos(a), -std::sin(a), 0.0);
+        // Along the ring the directions across keep their orientation to its tangent.
+        v = (40.0 * mm + v.x) * out + Vec3(0.0, 0.0, -v.y);
+    }
+    if (enclosed(straight) < 0.0)
+        for (auto& t : straight.triangles) std::swap(t[1], t[2]);
+    return straight;
+}
+
+}  // namespace
+
+TEST_CASE("a plane through one ramus of a jaw leaves the other one whole") {
+    const geometry::TriangleSurface jaw = half_ring();
+    REQUIRE(is_closed(jaw));
+    const double all = enclosed(jaw);
+    CHECK(all == Approx(pi * 36.0 * pi * 40.0 * mm * mm * mm).epsilon(0.02));
+    // Both planes reach through both rami; the piece lies between -140° and -100° on the left.
+    const auto at = [](double turn) { return 40.0 * mm * Vec3(-std::cos(turn), -std::sin(turn), 0.0); };
+    const auto along = [](double turn) { return Vec3(std::sin(turn), -std::cos(turn), 0.0); };
+    const Plane first{at(0.5), along(0.5)}, last{at(1.2), along(1.2)};
+    const CutPieces pieces = cut_between(jaw, first, last);
+    REQUIRE(pieces.rest.size() == 2);
+    CHECK(is_closed(pieces.between));
+    CHECK(is_closed(pieces.rest[0]));
+    CHECK(is_closed(pieces.rest[1]));
+    CHECK(enclosed(pieces.between) == Approx(all * 0.7 / pi).epsilon(0.005));
+    CHECK(enclosed(pieces.between) + enclosed(pieces.rest[0]) + enclosed(pieces.rest[1]) == Approx(all).epsilon(1e-9));
+    for (const Vec3& v : pieces.between.vertices) {
+        CHECK(glm::dot(v - first.origin, first.normal) > -1e-12);
+        CHECK(glm::dot(v - last.origin, last.normal) < 1e-12);
+    }
+    // Half a jaw: all beyond one plane.
+    const CutPieces half = cut_between(jaw, {at(pi / 2.0), along(pi / 2.0)}, {});
+    REQUIRE(half.rest.size() == 1);
+    CHECK(enclosed(half.between) == Approx(0.5 * all).epsilon(1e-6));
+    for (const Vec3& v : half.between.vertices) CHECK(v.x > -1e-9);
+}
+
+TEST_CASE("pieces of a hollow bone have the volume between their planes") {
+    const Vec3 z(0.0, 0.0, 1.0);
+    geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    geometry::TriangleSurface cavity =
+        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
+    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
+    append(bone, cavity);
+    const double all = enclosed(bone);
+    const double area = 30.0 * std::sin(2.0 * pi / 60.0) * (49.0 - 9.0) * mm * mm;  // of two polygons of 60 corners
+    for (std::uint64_t trial = 0; trial < 50; ++trial) {
+        const Random random{trial};
+        const auto tilted = [&](std::uint64_t draw, double height) {
+            return Plane{Vec3(0.0, 0.0, height), glm::normalize(Vec3(0.5 * (random.uniform(draw) - 0.5),
+                                                                     0.5 * (random.uniform(draw + 1) - 0.5), 1.0))};
+        };
+        const double low = (20.0 + 10.0 * random.uniform(1)) * mm, high = (50.0 + 20.0 * random.uniform(2)) * mm;
+        const CutPieces pieces = cut_between(bone, tilted(3, low), tilted(5, high));
+        CHECK(is_closed(pieces.between));
+        CHECK(enclosed(pieces.between) == Approx(area * (high - low)).epsilon(1e-6));
+        double sum = enclosed(pieces.between);
+        for (const auto& piece : pieces.rest) sum += enclosed(piece);
+        CHECK(sum == Approx(all).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("cuts that miss a bone or do not separate it are refused") {
+    using Catch::Matchers::ContainsSubstring;
+    const geometry::TriangleSurface jaw = half_ring();
+    const Vec3 x(1.0, 0.0, 0.0);
+    CHECK_THROWS_WITH(cut_between(jaw, {Vec3(0.0, 0.0, 1.0), Vec3(0.0, 0.0, 1.0)}, {}), ContainsSubstring("misses"));
+    // A closed ring stays in one piece when it is cut once.
+    geometry::TriangleSurface ring =
+        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 12, 41, [](double, double) { return 6.0 * mm; });
+    ring.vertices.resize(12 * 40);
+    ring.triangles.clear();
+    for (int n = 0; n < 40; ++n)
+        for (int m = 0; m < 12; ++m) {
+            const auto at = [](int i, int j) { return (i % 40) * 12 + j % 12; };
+            ring.triangles.push_back({at(n, m), at(n, m + 1), at(n + 1, m)});
+            ring.triangles.push_back({at(n, m + 1), at(n + 1, m + 1), at(n + 1, m)});
+        }
+    for (std::size_t n = 0; n < ring.vertices.size(); ++n) {
+        const Vec3 v = ring.vertices[n];
+        const double a = 2.0 * pi * v.z;
+        ring.vertices[n] = (40.0 * mm + v.x) * Vec3(std::cos(a), std::sin(a), 0.0) + Vec3(0.0, 0.0, v.y);
+    }
+    REQUIRE(is_closed(ring));
+    CHECK_THROWS_WITH(cut_between(ring, {Vec3(0.0, 40.0 * mm, 0.0), x}, {}), ContainsSubstring("do not separate"));
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan reconstruct on a jaw and a fibula of known shape.
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "tests/dsp/reconstruct/donors.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <numbers>
+
+using namespace tactus;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double mm = 1e-3, pi = std::numbers::pi;
+
+// A jaw as half a ring of radius 40 mm with its chin at y = -40 mm.
+geometry::TriangleSurface half_ring() {
+    geometry::TriangleSurface ring =
+        reconstruct::closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 40, 81, [](double, double) { return 6.0 * mm; });
+    for (Vec3& v : ring.vertices) {
+        const double a = pi * v.z;
+        v = (40.0 * mm + v.x) * Vec3(-std::cos(a), -std::sin(a), 0.0) + Vec3(0.0, 0.0, -v.y);
+    }
+    if (mesh::volume_of(ring) < 0.0)
+        for (auto& t : ring.triangles) std::swap(t[1], t[2]);
+    return ring;
+}
+
+json at(double turn) { return {-40.0 * std::cos(turn), -40.0 * std::sin(turn), 0.0}; }
+
+struct Case {
+    test::Folder folder;
+    std::string plan = (folder.path / "case.plan.json").string();
+
+    Case() {
+        geometry::TriangleSurface bone = reconstruct::closed_tube(Vec3(0.1, 0.0, -0.2), Vec3(0.0, 0.0, 1.0), 0.33, 40,
+                                                                  61, [](double, double) { return 7.0 * mm; });
+        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{bone, {}}}, folder.path / "fibula.stl");
+        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{half_ring(), {}}}, folder.path / "jaw.stl");
+    }
+    json inputs() const {
+        // Both end planes reach through both rami.
+        return {{"mandible_planes",
+                 {{{"origin", at(0.8)}, {"normal", {0.717, -0.697, 0.0}}},
+                  {{"origin", at(1.57)}},
+                  {{"origin", at(2.2)}, {"normal", {0.808, 0.589, 0.0}}}}},
+                {"fibula_line", {{"point", {100, 0, -200}}, {"direction", {0, 0, 1}}}},
+                {"donor", "fibula.stl"},
+                {"jaw", "jaw.stl"}};
+    }
+    test::Outcome run(const json& with) const {
+        return folder.tactus("plan reconstruct " + plan + " " + folder.write("inputs.json", with.dump()).string());
+    }
+    double volume(const std::string& piece) const {
+        return mesh::volume_of(mesh::load_mesh(folder.path / "case-pieces" / (piece + ".stl"))) * 1e-9;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("plan reconstruct makes a plan of the pieces with each segment in place", "[slow]") {
+    const Case made;
+    const test::Outcome done = made.run(made.inputs());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const json plan = json::parse(test::slurp(made.plan));
+    REQUIRE(plan["fragments"].size() == 5);
+    // The resected piece and what is kept of the jaw add up to it.
+    const double all = mesh::volume_of(half_ring());
+    CHECK(made.volume("resected") == Approx(all * 1.4 / pi).epsilon(0.01));
+    CHECK(made.volume("resected") + made.volume("jaw-1") + made.volume("jaw-2") == Approx(all).epsilon(1e-4));
+    // Each segment, where the plan puts it, lies between the planes of the jaw.
+    const test::Outcome shown = made.folder.tactus("plan show " + made.plan + " --json");
+    REQUIRE(shown.code == 0);
+    const json inputs = made.inputs();
+    for (std::size_t n = 0; n < 2; ++n) {
+        const std::string name = "segment-" + std::to_string(n + 1);
+        const mesh::Mesh segment = mesh::load_mesh(made.folder.path / "case-pieces" / (name + ".stl"));
+        const json& step = plan["steps"][n + 1];
+        const json& pose = step["poses"][0];
+        const auto number = [](const json& j, std::size_t i) { return j[i].get<double>(); };
+        const json &p = pose["position_m"], &q = pose["quaternion_wxyz"];
+        const Pose place{Vec3(number(p, 0), number(p, 1), number(p, 2)),
+                         Quat(number(q, 0), number(q, 1), number(q, 2), number(q, 3))};
+        double least = 1e9, greatest = -1e9;
+        const json &from = inputs["mandible_planes"][n]["origin"], &to = inputs["mandible_planes"][n + 1]["origin"];
+        const Vec3 a = Vec3(number(from, 0), number(from, 1), number(from, 2)) * mm,
+                   b = Vec3(number(to, 0), number(to, 1), number(to, 2)) * mm, axis = glm::normalize(b - a);
+        double off = 0.0;
+        for (const Vec3& v : segment.vertices) {
+            const Vec3 w = place.apply(v * mm) - a;
+            least = std::min(least, glm::dot(w, axis));
+            greatest = std::max(greatest, glm::dot(w, axis));
+            off = std::max(off, glm::length(w - glm::dot(w, axis) * axis));
+        }
+        CHECK(off == Approx(7.0 * mm).margin(0.1 * mm));
+        CHECK(0.5 * (least + greatest) == Approx(0.5 * glm::length(b - a)).margin(1.0 * mm));
+    }
+    // Undo takes the last segment back to the leg.
+    CHECK(made.folder.tactus("plan undo " + made.plan).code == 0);
+    // Nothing is overwritten.
+    const test::Outcome again = made.run(made.inputs());
+    CHECK(again.code == 2);
+    CHECK_THAT(again.err, Catch::Matchers::ContainsSubstring("exists already"));
+}
+
+TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
+    using Catch::Matchers::ContainsSubstring;
+    const Case made;
+    const auto refused = [&](const json& inputs, const std::string& text) {
+        const test::Outcome answer = made.run(inputs);
+        CHECK(answer.code == 2);
+        CHECK_THAT(answer.err, ContainsSubstring(text));
+        CHECK_FALSE(fs::exists(made.plan));
+        CHECK_FALSE(fs::exists(made.folder.path / "case-pieces"));
+    };
+    json without = made.inputs();
+    without.erase("donor");
+    refused(without, "no 'donor'");
+    json missing = made.inputs();
+    missing["jaw"] = "none.stl";
+    refused(missing, "none.stl");
+    json beside = made.inputs();
+    for (json& plane : beside["mandible_planes"]) plane["origin"][2] = 300.0;
+    beside["mandible_planes"][0]["normal"] = {0.0, 0.1, 1.0};
+    beside["mandible_planes"][2]["normal"] = {0.0, 0.1, 1.0};
+    const test::Outcome answer = made.run(beside);
+    CHECK(answer.code == 2);
+    CHECK_FALSE(fs::exists(made.folder.path / "case-pieces"));
+}

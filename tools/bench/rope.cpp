@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ropes: energy over many random pulls, residuals, and the cost of a tick.
+#include "dsp/rope/rope.hpp"
+
+#include "assets/file/json.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/rope/measure.hpp"
+#include "tools/bench/bench.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+namespace tactus::bench {
+
+namespace {
+
+using rope::Rope;
+using rope::RopeMaterial;
+
+constexpr double mm = 1e-3, tick = 1e-3;
+constexpr std::uint64_t pulls_per_rope = 50, ticks_per_pull = 20;
+
+struct RopeBenchChoice {
+    int pulls = 100'000;
+    bool json = false;
+};
+
+struct Tally {
+    double moved = 0.0;  // J that hands and ropes have exchanged
+    double worst = 0.0;  // J: least of what hands have put in minus what is stored
+    double residual = 0.0;  // N
+    std::size_t ticks = 0, unsolved = 0;
+    std::vector<double> microseconds;
+};
+
+double thread_seconds() {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// One rope round a ball, held at one end and pulled to random places at the other.
+void pull_one(std::uint64_t seed, std::size_t points, std::uint64_t pulls, Tally& tally) {
+    const Random random{seed};
+    const rope::Ball bone(Vec3(0.0, 0.0, -12.0 * mm), 10.0 * mm);
+    RopeMaterial material = rope::artery();
+    material.friction = 0.3 * random.uniform(1'000'000);
+    const Vec3 fixed(-30.0 * mm, 0.0, 0.0);
+    Vec3 hand(30.0 * mm, 0.0, 0.0), goal = hand, velocity(0.0);
+    Rope rope(rope::resampled(std::vector<Vec3>{fixed, hand}, points),
+              std::vector<double>(points - 1, 60.0 * mm / static_cast<double>(points - 1)), material);
+    rope.hold(0, fixed);
+    rope.hold(points - 1, hand);
+    for (int n = 0; n < 5; ++n) rope.step(1.0, &bone);
+    double work = -rope.energy();
+    for (std::uint64_t n = 0; n < pulls * ticks_per_pull; ++n) {
+        if (n % ticks_per_pull == 0)
+            goal = Vec3(20.0 + 30.0 * random.uniform(3 * n), 40.0 * (random.uniform(3 * n + 1) - 0.5),
+                        40.0 * (random.uniform(3 * n + 2) - 0.7)) *
+                   mm;
+        velocity = 0.9 * velocity + 4.0 * (goal - hand);
+        hand += tick * velocity;
+        rope.hold(points - 1, hand);
+        const Vec3 before = rope.points()[points - 1];
+        const double begin = thread_seconds();
+        const rope::RopeStep step = rope.step(tick, &bone);
+        tally.microseconds.push_back(1e6 * (thread_seconds() - begin));
+        const double done = -glm::dot(rope.pull_on(points - 1), rope.points()[points - 1] - before);
+        work += done;
+        tally.moved += std::abs(done);
+        tally.worst = std::min(tally.worst, work - rope.energy());
+        tally.residual = std::max(tally.residual, step.residual);
+        tally.unsolved += !step.is_solved;
+        ++tally.ticks;
+    }
+}
+
+int bench_rope(const RopeBenchChoice& choice) {
+    Tally small, large;
+    const auto ropes = static_cast<std::uint64_t>(std::ceil(choice.pulls / static_cast<double>(pulls_per_rope)));
+    for (std::uint64_t seed = 1; seed <= ropes; ++seed) pull_one(seed, 33, pulls_per_rope, small);
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) pull_one(seed, 65, pulls_per_rope, large);
+    std::ranges::sort(large.microseconds);
+    const auto quantile = [&](double q) {
+        return large.microseconds[static_cast<std::size_t>(q * static_cast<double>(large.microseconds.size() - 1))];
+    };
+    const double share = static_cast<double>(small.unsolved) / static_cast<double>(small.ticks);
+    if (choice.json) {
+        const file::Json json{{"pulls", ropes * pulls_per_rope},
+                              {"worst_energy_j", small.worst},
+                              {"moved_j", small.moved},
+                              {"unsolved_share", share},
+                              {"largest_residual_n", small.residual},
+                              {"tick_64_us", {{"median", quantile(0.5)}, {"p99", quantile(0.99)}}}};
+        fmt::print("{}\n", json.dump(2));
+        return done;
+    }
+    fmt::print(
+        "{} random pulls of 20 ms on ropes of 32 segments over bone: energy {:.1e} J given at most, of {:.3g} J "
+        "moved\n",
+        ropes * pulls_per_rope, -small.worst, small.moved);
+    fmt::print("{:.2f} % of ticks end at their most iterations; largest residual {:.1e} N\n", 100.0 * share,
+               small.residual);
+    fmt::print("a tick of 64 segments: median {:.0f} µs, p99 {:.0f} µs\n", quantile(0.5), quantile(0.99));
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<RopeBenchChoice>();
+    verb.add("--pulls", choice->pulls, "random pulls").shows_default().range(1, 10'000'000);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return bench_rope(*choice); };
+}
+
+}  // namespace
+
+Verb rope_verb() { return {"rope", "energy of ropes over many random pulls, and the cost of a tick", add}; }
+
+}  // namespace tactus::bench

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan reconstruct: cuts jaw and fibula as planned, and makes the plan of the case with the pieces in place.
+#include "tools/study/planning/plan_reconstruct.hpp"
+#include "assets/reconstruct/fibula_inputs.hpp"
+#include "tools/command/planning/plan_options.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+struct ReconstructChoice : PlanChoice {
+    std::filesystem::path inputs;
+};
+
+int run(const ReconstructChoice& choice) {
+    const study::Reconstruction made =
+        study::make_reconstruction(reconstruct::read_fibula_inputs(choice.inputs), choice.plan);
+    if (choice.json) return show_change(choice);
+    fmt::print("{}:", choice.plan.string());
+    for (const cases::PlanFragment& fragment : made.plan.fragments) fmt::print(" {}", fragment.name);
+    fmt::print("\n");
+    for (const reconstruct::FibulaWarning& w : made.fibula.warnings) fmt::print("warning: {}\n", w.text);
+    fmt::print("for research, not a medical device\n");
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ReconstructChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("inputs", choice->inputs, "inputs as of 'plan fibula', with 'donor' and, if wanted, 'jaw' (.json)")
+        .required();
+    return [choice] { return run(*choice); };
+}
+
+}  // namespace
+
+Verb plan_reconstruct_verb() {
+    return {"reconstruct", "cut jaw and fibula as planned; a new plan has the pieces, each segment in place", add};
+}
+
+}  // namespace tactus::command
