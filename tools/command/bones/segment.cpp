@@ -4,6 +4,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
 #include "assets/file/json.hpp"
+#include "assets/file/outputs.hpp"
 #include "assets/volume/length_unit.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
@@ -57,6 +58,11 @@ void check_outputs(const SegmentChoice& choice) {
     }
     for (const auto& out : {choice.certainty, choice.propose})
         if (!out.empty()) bone::check_output(source, out);
+    std::vector<std::filesystem::path> all = choice.out;
+    all.push_back(choice.certainty);
+    all.push_back(choice.propose);
+    const std::filesystem::path sources[] = {choice.settings.scan, choice.seeds};
+    file::check_outputs(sources, all);
 }
 
 void write_bones(const study::ScanGraph& scan, const study::SegmentedScan& found,
@@ -202,9 +208,9 @@ Action add(VerbOptions& verb) {
     verb.add("--threshold", settings.threshold,
              "value at and above which a voxel is bone, HU (default: the one that info suggests)")
         .unit("HU");
-    verb.add("--metal", settings.metal, "HU at and above which a voxel is metal and takes no part")
-        .unit("HU")
-        .shows_default();
+    verb.add("--metal", settings.metal,
+             "value at and above which a voxel is metal and takes no part (default: 2500 HU; none for scanner numbers)")
+        .unit("HU");
     verb.add("--marrow", choice->marrow,
              "take in marrow behind cortex that is open by less than twice this, mm; 0: none")
         .unit("mm")

@@ -21,7 +21,7 @@ struct VesselSettings {
     vessel::TrackSettings track;
     std::optional<vessel::LegGeometry> leg;    ///< judges the run-off of a lower leg
     std::vector<std::filesystem::path> out;    ///< see write_track
-    bool straightens = false;                  ///< also pulls the branch of the seed straight
+    std::filesystem::path straightened;        ///< not empty: pulls the branch of the seed straight, for a picture there
 };
 
 struct FoundVessel {

@@ -20,7 +20,8 @@ struct SegmentSettings {
     std::filesystem::path scan;      ///< as for volume::read_volume
     volume::ReadOptions read;
     std::optional<double> threshold;  ///< values at and above it are bone; none: bone::suggested_threshold
-    double metal = 2500.0;           ///< HU; values at and above it take no part; no meaning for uncalibrated values
+    /// Values at and above it take no part; none: 2500 HU, and no limit for scanner numbers.
+    std::optional<double> metal;
     double marrow = 2e-3;            ///< m: radius of the closing that takes in marrow; 0: none
     RunJobs run = run_in_turn;
 };
