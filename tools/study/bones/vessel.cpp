@@ -16,7 +16,6 @@ namespace tactus::study {
 namespace {
 
 constexpr double air = -200.0, bone = 900.0;  // HU; vessels in a CT angiography reach about 700
-constexpr double least_hu = -150.0;                // below fat
 
 /// Mean of the 27 samples around the seed.
 void check_seed(const volume::Grid& grid, const Vec3& seed) {
@@ -56,7 +55,7 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
 
     const double before = thread_seconds();
     vessel::TrackSettings track_settings = settings.track;
-    if (is_hu) track_settings.clip_below = least_hu;
+    if (is_hu) track_settings.clip_below = least_hu_of_vessels;
     result.found = vessel::follow(grid, settings.seed, track_settings);
     result.seconds = thread_seconds() - before;
     const vessel::Track& track = result.found.track;

@@ -24,6 +24,8 @@ struct VesselSettings {
     std::filesystem::path straightened;        ///< not empty: pulls the branch of the seed straight, for a picture there
 };
 
+inline constexpr double least_hu_of_vessels = -150.0;  ///< below fat: lower HU count as this value
+
 struct FoundVessel {
     vessel::Followed found;
     std::optional<vessel::RunOff> run_off;

@@ -57,7 +57,8 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
     out.notes = read.notes;
     if (is_turned(read))
         out.notes.push_back(
-            "the axes of the scan are turned against the patient's; it was interpolated, and the labels are on axes along "
+            "the axes of the scan are turned against the patient's; it was interpolated, and the labels are on axes "
+            "along "
             "the patient");
     out.scan = volume::lps_grid(std::move(read));
     const volume::ValueRange range = volume::range_of(out.scan.values);
@@ -74,9 +75,8 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
     }
 
     // Scanner numbers do not say what is metal.
-    const double metal = settings.metal.value_or(out.hu == volume::HuKind::scanner
-                                                     ? std::numeric_limits<double>::infinity()
-                                                     : common_for_metal);
+    const double metal = settings.metal.value_or(
+        out.hu == volume::HuKind::scanner ? std::numeric_limits<double>::infinity() : common_for_metal);
     std::vector<std::uint8_t> inside(out.scan.count(), 0);
     std::array<int, 3> low = out.scan.size, high{-1, -1, -1};
     std::size_t v = 0, voxels = 0;
@@ -108,8 +108,8 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
                         "of the scan",
                         file, voxels, out.threshold, most_bone_voxels));
     if (out.metal_voxels > 0)
-        out.notes.push_back(fmt::format("{} voxels of {:g} or more are taken for metal and have no label",
-                                        out.metal_voxels, metal));
+        out.notes.push_back(
+            fmt::format("{} voxels of {:g} or more are taken for metal and have no label", out.metal_voxels, metal));
 
     out.box = {{high[0] - low[0] + 1, high[1] - low[1] + 1, high[2] - low[2] + 1},
                out.scan.position(low[0], low[1], low[2]),

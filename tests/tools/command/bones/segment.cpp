@@ -152,8 +152,7 @@ TEST_CASE("segment says when its labels are on other axes than the file's") {
     std::string header = test::slurp(folder / "ct.nrrd");
     const auto at = header.find("space directions:");
     REQUIRE(at != std::string::npos);
-    header.replace(at, header.find('\n', at) - at,
-                   "space directions: (0.7878,0.1389,0) (-0.1389,0.7878,0) (0,0,0.9)");
+    header.replace(at, header.find('\n', at) - at, "space directions: (0.7878,0.1389,0) (-0.1389,0.7878,0) (0,0,0.9)");
     folder.write("oblique.nrrd", header);
     const json proposed = folder.answer(folder / "oblique.nrrd" + " --threshold 200 --propose " + folder / "p.json");
     const json found = folder.answer(folder / "oblique.nrrd" + " --threshold 200 --seeds " + folder / "p.json" +
