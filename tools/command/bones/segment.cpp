@@ -101,7 +101,7 @@ Json json_of(const study::ScanGraph& scan, const study::SegmentedScan& found, co
     json["marrow_voxels"] = found.marrow_voxels;
     json["metal_voxels"] = scan.metal_voxels;
     json["threshold"] = {{"value", scan.threshold}, {"from", scan.threshold_from}};
-    json["gap_law"] = {{"bright", scan.law.bright}, {"width", scan.law.width}};
+    json["gap_law"] = {{"bright", found.law.bright}, {"width", found.law.width}};
     json["residual"] = found.residual;
     json["iterations"] = found.iterations;
     json["seconds"] = found.seconds;
@@ -189,7 +189,7 @@ int segment_bone(const SegmentChoice& given) {
         if (!choice.json && (choice.out.empty() || !is_enough))
             fmt::print("{}: strokes of {} fragment{}{}\n", choice.seeds.string(), seeds.size(),
                        seeds.size() == 1 ? "" : "s", is_enough ? "" : "; a segmentation needs those of two");
-        if (choice.out.empty()) return done;
+        if (choice.out.empty() || session::stop_on_signals()) return done;
         if (!is_enough) return answer_is_no;
     }
     const study::SegmentedScan found = study::segment_scan(scan, seeds, settings, choice.seeds.string());

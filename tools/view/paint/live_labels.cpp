@@ -43,7 +43,9 @@ LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<seg
     if (out.problem.empty()) {
         const int count = static_cast<int>(labels.size());
         const bool is_warm = before && before->labels == count;
-        before = segment::random_walks(scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
+        segment::GapLaw law;
+        const std::unique_ptr<segment::VoxelGraph> own = study::graph_for_seeds(scan, out.seed, law);
+        before = segment::random_walks(own ? *own : scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
         out.residual = before->residual;
         out.iterations = before->iterations;
         out.label = segment::labels_of(*before);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/paint/paint_desk.hpp"
 
+#include "assets/bone/labels.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -13,6 +14,14 @@
 namespace tactus::view {
 
 using Tool = PaintBench::Tool;
+
+namespace {
+
+ImVec4 ink_of(const Vec3& colour) {
+    return {static_cast<float>(colour.x), static_cast<float>(colour.y), static_cast<float>(colour.z), 1.0f};
+}
+
+}  // namespace
 
 PaintDesk::PaintDesk(Window& window, PaintBench& bench)
     : window_(window),
@@ -78,9 +87,20 @@ void PaintDesk::draw_labels() {
         const segment::SeedLabel& label = painting.labels()[l];
         ImGui::PushID(static_cast<int>(l));
         const Vec3 c = label.colour.value_or(Vec3(0.5));
-        float ink[3] = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
-        ImGui::ColorEdit3("##colour", ink, ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel);
-        if (ImGui::IsItemDeactivatedAfterEdit()) painting.recolour(l, Vec3(ink[0], ink[1], ink[2]));
+        if (ImGui::ColorButton("##colour", ink_of(c), ImGuiColorEditFlags_NoTooltip)) ImGui::OpenPopup("colours");
+        mark_spot("colour " + label.name);
+        if (ImGui::BeginPopup("colours")) {
+            for (int n = 1; n <= 8; ++n) {
+                if (n % 4 != 1) ImGui::SameLine();
+                ImGui::PushID(n);
+                if (ImGui::ColorButton("##choice", ink_of(bone::label_colour(n)), ImGuiColorEditFlags_NoTooltip)) {
+                    painting.recolour(l, bone::label_colour(n));
+                    ImGui::CloseCurrentPopup();
+                }
+                ImGui::PopID();
+            }
+            ImGui::EndPopup();
+        }
         ImGui::SameLine();
         const float wide = ImGui::GetContentRegionAvail().x - 2.2f * ImGui::GetFrameHeight();
         if (renamed_ == static_cast<int>(l)) {

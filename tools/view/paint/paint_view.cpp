@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/paint/paint_view.hpp"
 
+#include "assets/cases/plan_lock.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/view/paint/paint_desk.hpp"
 #include "tools/view/paint/paint_script.hpp"
 
@@ -18,6 +20,14 @@ std::size_t paint_view(const study::ScanGraph& scan, const study::SegmentSetting
     constexpr auto picture_time = std::chrono::microseconds(16'667);
     std::optional<PaintScript> script;
     if (!choice.script.empty()) script.emplace(choice.script);
+    // Two windows would write over each other's strokes.
+    std::optional<cases::PlanLock> lock;
+    try {
+        lock.emplace(choice.seeds, std::chrono::milliseconds(0));
+    } catch (const Error&) {
+        throw Error(fmt::format("{}: another window paints these seeds, or the folder cannot be written",
+                                choice.seeds.string()));
+    }
     PaintBench bench(scan, settings, choice.seeds);
     Window window(fmt::format("{} - Tactus", settings.scan.filename().string()), 1600, 1000, choice.scale);
     PaintDesk desk(window, bench);
