@@ -29,10 +29,11 @@ CtThreshold suggested_threshold(const volume::Histogram& histogram, volume::HuKi
     const double value = volume::suggested_threshold(histogram, masked);
     // Where bone is rare or absent the second split lies between soft tissues.
     if (hu == volume::HuKind::calibrated && value < least_of_bone)
-        return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue"};
+        return {common_for_bone, "common for bone; the values alone do not tell it from soft tissue", common_for_bone};
     const bool is_wide = histogram.high - histogram.low > 200.0;
     return {is_wide ? std::round(value) : value,
-            masked ? "half the median of the values that are not 0" : "Otsu's method twice: first air, then bone"};
+            masked ? "half the median of the values that are not 0" : "Otsu's method twice: first air, then bone",
+            value};
 }
 
 }  // namespace tactus::bone

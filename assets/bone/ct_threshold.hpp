@@ -12,6 +12,7 @@ namespace tactus::bone {
 struct CtThreshold {
     double value = 0.0;  ///< in the unit of the histogram: HU, or scanner numbers; whole where the range is wide
     std::string how;     ///< the method, in words
+    double exact = 0.0;  ///< before rounding: scales with the values, so that HU and HU / 1000 have the same bone
 };
 
 /// The histogram that suggested_threshold needs; `low`, `high`: least and greatest value of the volume.

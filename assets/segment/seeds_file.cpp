@@ -26,7 +26,7 @@ constexpr std::size_t most_points = 1'000'000;
 constexpr const char* expected =
     R"({"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]}, ...]})";
 
-double rounded_mm(double metres) { return std::round(metres * 1e6) * 1e-3; }
+double rounded_mm(double metres) { return std::round(metres * 1e6) / 1e3; }
 
 Vec3 colour_of(const Json& json, const std::string& where) {
     const std::string text = json.is_string() ? json.get<std::string>() : "";
@@ -62,7 +62,7 @@ Stroke stroke_of(const Json& json, const std::string& where) {
     return stroke;
 }
 
-SeedLabel label_of(const Json& json, std::size_t number, const std::string& file) {
+SeedLabel label_of(const Json& json, std::size_t number, const std::string& file, SeedsUse use) {
     const std::string nth = fmt::format("{}: label {}", file, number + 1);
     if (!json.is_object() || !json.contains("name") || !json["name"].is_string())
         throw Error(fmt::format("{} has no 'name'", nth));
@@ -74,7 +74,8 @@ SeedLabel label_of(const Json& json, std::size_t number, const std::string& file
         throw Error(fmt::format("{}: the name must be one line of 1 to 200 characters", nth));
     const std::string where = fmt::format("{}: label '{}'", file, label.name);
     if (const Json* colour = json.find("colour")) label.colour = colour_of(*colour, where);
-    if (!json.contains("strokes") || !json["strokes"].is_array() || json["strokes"].empty())
+    if (!json.contains("strokes") || !json["strokes"].is_array() ||
+        (json["strokes"].empty() && use == SeedsUse::segmentation))
         throw Error(fmt::format("{} has no strokes; paint at least one place of it", where));
     for (const Json& stroke : json["strokes"])
         label.strokes.push_back(stroke_of(stroke, fmt::format("{}, stroke {}", where, label.strokes.size() + 1)));
@@ -83,7 +84,7 @@ SeedLabel label_of(const Json& json, std::size_t number, const std::string& file
 
 }  // namespace
 
-std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file) {
+std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file, SeedsUse use) {
     Json json;
     try {
         json = Json::parse(text);
@@ -93,14 +94,14 @@ std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& f
     if (!json.is_object() || !json.contains("labels") || !json["labels"].is_array())
         throw Error(fmt::format("{}: expected {}", file, expected));
     const Json& list = json["labels"];
-    if (list.size() < 2)
+    if (list.size() < 2 && use == SeedsUse::segmentation)
         throw Error(fmt::format("{}: there {} {}; a segmentation needs seeds of at least two", file,
                                 list.empty() ? "are" : "is", list.empty() ? "no labels" : "one label"));
     if (list.size() > most_labels)
         throw Error(fmt::format("{}: {} labels are too many; at most {}", file, list.size(), most_labels));
     std::vector<SeedLabel> labels;
     for (const Json& one : list) {
-        SeedLabel label = label_of(one, labels.size(), file);
+        SeedLabel label = label_of(one, labels.size(), file, use);
         if (std::any_of(labels.begin(), labels.end(), [&](const SeedLabel& l) { return l.name == label.name; }))
             throw Error(fmt::format("{}: there are two labels '{}'; give each its own name", file, label.name));
         labels.push_back(std::move(label));
@@ -108,8 +109,8 @@ std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& f
     return labels;
 }
 
-std::vector<SeedLabel> read_seeds(const std::filesystem::path& path) {
-    return seeds_of_text(file::read_whole_file(path), path.string());
+std::vector<SeedLabel> read_seeds(const std::filesystem::path& path, SeedsUse use) {
+    return seeds_of_text(file::read_whole_file(path), path.string(), use);
 }
 
 void write_seeds(std::span<const SeedLabel> labels, const std::filesystem::path& path) {

@@ -24,10 +24,13 @@ struct SeedLabel {
 inline constexpr std::size_t most_labels = 100;
 
 /// Reads {"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]},
-/// ...]}; positions in LPS. Throws Error that names the label and the stroke; for fewer than two labels, too.
-std::vector<SeedLabel> read_seeds(const std::filesystem::path& path);
+/// ...]}; positions in LPS. Throws Error that names the label and the stroke; for a segmentation, also for fewer than two
+/// labels and for labels without strokes, which a draft may have.
+enum class SeedsUse { segmentation, draft };
+std::vector<SeedLabel> read_seeds(const std::filesystem::path& path, SeedsUse use = SeedsUse::segmentation);
 /// The same from the text of a file; `file` is its name in messages.
-std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file);
+std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file,
+                                     SeedsUse use = SeedsUse::segmentation);
 
 /// Writes such a file; lengths are rounded to 0.001 mm. Throws Error.
 void write_seeds(std::span<const SeedLabel> labels, const std::filesystem::path& path);

@@ -83,4 +83,18 @@ GapLaw gap_law(const GapStatistics& statistics) {
     return law;
 }
 
+GapLaw law_of_seeds(const GapLaw& law, const VoxelGraph& graph, const volume::Grid& values,
+                    std::span<const std::uint8_t> seed) {
+    std::array<std::vector<float>, 256> painted;
+    for (std::size_t n = 0; n < seed.size(); ++n)
+        if (seed[n] != 0) painted[seed[n]].push_back(values.values[graph.voxel[n]]);
+    GapLaw out = law;
+    for (std::vector<float>& of_label : painted) {
+        if (of_label.empty()) continue;
+        std::sort(of_label.begin(), of_label.end());
+        out.bright = std::min(out.bright, quantile(of_label, 0.9));
+    }
+    return out;
+}
+
 }  // namespace tactus::segment

@@ -26,4 +26,10 @@ GapStatistics gap_statistics(const volume::Grid& values, std::span<const std::ui
 /// shares were chosen on three scanned fractures with expert labels: docs/benchmarks.md.
 GapLaw gap_law(const GapStatistics& statistics);
 
+/// The same law, where strokes lie in darker bone: conducts fully from the value on that 90 % of the painted voxels of the
+/// darkest label are below. A stroke in spongy bone would otherwise be shut in by bone as dark as a gap, and its whole
+/// fragment would go to a label that its cortex touches. `seed`: of each node, 0 for none.
+GapLaw law_of_seeds(const GapLaw& law, const VoxelGraph& graph, const volume::Grid& values,
+                    std::span<const std::uint8_t> seed);
+
 }  // namespace tactus::segment

@@ -26,6 +26,7 @@ std::vector<LostStretch> Branch::lost() const {
         if (n > 0 && nodes[n - 1].is_lost) found.back().to = nodes[n].along;
         else found.push_back({nodes[n].along, nodes[n].along});
     }
+    std::erase_if(found, [](const LostStretch& stretch) { return stretch.to <= stretch.from; });
     return found;
 }
 
@@ -48,21 +49,21 @@ double median(std::vector<double> values) {
 std::optional<Stenosis> stenosis_of(const Branch& branch) {
     std::vector<double> radii;
     for (const Node& node : branch.nodes)
-        if (!node.is_lost) radii.push_back(node.radius);
+        if (!node.is_lost && node.along >= branch.free_from) radii.push_back(node.radius);
     if (radii.size() < 5) return std::nullopt;
-    const double typical = median(radii);
-    if (branch.length() < 6.0 * typical) return std::nullopt;
+    const double typical = median(radii), begin = branch.free_from;
+    if (branch.length() - begin < 6.0 * typical) return std::nullopt;
     Stenosis found;
     bool is_any = false;
     for (std::size_t n = 0; n < branch.nodes.size(); ++n) {
         const Node& node = branch.nodes[n];
         // The ends are worn by the end of the contrast.
-        if (node.is_lost || node.along < typical || node.along > branch.length() - typical) continue;
+        if (node.is_lost || node.along < begin + typical || node.along > branch.length() - typical) continue;
         double near = 3.0 * typical, far = 10.0 * typical;
         std::vector<double> before, after;
         for (const Node& other : branch.nodes) {
             const double away = other.along - node.along;
-            if (other.is_lost || std::abs(away) < near || std::abs(away) > far) continue;
+            if (other.is_lost || other.along < begin || std::abs(away) < near || std::abs(away) > far) continue;
             (away < 0.0 ? before : after).push_back(other.radius);
         }
         double reference = 0.0;

@@ -39,12 +39,14 @@ struct Branch {
     End start = End::contrast;  ///< of the branch of the seed; others start at their parent
     End end = End::contrast;
     int meets = -1;        ///< branch that it meets at its end, for End::meets_track
+    double free_from = 0.0;  ///< m along: before it the parent is so near that it adds to the radius
 
     double length() const { return nodes.empty() ? 0.0 : nodes.back().along; }
+    /// Stretches of at least two nodes. A single node without contrast, as at a fork, is none.
     std::vector<LostStretch> lost() const;
 };
 
-/// Narrowest place of a branch, outside of lost stretches.
+/// Narrowest place of a branch, outside of lost stretches and of its parent's reach.
 struct Stenosis {
     std::size_t node = 0;
     double radius = 0.0;            ///< m

@@ -221,6 +221,15 @@ private:
         }
         for (Node& node : branch.nodes) node.along += gap;
         branch.nodes.insert(branch.nodes.begin(), joining.begin(), joining.end());
+        // The parent, and its blur, are part of what is measured up to here.
+        for (const Node& node : branch.nodes) {
+            branch.free_from = node.along;
+            if (std::ranges::none_of(parent.nodes, [&](const Node& other) {
+                    return glm::length(node.position - other.position) <
+                           other.radius + node.radius + 1.5 * scan_.voxel();
+                }))
+                break;
+        }
         // The start of a branch is a place on the axis that it left.
         if (branch.parent_node == 0 && parent.parent >= 0) {
             branch.parent = parent.parent;

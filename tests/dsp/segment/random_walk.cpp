@@ -3,6 +3,7 @@
 
 #include "dsp/segment/laplacian.hpp"
 #include "dsp/segment/multigrid.hpp"
+#include "dsp/segment/strokes.hpp"
 #include "tests/dsp/segment/phantom.hpp"
 #include "tests/support/catch.hpp"
 
@@ -195,6 +196,44 @@ TEST_CASE("dsp: blocks that touch over a disc are cut at the disc") {
         CHECK(bridge > 50);
         CHECK(static_cast<double>(right) >= 0.98 * static_cast<double>(bridge));
     }
+}
+
+TEST_CASE("dsp: a stroke in spongy bone labels its fragment, though the cortex touches another one") {
+    // Two blocks with a shell of cortex and a spongy core, joined by four voxels of cortex.
+    Phantom p;
+    p.grid = {{61, 30, 30}, Vec3(0.0), Vec3(1e-3), {}};
+    std::size_t v = 0;
+    for (int k = 0; k < 30; ++k)
+        for (int j = 0; j < 30; ++j)
+            for (int i = 0; i < 61; ++i, ++v) {
+                const int x = i < 30 ? i : 60 - i;
+                const bool is_core = std::min({x, 29 - x, j, 29 - j, k, 29 - k}) >= 3;
+                const bool is_bridge = i == 30 && (j == 14 || j == 15) && (k == 0 || k == 1);
+                const double value = i == 30 ? (is_bridge ? 800.0 : -900.0) : is_core ? 260.0 : 800.0;
+                p.grid.values.push_back(static_cast<float>(value + 20.0 * Random{3}.normal(v)));
+                p.inside.push_back(p.grid.values.back() >= 150.0f);
+                p.truth.push_back(i < 30 ? 1 : i > 30 ? 2 : 0);
+            }
+    const auto law = segment::gap_law(segment::gap_statistics(p.grid, p.inside));
+    VoxelGraph graph = segment::make_voxel_graph(p.grid, p.inside, law);
+    std::vector<std::uint8_t> seed(graph.nodes(), 0);
+    const auto nodes = graph.node_of_voxel();
+    segment::paint(p.grid, nodes, {5e-3, {Vec3(15e-3, 15e-3, 15e-3)}}, 1, seed);
+    segment::paint(p.grid, nodes, {3e-3, {Vec3(60e-3, 15e-3, 15e-3)}}, 2, seed);
+    const auto wrong = [&] {
+        const auto label = segment::labels_of(segment::random_walks(graph, seed, 2));
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < label.size(); ++n)
+            count += p.truth[graph.voxel[n]] != 0 && label[n] != p.truth[graph.voxel[n]];
+        return count;
+    };
+    CHECK(wrong() > graph.nodes() / 4);  // shut in
+    graph = segment::make_voxel_graph(p.grid, p.inside, segment::law_of_seeds(law, graph, p.grid, seed));
+    CHECK(wrong() < graph.nodes() / 50);
+    // Strokes on cortex leave the law as it is.
+    std::fill(seed.begin(), seed.end(), std::uint8_t{0});
+    segment::paint(p.grid, nodes, {2e-3, {Vec3(0.0, 15e-3, 15e-3)}}, 1, seed);
+    CHECK(segment::law_of_seeds(law, graph, p.grid, seed).bright == law.bright);
 }
 
 TEST_CASE("dsp: an island without a seed gets no label") {

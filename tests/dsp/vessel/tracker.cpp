@@ -77,6 +77,33 @@ TEST_CASE("a stenosis is passed and measured") {
           one.radius);
 }
 
+TEST_CASE("an even side branch is no stenosis, and no contrast is missed at its root", "[slow]") {
+    for (const double ratio : {0.5, 0.6})
+        for (const double angle : {45.0, 60.0}) {
+            CAPTURE(ratio, angle);
+            const Result result = followed(simulate::branch_case(2.5, angle, ratio, 4));
+            REQUIRE(result.found.track.branches.size() == 2);
+            const vessel::Branch& side = result.found.track.branches[1];
+            CHECK(side.free_from > 2.5e-3);
+            CHECK(side.free_from < 0.6 * side.length());
+            if (const auto stenosis = vessel::stenosis_of(side)) CHECK(stenosis->percent < 15.0);
+            CHECK(side.lost().empty());
+        }
+}
+
+TEST_CASE("a single node without contrast is no lost stretch") {
+    vessel::Branch branch;
+    for (int n = 0; n < 10; ++n) {
+        vessel::Node node;
+        node.along = 1e-3 * n;
+        node.is_lost = n == 2 || n == 5 || n == 6;
+        branch.nodes.push_back(node);
+    }
+    REQUIRE(branch.lost().size() == 1);
+    CHECK(branch.lost()[0].from == Approx(5e-3));
+    CHECK(branch.lost()[0].to == Approx(6e-3));
+}
+
 TEST_CASE("a gap without contrast is bridged and said", "[slow]") {
     for (const double radius : {1.5, 3.0}) {
         CAPTURE(radius);

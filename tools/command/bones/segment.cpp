@@ -4,6 +4,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
 #include "assets/file/json.hpp"
+#include "assets/file/outputs.hpp"
 #include "assets/volume/length_unit.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
@@ -11,8 +12,10 @@
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/study/segment/segment_scan.hpp"
+#include "tools/session/stop_signals.hpp"
+#include "tools/study/segment/segment_files.hpp"
 #include "tools/study/workers.hpp"
+#include "tools/view/paint/paint_view.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +30,8 @@ using file::Json;
 
 struct SegmentChoice {
     study::SegmentSettings settings;
-    std::filesystem::path seeds, propose, certainty;
+    std::filesystem::path seeds, propose, certainty, plan;
+    view::PaintViewChoice paint;
     std::vector<std::filesystem::path> out;
     double marrow = 2.0;  // mm
     bool json = false;
@@ -41,12 +45,22 @@ Json place_json(const Vec3& m) {
 bool is_bones(const std::filesystem::path& path) { return path.extension() == ".vdb"; }
 
 void check_outputs(const SegmentChoice& choice) {
-    if (choice.out.empty() && choice.propose.empty())
+    const bool paints = !choice.paint.seeds.empty(), proposes = !choice.propose.empty();
+    if (choice.out.empty() && !proposes && !paints)
         throw Error("name the result: -o LABELS.nrrd, LABELS.seg.nrrd or BONES.vdb, or --propose SEEDS.json");
-    if (!choice.propose.empty() && (!choice.seeds.empty() || !choice.out.empty() || !choice.certainty.empty()))
-        throw Error("--propose writes seeds only; run segment again with --seeds");
-    if (choice.propose.empty() && choice.seeds.empty())
-        throw Error("give the seeds: --seeds SEEDS.json; --propose SEEDS.json writes a first version of them");
+    if (proposes && (paints || !choice.seeds.empty() || !choice.out.empty() || !choice.certainty.empty()))
+        throw Error("--propose writes seeds only; run segment again with --seeds or --paint");
+    if (paints && !choice.seeds.empty())
+        throw Error("--paint SEEDS.json continues the seeds in that file; leave out --seeds");
+    if (!proposes && !paints && choice.seeds.empty())
+        throw Error(
+            "give the seeds: --seeds SEEDS.json; --paint SEEDS.json opens a window to paint them, --propose SEEDS.json "
+            "writes a first version of them");
+    if (!choice.paint.script.empty() && !paints) throw Error("--view-script needs --paint");
+    if (!choice.plan.empty() && std::ranges::none_of(choice.out, is_bones))
+        throw Error("--plan needs bones to refer to: -o BONES.vdb");
+    if (!choice.plan.empty() && std::filesystem::exists(choice.plan))
+        throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", choice.plan.string()));
     bone::ImportOptions source;
     source.input = choice.settings.scan;
     for (std::filesystem::path out : choice.out) {
@@ -57,31 +71,13 @@ void check_outputs(const SegmentChoice& choice) {
     }
     for (const auto& out : {choice.certainty, choice.propose})
         if (!out.empty()) bone::check_output(source, out);
-}
-
-void write_bones(const study::ScanGraph& scan, const study::SegmentedScan& found,
-                 const std::vector<volume::Segment>& segments, const SegmentChoice& choice,
-                 const std::filesystem::path& path) {
-    volume::Grid labels{scan.scan.size, scan.scan.origin, scan.scan.spacing,
-                        std::vector<float>(found.map.label.begin(), found.map.label.end())};
-    bone::LabelBone how;
-    // Scanner values are no densities.
-    if (scan.hu != volume::HuKind::scanner) how.hu = &scan.scan;
-    how.hu_is_masked = scan.hu == volume::HuKind::masked;
-    bone::ImportOptions options;
-    options.input = choice.settings.scan;
-    bone::ImportSummary summary;
-    summary.frame = "LPS";
-    summary.hu = volume::name_of(how.hu ? scan.hu : volume::HuKind::none);
-    summary.notes = scan.notes;
-    const std::string hash = bone::hash_of_source(choice.settings.scan);
-    std::vector<bone::Bone> bones;
-    for (const volume::Segment& segment : segments) {
-        bones.push_back(bone::bone_of_label(labels, segment, how, choice.settings.run));
-        bone::add_provenance(bones.back(), options, summary, hash);
-        bones.back().provenance["seeds"] = choice.seeds.filename().string();
-    }
-    bone::save_bones(bones, path);
+    std::vector<std::filesystem::path> all = choice.out;
+    all.push_back(choice.certainty);
+    all.push_back(choice.propose);
+    all.push_back(choice.plan);
+    all.push_back(choice.paint.seeds);
+    const std::filesystem::path sources[] = {choice.settings.scan, choice.seeds};
+    file::check_outputs(sources, all);
 }
 
 Json json_of(const study::ScanGraph& scan, const study::SegmentedScan& found, const SegmentChoice& choice) {
@@ -105,7 +101,7 @@ Json json_of(const study::ScanGraph& scan, const study::SegmentedScan& found, co
     json["marrow_voxels"] = found.marrow_voxels;
     json["metal_voxels"] = scan.metal_voxels;
     json["threshold"] = {{"value", scan.threshold}, {"from", scan.threshold_from}};
-    json["gap_law"] = {{"bright", scan.law.bright}, {"width", scan.law.width}};
+    json["gap_law"] = {{"bright", found.law.bright}, {"width", found.law.width}};
     json["residual"] = found.residual;
     json["iterations"] = found.iterations;
     json["seconds"] = found.seconds;
@@ -156,13 +152,25 @@ void print(const study::ScanGraph& scan, const study::SegmentedScan& found) {
         found.residual, found.iterations, found.seconds, found.certainty_p05);
 }
 
-int segment_bone(const SegmentChoice& choice) {
-    check_outputs(choice);
+/// Opens the window; the labels that have strokes when it is closed.
+std::vector<segment::SeedLabel> painted(const study::ScanGraph& scan, const study::SegmentSettings& settings,
+                                        const SegmentChoice& choice) {
+    view::paint_view(scan, settings, choice.paint, session::stop_on_signals());
+    std::vector<segment::SeedLabel> labels;
+    if (std::filesystem::exists(choice.paint.seeds))
+        labels = segment::read_seeds(choice.paint.seeds, segment::SeedsUse::draft);
+    std::erase_if(labels, [](const segment::SeedLabel& label) { return label.strokes.empty(); });
+    return labels;
+}
+
+int segment_bone(const SegmentChoice& given) {
+    check_outputs(given);
+    SegmentChoice choice = given;
     study::SegmentSettings settings = choice.settings;
     settings.marrow = choice.marrow * 1e-3;
     settings.run = study::on_threads();
     std::vector<segment::SeedLabel> seeds;
-    if (choice.propose.empty()) seeds = segment::read_seeds(choice.seeds);
+    if (!choice.seeds.empty()) seeds = segment::read_seeds(choice.seeds);
     const study::ScanGraph scan = study::scan_graph(settings);
     if (!choice.propose.empty()) {
         seeds = study::proposed_seeds(scan);
@@ -174,13 +182,22 @@ int segment_bone(const SegmentChoice& choice) {
                        seeds.size());
         return done;
     }
+    if (!choice.paint.seeds.empty()) {
+        seeds = painted(scan, settings, choice);
+        choice.seeds = choice.paint.seeds;
+        const bool is_enough = seeds.size() >= 2;
+        if (!choice.json && (choice.out.empty() || !is_enough))
+            fmt::print("{}: strokes of {} fragment{}{}\n", choice.seeds.string(), seeds.size(),
+                       seeds.size() == 1 ? "" : "s", is_enough ? "" : "; a segmentation needs those of two");
+        if (choice.out.empty() || session::stop_on_signals()) return done;
+        if (!is_enough) return answer_is_no;
+    }
     const study::SegmentedScan found = study::segment_scan(scan, seeds, settings, choice.seeds.string());
-    std::vector<volume::Segment> segments;
-    for (std::size_t l = 0; l < found.labels.size(); ++l)
-        segments.push_back({static_cast<int>(l) + 1, found.labels[l].name, found.labels[l].colour});
     for (const auto& path : choice.out)
-        if (is_bones(path)) write_bones(scan, found, segments, choice, path);
-        else volume::write_labels(scan.scan, found.map.label, segments, path);
+        study::write_segmented(scan, found, settings, choice.seeds.filename().string(), path);
+    if (!choice.plan.empty())
+        for (const auto& path : choice.out)
+            if (is_bones(path)) study::write_plan_of(path, found, choice.plan);
     if (!choice.certainty.empty())
         volume::write_volume(found.certainty, volume::WrittenType::float32, choice.certainty);
     if (choice.json) fmt::print("{}\n", json_of(scan, found, choice).dump(2));
@@ -193,18 +210,26 @@ Action add(VerbOptions& verb) {
     study::SegmentSettings& settings = choice->settings;
     verb.add("scan", settings.scan, "a CT: DICOM folder or zip, NRRD, NIfTI, InVesalius").required();
     verb.add("--seeds", choice->seeds, "brush strokes per fragment (.json); see docs/how-to/segment.md");
+    verb.add("--paint", choice->paint.seeds,
+             "open a window to paint the seeds; they are kept in this file (.json) after every stroke, and continued "
+             "when it "
+             "exists");
+    verb.add("--view-script", choice->paint.script, "with --paint: run the commands in this file in the window");
+    verb.add("--view-scale", choice->paint.scale, "with --paint: scale of text and controls (default: the screen's)")
+        .range(0.5, 4.0);
     verb.add("-o,--out", choice->out,
              ".nrrd or .seg.nrrd: a label per fragment; .vdb: a bone per fragment; may be given several times")
         .one_each();
     verb.add("--propose", choice->propose, "write a first version of the seeds (.json) for correction by hand");
+    verb.add("--plan", choice->plan, "make a plan of the bones in -o BONES.vdb (.plan.json)");
     verb.add("--certainty", choice->certainty,
              "write how certain each voxel is (.nrrd): 1 - second largest / largest probability");
     verb.add("--threshold", settings.threshold,
              "value at and above which a voxel is bone, HU (default: the one that info suggests)")
         .unit("HU");
-    verb.add("--metal", settings.metal, "HU at and above which a voxel is metal and takes no part")
-        .unit("HU")
-        .shows_default();
+    verb.add("--metal", settings.metal,
+             "value at and above which a voxel is metal and takes no part (default: 2500 HU; none for scanner numbers)")
+        .unit("HU");
     verb.add("--marrow", choice->marrow,
              "take in marrow behind cortex that is open by less than twice this, mm; 0: none")
         .unit("mm")

@@ -46,7 +46,8 @@ Vec3 parse_place(const std::string& text, const std::string& option) {
             value = std::stod(word, &used);
         } catch (const std::exception&) {
         }
-        if (used == 0 || used != word.size() || !std::isfinite(value))
+        constexpr double farthest_mm = 1e5;
+        if (used == 0 || used != word.size() || !(std::abs(value) <= farthest_mm))
             throw Error(fmt::format("{}: '{}' is not X,Y,Z in mm, as in 7.8,-179.2,753.2 (LPS)", option, text));
         numbers.push_back(value * 1e-3);
         start = comma + 1;
@@ -189,8 +190,8 @@ int follow(const VesselChoice& given) {
     settings.track.exclude_above = choice.bone_above;
     settings.track.branches = !choice.trunk_only;
     if (choice.least_mm >= choice.most_mm) throw Error("--min-radius must be below --max-radius");
-    settings.straightens = !choice.straightened.empty();
-    if (settings.straightens && choice.straightened.extension() != ".png")
+    settings.straightened = choice.straightened;
+    if (!choice.straightened.empty() && choice.straightened.extension() != ".png")
         throw Error(choice.straightened.string() + ": the straightened view is a .png");
     const study::FoundVessel result = study::follow_vessel(settings);
     const vessel::Track& track = result.found.track;

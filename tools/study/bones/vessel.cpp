@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/vessel.hpp"
+#include "assets/file/outputs.hpp"
 #include "assets/vessel/track_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
@@ -15,7 +16,6 @@ namespace tactus::study {
 namespace {
 
 constexpr double air = -200.0, bone = 900.0;  // HU; vessels in a CT angiography reach about 700
-constexpr double least_hu = -150.0;                // below fat
 
 /// Mean of the 27 samples around the seed.
 void check_seed(const volume::Grid& grid, const Vec3& seed) {
@@ -35,6 +35,10 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
     for (const std::filesystem::path& path : settings.out)
         if (!vessel::is_track_file(path))
             throw Error(path.string() + ": a vessel is written as .csv, .vtp, .mrk.json, .stl or .ply");
+    std::vector<std::filesystem::path> outputs = settings.out;
+    outputs.push_back(settings.straightened);
+    const std::filesystem::path sources[] = {settings.scan};
+    file::check_outputs(sources, outputs);
     FoundVessel result;
     volume::ReadOptions options;
     options.series = settings.series;
@@ -51,14 +55,14 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
 
     const double before = thread_seconds();
     vessel::TrackSettings track_settings = settings.track;
-    if (is_hu) track_settings.clip_below = least_hu;
+    if (is_hu) track_settings.clip_below = least_hu_of_vessels;
     result.found = vessel::follow(grid, settings.seed, track_settings);
     result.seconds = thread_seconds() - before;
     const vessel::Track& track = result.found.track;
     if (settings.leg) result.run_off = vessel::run_off(track, *settings.leg);
     if (track.branches.empty()) return result;
     for (const std::filesystem::path& path : settings.out) vessel::write_track(track, path);
-    if (settings.straightens) {
+    if (!settings.straightened.empty()) {
         const vessel::Branch& main = track.branches.front();
         double widest = 0.0;
         for (const vessel::Node& node : main.nodes) widest = std::max(widest, node.radius);

@@ -21,8 +21,10 @@ struct VesselSettings {
     vessel::TrackSettings track;
     std::optional<vessel::LegGeometry> leg;    ///< judges the run-off of a lower leg
     std::vector<std::filesystem::path> out;    ///< see write_track
-    bool straightens = false;                  ///< also pulls the branch of the seed straight
+    std::filesystem::path straightened;        ///< not empty: pulls the branch of the seed straight, for a picture there
 };
+
+inline constexpr double least_hu_of_vessels = -150.0;  ///< below fat: lower HU count as this value
 
 struct FoundVessel {
     vessel::Followed found;

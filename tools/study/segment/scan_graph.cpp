@@ -7,16 +7,19 @@
 #include "tools/study/segment/segment_scan.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace tactus::study {
 
 namespace {
 
 constexpr std::size_t most_bone_voxels = 20'000'000;
+constexpr double common_for_metal = 2500.0;  // HU
 
 /// The samples from `low` to `high`, inclusive.
 template <class Value>
@@ -31,6 +34,15 @@ std::vector<Value> part(const std::vector<Value>& values, const std::array<int, 
     return out;
 }
 
+bool is_turned(const volume::ScanVolume& scan) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 step = glm::abs(scan.map.step[axis]);
+        const double most = std::max({step.x, step.y, step.z});
+        if (step.x + step.y + step.z - most > 2e-3 * most) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 ScanGraph scan_graph(const SegmentSettings& settings) {
@@ -43,6 +55,11 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
     ScanGraph out;
     out.hu = read.hu;
     out.notes = read.notes;
+    if (is_turned(read))
+        out.notes.push_back(
+            "the axes of the scan are turned against the patient's; it was interpolated, and the labels are on axes "
+            "along "
+            "the patient");
     out.scan = volume::lps_grid(std::move(read));
     const volume::ValueRange range = volume::range_of(out.scan.values);
     if (settings.threshold) {
@@ -53,11 +70,13 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
             bone::threshold_histogram(static_cast<double>(range.low), static_cast<double>(range.high));
         volume::add_values(histogram, out.scan.values);
         const bone::CtThreshold found = bone::suggested_threshold(histogram, out.hu);
-        out.threshold = found.value;
+        out.threshold = found.exact;
         out.threshold_from = found.how;
     }
 
-    const bool knows_metal = out.hu != volume::HuKind::scanner;
+    // Scanner numbers do not say what is metal.
+    const double metal = settings.metal.value_or(
+        out.hu == volume::HuKind::scanner ? std::numeric_limits<double>::infinity() : common_for_metal);
     std::vector<std::uint8_t> inside(out.scan.count(), 0);
     std::array<int, 3> low = out.scan.size, high{-1, -1, -1};
     std::size_t v = 0, voxels = 0;
@@ -66,7 +85,7 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
             for (int i = 0; i < out.scan.size[0]; ++i, ++v) {
                 const double value = static_cast<double>(out.scan.values[v]);
                 if (!(value >= out.threshold)) continue;
-                if (knows_metal && value >= settings.metal) {
+                if (value >= metal) {
                     ++out.metal_voxels;
                     continue;
                 }
@@ -89,8 +108,8 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
                         "of the scan",
                         file, voxels, out.threshold, most_bone_voxels));
     if (out.metal_voxels > 0)
-        out.notes.push_back(fmt::format("{} voxels of {:g} HU or more are taken for metal and have no label",
-                                        out.metal_voxels, settings.metal));
+        out.notes.push_back(
+            fmt::format("{} voxels of {:g} or more are taken for metal and have no label", out.metal_voxels, metal));
 
     out.box = {{high[0] - low[0] + 1, high[1] - low[1] + 1, high[2] - low[2] + 1},
                out.scan.position(low[0], low[1], low[2]),

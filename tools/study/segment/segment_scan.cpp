@@ -4,6 +4,7 @@
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/processor_time.hpp"
+#include "dsp/segment/gap_statistics.hpp"
 #include "dsp/segment/random_walk.hpp"
 #include "dsp/segment/strokes.hpp"
 #include "dsp/segment/uncertain.hpp"
@@ -100,13 +101,23 @@ std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::Labe
 
 }  // namespace
 
+std::unique_ptr<segment::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
+                                                     segment::GapLaw& law) {
+    law = segment::law_of_seeds(scan.law, scan.graph, scan.box, seed);
+    if (!(law.bright < scan.law.bright)) return nullptr;
+    std::vector<std::uint8_t> inside(scan.node_of_voxel.size());
+    for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = scan.node_of_voxel[v] >= 0;
+    return std::make_unique<segment::VoxelGraph>(segment::make_voxel_graph(scan.box, inside, law));
+}
+
 SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,
                            const SegmentSettings& settings, const std::string& seeds_file) {
     const std::vector<std::uint8_t> seed = seeds_in(scan, seeds, seeds_file);
     const double begin = process_seconds();
-    const segment::Walks walks =
-        segment::random_walks(scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
     SegmentedScan out;
+    const std::unique_ptr<segment::VoxelGraph> own = graph_for_seeds(scan, seed, out.law);
+    const segment::Walks walks =
+        segment::random_walks(own ? *own : scan.graph, seed, static_cast<int>(seeds.size()), {}, nullptr, settings.run);
     out.seconds = process_seconds() - begin;
     out.residual = walks.residual;
     out.iterations = walks.iterations;

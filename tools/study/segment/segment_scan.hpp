@@ -10,6 +10,7 @@
 #include "dsp/volume/grid.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct SegmentSettings {
     std::filesystem::path scan;      ///< as for volume::read_volume
     volume::ReadOptions read;
     std::optional<double> threshold;  ///< values at and above it are bone; none: bone::suggested_threshold
-    double metal = 2500.0;           ///< HU; values at and above it take no part; no meaning for uncalibrated values
+    /// Values at and above it take no part; none: 2500 HU, and no limit for scanner numbers.
+    std::optional<double> metal;
     double marrow = 2e-3;            ///< m: radius of the closing that takes in marrow; 0: none
     RunJobs run = run_in_turn;
 };
@@ -73,11 +75,16 @@ struct SegmentedScan {
     std::vector<UncertainPlace> uncertain;   ///< regions with certainty below 0.4, largest first
     std::vector<TouchingFace> touching;  ///< labels that meet without a gap, widest first: their faces are as scanned
     std::size_t marrow_voxels = 0;  ///< took the label of the nearest bone
+    segment::GapLaw law;  ///< that was used; see segment::law_of_seeds
     double residual = 0.0;
     int iterations = 0;
     double certainty_p05 = 0.0;  ///< 5 % of the bone voxels with a label are less certain
     double seconds = 0.0;  ///< processor time of the solver
 };
+/// The graph with the conductances for these seeds. `law`: the one that was used. Null: that of the scan itself holds.
+std::unique_ptr<segment::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
+                                                     segment::GapLaw& law);
+
 /// Throws Error for strokes that touch no bone, and for labels whose strokes are all painted over by later ones;
 /// `seeds_file` is the name in the message.
 SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,

@@ -125,6 +125,42 @@ TEST_CASE("segment separates two bones that touch and takes in their marrow") {
     CHECK(volume::lps_grid(volume::read_volume(folder / "again.nrrd")).values == labels.values);
 }
 
+TEST_CASE("segment gives the same labels for values in other units, also where it chooses the threshold") {
+    const Folder folder;
+    volume::Grid scan = two_bones();
+    // Scanner numbers: no air, so that the unit of the values is not known.
+    for (float& value : scan.values) value = std::clamp(value, -40.0f, 1000.0f);
+    volume::write_volume(scan, volume::WrittenType::int16, folder / "ct.nrrd");
+    for (float& value : scan.values) value /= 1000.0f;
+    volume::write_volume(scan, volume::WrittenType::float32, folder / "small.nrrd");
+    folder.write("seeds.json", seeds());
+    const auto labels_of = [&](const std::string& file, const std::string& more = "") {
+        folder.answer(folder / file + more + " --seeds " + folder / "seeds.json" + " -o " + folder / "labels.nrrd");
+        return volume::lps_grid(volume::read_volume(folder / "labels.nrrd")).values;
+    };
+    CHECK(labels_of("small.nrrd") == labels_of("ct.nrrd"));
+    // A limit for metal that is given counts for scanner numbers, too.
+    const json found = folder.answer(folder / "ct.nrrd" + " --metal 950 --seeds " + folder / "seeds.json" + " -o " +
+                                     folder / "labels.nrrd");
+    CHECK(found["metal_voxels"].get<int>() == 3);
+}
+
+TEST_CASE("segment says when its labels are on other axes than the file's") {
+    const Folder folder;
+    volume::Grid scan = two_bones();
+    volume::write_volume(scan, volume::WrittenType::int16, folder / "ct.nrrd");
+    std::string header = test::slurp(folder / "ct.nrrd");
+    const auto at = header.find("space directions:");
+    REQUIRE(at != std::string::npos);
+    header.replace(at, header.find('\n', at) - at, "space directions: (0.7878,0.1389,0) (-0.1389,0.7878,0) (0,0,0.9)");
+    folder.write("oblique.nrrd", header);
+    const json proposed = folder.answer(folder / "oblique.nrrd" + " --threshold 200 --propose " + folder / "p.json");
+    const json found = folder.answer(folder / "oblique.nrrd" + " --threshold 200 --seeds " + folder / "p.json" +
+                                     " -o " + folder / "labels.nrrd");
+    REQUIRE(found["notes"].size() >= 1);
+    CHECK(found["notes"].dump().find("axes") != std::string::npos);
+}
+
 TEST_CASE("segment proposes seeds that it can use") {
     const Folder folder;
     volume::write_volume(two_bones(), volume::WrittenType::int16, folder / "ct.nrrd");
@@ -156,6 +192,8 @@ TEST_CASE("segment refuses what it cannot use with one line and writes nothing",
     refused(ct + out, "give the seeds");
     refused(ct + with_seeds + " -o " + folder / "out.txt", "segment writes .nrrd");
     refused(ct + with_seeds + " -o " + ct, "this is the source");
+    refused(ct + with_seeds + out + " --certainty " + folder / "out.nrrd", "two results have this name");
+    refused(ct + " --seeds " + folder / "out.nrrd" + out, "out.nrrd");
     refused(ct + with_seeds + " -o " + folder / "none/out.nrrd", "there is no folder");
     refused(ct + with_seeds + out + " --propose " + folder / "p.json", "--propose writes seeds only");
     refused(ct + with_seeds + out + " --threshold 5000", "there is no bone");

@@ -63,7 +63,7 @@ TEST_CASE("tactus vessel says in one line what is wrong with a seed") {
     const test::Folder folder;
     const WorkingFolder here(folder.path);
     write_scan(folder.path / "cta.nrrd");
-    for (const char* const seed : {"500,0,0", "nan,1,2", "1,2", "1,2,x", "2,20,20"}) {
+    for (const char* const seed : {"500,0,0", "1e300,0,0", "nan,1,2", "1,2", "1,2,x", "2,20,20"}) {
         CAPTURE(seed);
         const auto seen = folder.tactus(fmt::format("vessel cta.nrrd '--seed={}' -o line.csv", seed));
         CHECK(seen.code == 2);
@@ -82,6 +82,25 @@ TEST_CASE("tactus vessel says in one line what is wrong with a seed") {
         CHECK(seen.code == 2);
         CHECK(is_one_line(seen.err));
     }
+}
+
+TEST_CASE("tactus vessel never writes over the scan, nor one result over another") {
+    const test::Folder folder;
+    const WorkingFolder here(folder.path);
+    const std::string seed = write_scan(folder.path / "cta.nrrd");
+    std::filesystem::rename(folder.path / "cta.nrrd", folder.path / "cta.csv");
+    const std::string before = test::slurp(folder.path / "cta.csv");
+    for (const char* const rest : {"-o cta.csv", "-o line.csv -o none/line.vtp", "-o line.csv -o ./line.csv"}) {
+        CAPTURE(rest);
+        const auto seen = folder.tactus(fmt::format("vessel cta.csv --seed {} {}", seed, rest));
+        CHECK(seen.code == 2);
+        CHECK(is_one_line(seen.err));
+        CHECK(test::slurp(folder.path / "cta.csv") == before);
+        CHECK_FALSE(std::filesystem::exists(folder.path / "line.csv"));
+    }
+    const auto huge = folder.tactus("vessel cta.csv --seed 1e300,0,0");
+    CHECK(huge.code == 2);
+    CHECK(huge.err.size() < 200);
 }
 
 TEST_CASE("one seed in the aorta of a real scan follows both iliac arteries", "[slow]") {

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is painted, without a window: strokes, their file, undo, the eraser, and the labels that follow.
+#include "assets/bone/bone.hpp"
+#include "assets/cases/case_plan.hpp"
+#include "assets/cases/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/tools/run_command.hpp"
+#include "tools/view/paint/bone_mesh.hpp"
+#include "tools/view/paint/erase_strokes.hpp"
+#include "tools/view/paint/paint_bench.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <chrono>
+#include <thread>
+
+using namespace tactus;
+using view::PaintBench;
+using view::Painting;
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+/// Two blocks of bone of 20 x 24 x 24 mm that touch over a part of their faces; HU.
+volume::Grid two_blocks() {
+    volume::Grid grid{{52, 34, 34}, Vec3(-0.03, 0.1, -0.2), Vec3(mm), {}};
+    const Random random{5};
+    for (int k = 0; k < 34; ++k)
+        for (int j = 0; j < 34; ++j)
+            for (int i = 0; i < 52; ++i) {
+                const bool is_block = j >= 5 && j < 29 && k >= 5 && k < 29 && i >= 5 && i < 47;
+                const bool is_gap = i == 25 || i == 26;
+                const bool is_bridge = std::hypot(j - 16.5, k - 16.5) < 5.0;
+                const double value = is_block && !is_gap ? 700.0 : is_block && is_bridge ? 420.0 : -1000.0;
+                grid.values.push_back(static_cast<float>(value + 20.0 * random.normal(grid.values.size())));
+            }
+    return grid;
+}
+
+struct Scene {
+    Scene() {
+        volume::write_volume(two_blocks(), volume::WrittenType::int16, folder.path / "ct.nrrd");
+        settings.scan = folder.path / "ct.nrrd";
+        settings.threshold = 200.0;
+        scan = study::scan_graph(settings);
+    }
+    std::filesystem::path seeds() const { return folder.path / "case.seeds.json"; }
+    Painting painting() const {
+        return Painting(seeds(), [this](const segment::Stroke& stroke) {
+            std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
+            return segment::paint(scan.box, scan.node_of_voxel, stroke, 1, seed) > 0;
+        });
+    }
+    test::Folder folder;
+    study::SegmentSettings settings;
+    study::ScanGraph scan;
+};
+
+const Vec3 left_block(-0.02, 0.115, -0.185), right_block(0.01, 0.115, -0.185), air(-0.03, 0.1, -0.2);
+
+void dab(Painting& painting, std::size_t label, const Vec3& at, double radius = 2e-3) {
+    painting.active = label;
+    painting.begin(radius, at);
+    REQUIRE(painting.end());
+}
+
+/// Waits for the solver; most a minute.
+void settle(PaintBench& bench) {
+    for (int n = 0; n < 6000; ++n) {
+        bench.tend();
+        if (!bench.is_busy() && !bench.makes_plan()) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    FAIL("the computation does not end");
+}
+
+}  // namespace
+
+TEST_CASE("strokes are kept in the file that segment takes, and undo restores its bytes") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    CHECK(painting.labels().size() == 2);
+    CHECK_FALSE(std::filesystem::exists(scene.seeds()));
+    dab(painting, 0, left_block);
+    // One label is no segmentation, but is kept.
+    const std::string after_one = file::read_whole_file(scene.seeds());
+    CHECK_THROWS_AS(segment::read_seeds(scene.seeds()), Error);
+    CHECK(segment::read_seeds(scene.seeds(), segment::SeedsUse::draft)[0].strokes.size() == 1);
+    painting.active = 1;
+    painting.begin(1.23456e-3, right_block);
+    painting.extend(right_block + Vec3(1e-5, 0.0, 0.0));  // too near to be a point
+    painting.extend(right_block + Vec3(2.3456789e-3, 0.0, 0.0));
+    REQUIRE(painting.end());
+    const std::string after_two = file::read_whole_file(scene.seeds());
+    const auto labels = segment::read_seeds(scene.seeds());
+    REQUIRE(labels.size() == 2);
+    REQUIRE(labels[1].strokes.size() == 1);
+    // The same bits in memory as in the file.
+    CHECK(labels[1].strokes[0].radius == painting.labels()[1].strokes[0].radius);
+    CHECK(labels[1].strokes[0].points == painting.labels()[1].strokes[0].points);
+    REQUIRE(labels[1].strokes[0].points.size() == 2);
+
+    REQUIRE(painting.undo());
+    CHECK(file::read_whole_file(scene.seeds()) == after_one);
+    REQUIRE(painting.redo());
+    CHECK(file::read_whole_file(scene.seeds()) == after_two);
+    // A program that ends here and begins again goes on with the same bytes.
+    Painting again = scene.painting();
+    again.recolour(0, *again.labels()[0].colour);
+    CHECK(file::read_whole_file(scene.seeds()) == after_two);
+}
+
+TEST_CASE("a stroke that meets no bone changes nothing, nor does one that is not finished") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    dab(painting, 0, left_block);
+    const std::string before = file::read_whole_file(scene.seeds());
+    painting.begin(1e-3, air);
+    CHECK_FALSE(painting.end());
+    CHECK(painting.problem().find("no bone") != std::string::npos);
+    painting.begin(2e-3, right_block);
+    painting.extend(right_block + Vec3(5e-3, 0.0, 0.0));
+    CHECK(file::read_whole_file(scene.seeds()) == before);
+    painting.cancel();
+    CHECK_FALSE(painting.end());
+    CHECK(painting.labels()[0].strokes.size() == 1);
+    CHECK(painting.labels()[1].strokes.empty());
+}
+
+TEST_CASE("the eraser cuts strokes and takes dabs away") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    painting.begin(1e-3, left_block);
+    painting.extend(left_block + Vec3(0.0, 12e-3, 0.0));
+    REQUIRE(painting.end());
+    dab(painting, 1, right_block);
+    // Through the middle of the line: two are left, and nothing of them is near.
+    const Vec3 middle = left_block + Vec3(0.0, 6e-3, 0.0);
+    painting.begin(2e-3, middle, true);
+    REQUIRE(painting.end());
+    REQUIRE(painting.labels()[0].strokes.size() == 2);
+    for (const segment::Stroke& stroke : painting.labels()[0].strokes)
+        for (const Vec3& p : stroke.points) CHECK(glm::length(p - middle) >= 2.5e-3 - 1e-9);
+    CHECK(painting.labels()[0].strokes[0].points.front() == view::as_filed(left_block));
+    painting.begin(2e-3, right_block, true);
+    REQUIRE(painting.end());
+    CHECK(painting.labels()[1].strokes.empty());
+    painting.begin(2e-3, right_block, true);  // nothing is there any more
+    CHECK_FALSE(painting.end());
+    painting.undo();
+    CHECK(painting.labels()[1].strokes.size() == 1);
+}
+
+TEST_CASE("labels are added, named, coloured and removed; names that the file cannot hold are refused") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    dab(painting, 0, left_block);
+    REQUIRE(painting.add_label());
+    CHECK(painting.active == 2);
+    CHECK(painting.labels()[2].name == "fragment 3");
+    REQUIRE(painting.rename(2, "wing \"of\" the ilium"));
+    CHECK_FALSE(painting.rename(1, "wing \"of\" the ilium"));
+    CHECK_FALSE(painting.rename(1, ""));
+    CHECK_FALSE(painting.rename(1, "a\nb"));
+    CHECK_FALSE(painting.problem().empty());
+    dab(painting, 2, right_block);
+    REQUIRE(painting.remove_label(1));
+    CHECK(painting.active == 1);
+    const auto labels = segment::read_seeds(scene.seeds());
+    REQUIRE(labels.size() == 2);
+    CHECK(labels[1].name == "wing \"of\" the ilium");
+    CHECK(labels[0].colour != labels[1].colour);
+}
+
+TEST_CASE("a painting that cannot be written is kept in the window and says so") {
+    const Scene scene;
+    Painting painting(scene.folder.path / "none/seeds.json", [](const segment::Stroke&) { return true; });
+    painting.begin(1e-3, left_block);
+    CHECK(painting.end());
+    CHECK_FALSE(painting.problem().empty());
+    CHECK(painting.labels()[0].strokes.size() == 1);
+    scene.folder.write("bad.json", "{\"labels\": 3}");
+    CHECK_THROWS_AS(Painting(scene.folder.path / "bad.json", [](const segment::Stroke&) { return true; }), Error);
+}
+
+TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
+    const Scene scene;
+    {
+        PaintBench bench(scene.scan, scene.settings, scene.seeds());
+        settle(bench);
+        REQUIRE(bench.labels());
+        CHECK(bench.labels()->label.empty());
+        CHECK_FALSE(bench.labels()->problem.empty());
+        dab(bench.painting(), 0, left_block);
+        dab(bench.painting(), 1, right_block);
+        settle(bench);
+        REQUIRE(bench.labels()->problem.empty());
+        CHECK(bench.labels()->version == bench.painting().version());
+        CHECK(bench.labels()->residual < 1e-3);
+        // A later dab is solved from the walks before it, and agrees with a solution from nothing.
+        dab(bench.painting(), 1, right_block + Vec3(0.0, 8e-3, 8e-3));
+        settle(bench);
+        std::optional<segment::Walks> none;
+        const auto fresh = view::live_labelling(scene.scan, bench.painting().labels(), none, run_in_turn);
+        std::size_t other = 0;
+        for (std::size_t n = 0; n < fresh.label.size(); ++n) other += fresh.label[n] != bench.labels()->label[n];
+        CHECK(other < fresh.label.size() / 1000);
+
+        // The two blocks, up to the bridge.
+        std::size_t wrong = 0;
+        for (std::size_t n = 0; n < fresh.label.size(); ++n) {
+            const int i = scene.scan.graph.place(n)[0] + scene.scan.box_at[0];
+            wrong += i != 25 && i != 26 && fresh.label[n] != (i < 25 ? 1 : 2);
+        }
+        CHECK(wrong == 0);
+        // What `segment --seeds` makes of the file.
+        const auto seeds = segment::read_seeds(scene.seeds());
+        const auto whole = study::segment_scan(scene.scan, seeds, scene.settings, "seeds");
+        for (std::size_t n = 0; n < fresh.label.size(); ++n) {
+            const auto at = scene.scan.graph.place(n);
+            const std::size_t v = scene.scan.scan.index(at[0] + scene.scan.box_at[0], at[1] + scene.scan.box_at[1],
+                                                        at[2] + scene.scan.box_at[2]);
+            if (whole.map.label[v] != fresh.label[n]) FAIL("voxel " << v);
+        }
+        // In one step to a plan.
+        bench.make_plan();
+        settle(bench);
+        INFO(bench.message());
+        CHECK_FALSE(bench.is_problem());
+    }
+    const auto plan = cases::load_case_plan(scene.folder.path / "case.plan.json");
+    REQUIRE(plan.fragments.size() == 2);
+    CHECK(plan.fragments[0].name == "fragment 1");
+    CHECK(bone::load_bones(scene.folder.path / "case.vdb").size() == 2);
+}
+
+TEST_CASE("look here goes to the largest uncertain region, and a dab there settles it", "[slow]") {
+    const Scene scene;
+    PaintBench bench(scene.scan, scene.settings, scene.seeds());
+    settle(bench);
+    CHECK_FALSE(bench.look_here());
+    // Both seeds in one block, as far from the bridge: the other block could be either's.
+    dab(bench.painting(), 0, Vec3(-0.015, 0.1095, -0.1835), 1.5e-3);
+    dab(bench.painting(), 1, Vec3(-0.015, 0.1235, -0.1835), 1.5e-3);
+    settle(bench);
+    REQUIRE_FALSE(bench.labels()->uncertain.empty());
+    const std::size_t before = bench.labels()->uncertain.front().voxels;
+    REQUIRE(bench.look_here());
+    CHECK(bench.cursor.x > -4e-3);  // in the other block
+    dab(bench.painting(), 1, bench.cursor);
+    settle(bench);
+    const std::size_t after = bench.labels()->uncertain.empty() ? 0 : bench.labels()->uncertain.front().voxels;
+    CHECK(after < before / 2);
+}
+
+TEST_CASE("a slice shows the patient's left on the right, and its pixels are places") {
+    const Scene scene;
+    for (const view::Slice slice : {view::Slice::axial, view::Slice::coronal, view::Slice::sagittal}) {
+        const view::SlicePlane plane{slice, Vec3(0.01, 0.12, -0.18), 3000.0};
+        const view::SliceAxes axes = view::axes_of(slice);
+        const Vec3 p = plane.position({30.0, -60.0});
+        CHECK(plane.pixel(p).x == Approx(30.0));
+        CHECK(plane.pixel(p).y == Approx(-60.0));
+        CHECK(p[axes.right] > plane.middle[axes.right]);
+        if (slice == view::Slice::axial) CHECK(p.y < plane.middle.y);  // up is to the front
+        else CHECK(p.z > plane.middle.z);                              // up is to the head
+        CHECK(plane.off(p) == 0.0);
+    }
+    // One bright voxel, at the right place of each picture.
+    volume::Grid grid{{9, 7, 5}, Vec3(0.0), Vec3(mm, 2.0 * mm, 3.0 * mm), std::vector<float>(9 * 7 * 5, 0.0f)};
+    grid.at(6, 2, 1) = 100.0f;
+    const Vec3 at = grid.position(6, 2, 1);
+    for (const view::Slice slice : {view::Slice::axial, view::Slice::coronal, view::Slice::sagittal}) {
+        const view::SlicePicture picture = view::slice_picture(grid, slice, at, {0.0, 100.0}, {});
+        const view::SlicePlane plane{slice, Vec3(0.0), 1000.0};
+        const auto corners = view::corners_of(grid, plane);
+        const view::Point pixel = plane.pixel(at);
+        const int column = static_cast<int>((pixel.x - corners[0].x) / (corners[1].x - corners[0].x) * picture.width);
+        const int row = static_cast<int>((pixel.y - corners[0].y) / (corners[1].y - corners[0].y) * picture.height);
+        int bright = 0;
+        for (std::size_t n = 0; n < picture.rgba.size(); n += 4) bright += picture.rgba[n] == 255;
+        CHECK(bright == 1);
+        CHECK(picture.rgba[4 * static_cast<std::size_t>(row * picture.width + column)] == 255);
+    }
+}
+
+TEST_CASE("the surface of the bone is closed, and a ray meets it where it is") {
+    const Scene scene;
+    const view::BoneMesh mesh = view::bone_mesh(scene.scan);
+    REQUIRE_FALSE(mesh.patch.triangles.empty());
+    double volume = 0.0;
+    for (std::size_t t = 0; t < mesh.patch.triangles.size(); t += 3) {
+        const auto corner = [&](std::size_t n) {
+            const auto& p = mesh.patch.vertices[mesh.patch.triangles[t + n]].position;
+            return Vec3(p[0], p[1], p[2]);
+        };
+        volume += glm::dot(corner(0), glm::cross(corner(1), corner(2))) / 6.0;
+    }
+    CHECK(volume == Approx(static_cast<double>(scene.scan.graph.nodes()) * 1e-9).epsilon(0.06));
+    CHECK(std::ranges::none_of(mesh.node, [](std::int32_t n) { return n < 0; }));
+
+    const PaintBench bench(scene.scan, scene.settings, scene.seeds());
+    Vec3 found;
+    REQUIRE(bench.first_bone(left_block + Vec3(-0.1, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), found));
+    CHECK(found.x == Approx(-0.03 + 4.5 * mm).margin(0.6 * mm));
+    CHECK_FALSE(bench.first_bone(left_block + Vec3(-0.1, 0.1, 0.0), Vec3(1.0, 0.0, 0.0), found));
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/paint/live_labels.hpp"
+
+#include "dsp/segment/strokes.hpp"
+#include "dsp/segment/uncertain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace tactus::view {
+
+namespace {
+
+/// Why these seeds cannot be solved; empty: they can.
+std::string problem_of(const std::vector<std::uint8_t>& seed, const std::vector<segment::SeedLabel>& labels) {
+    std::vector<char> is_there(labels.size() + 1, 0);
+    for (const std::uint8_t s : seed) is_there[s] = 1;
+    std::size_t painted = 0;
+    for (std::size_t l = 0; l < labels.size(); ++l) {
+        painted += is_there[l + 1] != 0;
+        if (is_there[l + 1] == 0 && !labels[l].strokes.empty())
+            return fmt::format("later labels are painted over all strokes of '{}'", labels[l].name);
+    }
+    if (painted >= 2) return "";
+    return painted == 0 ? "paint a place of each fragment" : "paint a place of a second fragment";
+}
+
+}  // namespace
+
+LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
+                             std::optional<segment::Walks>& before, const RunJobs& run) {
+    const auto begin = std::chrono::steady_clock::now();
+    LiveLabelling out;
+    out.seed.assign(scan.graph.nodes(), 0);
+    for (std::size_t l = 0; l < labels.size(); ++l)
+        for (const segment::Stroke& stroke : labels[l].strokes)
+            segment::paint(scan.box, scan.node_of_voxel, stroke, static_cast<std::uint8_t>(l + 1), out.seed);
+    out.problem = problem_of(out.seed, labels);
+    if (out.problem.empty()) {
+        const int count = static_cast<int>(labels.size());
+        const bool is_warm = before && before->labels == count;
+        segment::GapLaw law;
+        const std::unique_ptr<segment::VoxelGraph> own = study::graph_for_seeds(scan, out.seed, law);
+        before = segment::random_walks(own ? *own : scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
+        out.residual = before->residual;
+        out.iterations = before->iterations;
+        out.label = segment::labels_of(*before);
+        out.certainty = segment::certainty_of(*before);
+        out.voxels.assign(labels.size(), 0);
+        std::vector<float> of_labelled = out.certainty;
+        for (std::size_t n = 0; n < out.label.size(); ++n)
+            if (out.label[n] != 0) ++out.voxels[out.label[n] - 1u];
+            else {
+                ++out.unseeded;
+                of_labelled[n] = 1.0f;
+            }
+        for (const segment::UncertainRegion& region : segment::uncertain_regions(scan.graph, of_labelled))
+            out.uncertain.push_back(
+                {region.nodes, scan.box.position(region.deepest[0], region.deepest[1], region.deepest[2])});
+    }
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return out;
+}
+
+LiveLabels::LiveLabels(const study::ScanGraph& scan, RunJobs run)
+    : scan_(scan), run_(std::move(run)), thread_([this] { work(); }) {}
+
+LiveLabels::~LiveLabels() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void LiveLabels::ask(int version, std::vector<segment::SeedLabel> labels) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_ = Question{version, std::move(labels)};
+    }
+    wake_.notify_one();
+}
+
+std::shared_ptr<const LiveLabelling> LiveLabels::latest() const {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+}
+
+bool LiveLabels::is_busy() const {
+    const std::lock_guard lock(mutex_);
+    return is_working_ || waiting_;
+}
+
+void LiveLabels::work() {
+    std::optional<segment::Walks> before;
+    for (;;) {
+        Question question;
+        {
+            std::unique_lock lock(mutex_);
+            is_working_ = false;
+            wake_.wait(lock, [&] { return ends_ || waiting_; });
+            if (ends_) return;
+            question = std::move(*waiting_);
+            waiting_.reset();
+            is_working_ = true;
+        }
+        auto answer = std::make_shared<LiveLabelling>();
+        try {
+            *answer = live_labelling(scan_, question.labels, before, run_);
+        } catch (const std::exception& failure) {
+            before.reset();
+            answer->problem = failure.what();
+        }
+        answer->version = question.version;
+        const std::lock_guard lock(mutex_);
+        latest_ = std::move(answer);
+    }
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Labels that follow what is painted: random walks on a thread of their own. No user interface.
+#pragma once
+
+#include "assets/segment/seeds_file.hpp"
+#include "dsp/segment/random_walk.hpp"
+#include "tools/study/segment/segment_scan.hpp"
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tactus::view {
+
+/// What the walks found for one version of the painting. Per node of the graph.
+struct LiveLabelling {
+    int version = 0;
+    std::vector<std::uint8_t> seed;   ///< 0: none
+    std::vector<std::uint8_t> label;  ///< 0: none; empty when there is a problem
+    std::vector<float> certainty;
+    std::vector<std::size_t> voxels;  ///< of each label
+    std::vector<study::UncertainPlace> uncertain;  ///< below 0.4, largest first
+    std::size_t unseeded = 0;  ///< nodes that no seed reaches
+    double residual = 0.0;
+    int iterations = 0;
+    double seconds = 0.0;  ///< from the start of the work to its end
+    std::string problem;   ///< why there are no labels; empty: there are
+};
+
+/// Labels of one painting: seeds, walks, certainty. `before`: the walks of an earlier painting of as many labels, which make
+/// this one faster; set to those found.
+LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
+                             std::optional<segment::Walks>& before, const RunJobs& run);
+
+/// Solves on a thread of its own. `scan` must outlive it. The newest question replaces one that waits; nothing waits for the
+/// solver but the destructor.
+class LiveLabels {
+public:
+    explicit LiveLabels(const study::ScanGraph& scan, RunJobs run = run_in_turn);
+    ~LiveLabels();
+    LiveLabels(const LiveLabels&) = delete;
+    LiveLabels& operator=(const LiveLabels&) = delete;
+
+    void ask(int version, std::vector<segment::SeedLabel> labels);
+    /// The newest answer; null before the first.
+    std::shared_ptr<const LiveLabelling> latest() const;
+    bool is_busy() const;
+
+private:
+    struct Question {
+        int version;
+        std::vector<segment::SeedLabel> labels;
+    };
+    void work();
+
+    const study::ScanGraph& scan_;
+    RunJobs run_;
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::optional<Question> waiting_;
+    bool is_working_ = false, ends_ = false;
+    std::shared_ptr<const LiveLabelling> latest_;
+    std::thread thread_;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/paint/live_vessels.hpp"
+
+#include "assets/vessel/track_file.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <utility>
+
+namespace tactus::view {
+
+LiveVessels::LiveVessels(const volume::Grid& grid, vessel::TrackSettings settings, std::filesystem::path stem)
+    : grid_(grid), settings_(std::move(settings)), stem_(std::move(stem)), thread_([this] { work(); }) {}
+
+LiveVessels::~LiveVessels() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void LiveVessels::ask(const Vec3& seed) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(seed);
+    }
+    wake_.notify_one();
+}
+
+bool LiveVessels::is_busy() const {
+    const std::lock_guard lock(mutex_);
+    return is_working_ || !waiting_.empty();
+}
+
+std::vector<std::shared_ptr<const LiveVessel>> LiveVessels::found() const {
+    const std::lock_guard lock(mutex_);
+    return found_;
+}
+
+LiveVessel LiveVessels::followed(const Vec3& seed) const {
+    LiveVessel out;
+    out.seed = seed;
+    try {
+        vessel::Followed result = vessel::follow(grid_, seed, settings_);
+        if (result.track.branches.empty()) {
+            out.words = result.why;
+            return out;
+        }
+        out.track = std::move(result.track);
+        out.words = fmt::format("{} branch{}, {:.1f} mm in all", out.track.branches.size(),
+                                out.track.branches.size() == 1 ? "" : "es", out.track.length() * 1e3);
+        const auto name = [&](int number, const char* ending) {
+            return std::filesystem::path(fmt::format("{}-vessel-{}{}", stem_.string(), number, ending));
+        };
+        int number = 1;
+        while (std::filesystem::exists(name(number, ".csv")) || std::filesystem::exists(name(number, ".mrk.json")))
+            ++number;
+        for (const char* const ending : {".csv", ".mrk.json"}) {
+            vessel::write_track(out.track, name(number, ending));
+            out.files.push_back(name(number, ending));
+        }
+        out.words += fmt::format("; written to {}", out.files.front().string());
+    } catch (const std::exception& failure) {
+        out.words = failure.what();
+    }
+    return out;
+}
+
+void LiveVessels::work() {
+    for (;;) {
+        Vec3 seed;
+        {
+            std::unique_lock lock(mutex_);
+            is_working_ = false;
+            wake_.wait(lock, [&] { return ends_ || !waiting_.empty(); });
+            if (ends_) return;
+            seed = waiting_.front();
+            waiting_.pop_front();
+            is_working_ = true;
+        }
+        auto answer = std::make_shared<const LiveVessel>(followed(seed));
+        const std::lock_guard lock(mutex_);
+        found_.push_back(std::move(answer));
+    }
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/paint/paint_bench.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/segment/strokes.hpp"
+#include "tools/study/bones/vessel.hpp"
+#include "tools/study/segment/segment_files.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool touches(const study::ScanGraph& scan, const segment::Stroke& stroke) {
+    std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
+    return segment::paint(scan.box, scan.node_of_voxel, stroke, 1, seed) > 0;
+}
+
+vessel::TrackSettings track_settings(const study::ScanGraph& scan) {
+    vessel::TrackSettings settings;
+    if (scan.hu == volume::HuKind::calibrated) settings.clip_below = study::least_hu_of_vessels;
+    return settings;
+}
+
+/// Writes bones and plan under the first names that are free; returns what to tell.
+std::string written_plan(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
+                         const study::SegmentSettings& settings, const fs::path& seeds) {
+    const fs::path stem = stem_of_seeds(seeds);
+    fs::path bones = stem.string() + ".vdb", plan = stem.string() + ".plan.json";
+    for (int n = 2; fs::exists(bones) || fs::exists(plan); ++n) {
+        bones = fmt::format("{}-{}.vdb", stem.string(), n);
+        plan = fmt::format("{}-{}.plan.json", stem.string(), n);
+    }
+    std::vector<segment::SeedLabel> painted;
+    for (const segment::SeedLabel& label : labels)
+        if (!label.strokes.empty()) painted.push_back(label);
+    if (painted.size() < 2) throw Error("paint a place of each fragment first: a plan needs at least two");
+    const study::SegmentedScan found = study::segment_scan(scan, painted, settings, seeds.string());
+    study::write_segmented(scan, found, settings, seeds.filename().string(), bones);
+    study::write_plan_of(bones, found, plan);
+    return fmt::format("{}: a plan of {} fragments, with {}", plan.string(), found.labels.size(),
+                       bones.filename().string());
+}
+
+}  // namespace
+
+fs::path stem_of_seeds(const fs::path& seeds) {
+    fs::path stem = seeds;
+    if (stem.extension() == ".json") stem.replace_extension();
+    if (stem.extension() == ".seeds") stem.replace_extension();
+    return stem;
+}
+
+PaintBench::PaintBench(const study::ScanGraph& scan, study::SegmentSettings settings, const fs::path& seeds)
+    : window(suggested_window(scan.scan)),
+      scan_(scan),
+      settings_(std::move(settings)),
+      painting_(seeds, [&scan](const segment::Stroke& stroke) { return touches(scan, stroke); }),
+      live_(scan, settings_.run),
+      followers_(scan.scan, track_settings(scan), stem_of_seeds(seeds)) {
+    const volume::Grid& box = scan.box;
+    cursor = box.origin + 0.5 * box.spacing * Vec3(box.size[0] - 1, box.size[1] - 1, box.size[2] - 1);
+    tell(painting_.labels_with_strokes() > 0 ? fmt::format("{} is continued", seeds.string())
+                                             : "choose a fragment and paint a dab on it; then the next one");
+}
+
+PaintBench::~PaintBench() {
+    if (plan_.valid()) plan_.wait();
+}
+
+void PaintBench::tell(std::string text, bool is_problem) {
+    message_ = std::move(text);
+    is_problem_ = is_problem;
+}
+
+void PaintBench::tend() {
+    if (asked_ != painting_.version()) {
+        asked_ = painting_.version();
+        live_.ask(asked_, painting_.labels());
+    }
+    if (auto answer = live_.latest(); answer && answer != labels_) {
+        labels_ = std::move(answer);
+        if (!labels_->problem.empty()) tell(labels_->problem);
+        else
+            tell(fmt::format("{:.2f} s; residual {:.0e}; {} voxels below certainty 0.4{}", labels_->seconds,
+                             labels_->residual,
+                             labels_->uncertain.empty() ? std::size_t{0} : labels_->uncertain.front().voxels,
+                             labels_->unseeded > 0 ? fmt::format("; {} in islands without a seed", labels_->unseeded)
+                                                   : std::string()));
+    }
+    if (!painting_.problem().empty()) tell(painting_.problem(), true);
+    const std::size_t before = vessels_.size();
+    vessels_ = followers_.found();
+    if (vessels_.size() > before) tell(vessels_.back()->words, vessels_.back()->track.branches.empty());
+    if (plan_.valid() && plan_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        try {
+            tell(plan_.get());
+        } catch (const std::exception& failure) {
+            tell(failure.what(), true);
+        }
+    }
+}
+
+std::vector<std::array<std::uint8_t, 3>> PaintBench::colours() const {
+    std::vector<std::array<std::uint8_t, 3>> out;
+    for (const segment::SeedLabel& label : painting_.labels()) {
+        const Vec3 c = label.colour.value_or(Vec3(0.5));
+        out.push_back({static_cast<std::uint8_t>(std::lround(c.x * 255.0)),
+                       static_cast<std::uint8_t>(std::lround(c.y * 255.0)),
+                       static_cast<std::uint8_t>(std::lround(c.z * 255.0))});
+    }
+    return out;
+}
+
+void PaintBench::move_cursor(const Vec3& to) {
+    const volume::Grid& grid = scan_.scan;
+    const Vec3 last = grid.position(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+    if (is_finite(to)) cursor = glm::clamp(to, grid.origin, last);
+}
+
+bool PaintBench::look_here() {
+    if (!labels_ || labels_->uncertain.empty()) {
+        tell(labels_ && labels_->problem.empty() ? "no place is uncertain" : "there are no labels yet");
+        return false;
+    }
+    const study::UncertainPlace& place = labels_->uncertain.front();
+    move_cursor(place.deepest);
+    tell(fmt::format("least certain here: {} voxels below 0.4; paint this place", place.voxels));
+    return true;
+}
+
+void PaintBench::follow_vessel(const Vec3& seed) {
+    followers_.ask(seed);
+    tell("the vessel is being followed");
+}
+
+void PaintBench::make_plan() {
+    if (plan_.valid()) return;
+    tell("the plan is being written");
+    plan_ =
+        std::async(std::launch::async, written_plan, std::cref(scan_), painting_.labels(), settings_, painting_.file());
+}
+
+bool PaintBench::first_bone(const Vec3& from, const Vec3& direction, Vec3& found) const {
+    const volume::Grid& box = scan_.box;
+    const Vec3 low = box.origin - 0.5 * box.spacing;
+    const Vec3 high = low + box.spacing * Vec3(box.size[0], box.size[1], box.size[2]);
+    double enter = 0.0, leave = 1e9;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(direction[axis]) < 1e-12) {
+            if (from[axis] < low[axis] || from[axis] > high[axis]) return false;
+            continue;
+        }
+        const double a = (low[axis] - from[axis]) / direction[axis], b = (high[axis] - from[axis]) / direction[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    const double step = 0.5 * std::min({box.spacing.x, box.spacing.y, box.spacing.z});
+    for (double t = enter; t <= leave; t += step) {
+        const Vec3 p = from + t * direction, at = (p - box.origin) / box.spacing;
+        std::array<int, 3> v{};
+        bool is_inside = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<std::size_t>(axis);
+            v[a] = static_cast<int>(std::lround(at[axis]));
+            is_inside = is_inside && v[a] >= 0 && v[a] < box.size[a];
+        }
+        if (!is_inside || scan_.node_of_voxel[box.index(v[0], v[1], v[2])] < 0) continue;
+        found = p;
+        return true;
+    }
+    return false;
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that the painting window can do, without a user interface: a window and a script call the same functions.
+#pragma once
+
+#include "tools/view/paint/live_labels.hpp"
+#include "tools/view/paint/live_vessels.hpp"
+#include "tools/view/paint/painting.hpp"
+#include "tools/view/paint/slice_plane.hpp"
+
+#include <future>
+#include <memory>
+#include <string>
+
+namespace tactus::view {
+
+class PaintBench {
+public:
+    /// `scan` must outlive it. `seeds`: continued when it exists. Throws Error.
+    PaintBench(const study::ScanGraph& scan, study::SegmentSettings settings, const std::filesystem::path& seeds);
+    ~PaintBench();
+
+    /// Called before each picture: hands new versions of the painting to the solver, and takes its answers.
+    void tend();
+
+    enum class Tool { paint, erase, vessel };
+    Tool tool = Tool::paint;
+    double brush = 3e-3;   ///< radius, m
+    Vec3 cursor{0.0};      ///< m; where the three slices meet
+    GreyWindow window;
+    bool shows_certainty = true;
+
+    const study::ScanGraph& scan() const { return scan_; }
+    Painting& painting() { return painting_; }
+    const Painting& painting() const { return painting_; }
+    /// Null before the first answer.
+    const std::shared_ptr<const LiveLabelling>& labels() const { return labels_; }
+    const std::vector<std::shared_ptr<const LiveVessel>>& vessels() const { return vessels_; }
+    bool is_busy() const { return live_.is_busy() || labels_version() != painting_.version() || followers_.is_busy(); }
+    bool makes_plan() const { return plan_.valid(); }
+    std::vector<std::array<std::uint8_t, 3>> colours() const;
+
+    /// Moves the cursor into the scan.
+    void move_cursor(const Vec3& to);
+    /// The cursor jumps to the deepest place of the largest region of low certainty. False: there is none.
+    bool look_here();
+    void follow_vessel(const Vec3& seed);
+    /// Starts to write a bone per label and a plan of them beside the seeds, on a thread of its own.
+    void make_plan();
+    /// What happened last; one line.
+    const std::string& message() const { return message_; }
+    bool is_problem() const { return is_problem_; }
+    void tell(std::string text, bool is_problem = false);
+    /// The first surface of bone along a ray from outside of the scan; false when there is none. `direction`: unit.
+    bool first_bone(const Vec3& from, const Vec3& direction, Vec3& found) const;
+
+private:
+    int labels_version() const { return labels_ ? labels_->version : -1; }
+
+    const study::ScanGraph& scan_;
+    study::SegmentSettings settings_;
+    Painting painting_;
+    LiveLabels live_;
+    LiveVessels followers_;
+    std::shared_ptr<const LiveLabelling> labels_;
+    std::vector<std::shared_ptr<const LiveVessel>> vessels_;
+    std::future<std::string> plan_;
+    int asked_ = -1;
+    std::string message_;
+    bool is_problem_ = false;
+};
+
+/// "case.seeds.json" and "case.json" → "case", in the same folder.
+std::filesystem::path stem_of_seeds(const std::filesystem::path& seeds);
+
+}  // namespace tactus::view

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs commands of the painting window from a file, line by line: for tests and pictures.
+#pragma once
+
+#include "tools/view/canvas.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+class PaintDesk;
+class Window;
+
+/// Commands; positions in mm, LPS:
+///
+///     label NAME            paints this label; makes it if there is none
+///     brush MM              radius
+///     stroke X Y Z ...      paints along the positions; one position is a dab
+///     erase X Y Z ...
+///     remove NAME, rename NAME NEW, undo, redo
+///     cursor X Y Z, grey LOW HIGH, zoom FACTOR, from VIEW
+///     look                  look here
+///     vessel X Y Z          follows a vessel
+///     plan                  makes a plan
+///     until solved          waits until nothing is being computed, at most 300 s
+///     until there FILE      waits for a file
+///     press NAME, drag X Y X Y, wheel X Y TURNS   with the mouse; NAME: of a button or panel
+///     size W H, frames N, wait S, screenshot FILE, close
+class PaintScript {
+public:
+    /// Throws Error when the file cannot be read or a command is unknown.
+    explicit PaintScript(const std::filesystem::path& file);
+
+    /// Called after each frame: runs the next lines up to one that must wait. Throws Error when a line fails.
+    void step(PaintDesk& desk, Window& window);
+    /// The mouse, before each frame.
+    void move_mouse() const;
+    bool wants_to_close() const { return closes_; }
+
+private:
+    struct Line {
+        int number = 0;
+        std::vector<std::string> words;
+    };
+    bool perform(const Line& line, PaintDesk& desk, Window& window);
+    bool use_mouse(const Line& line);
+    const std::string& word(const Line& line, std::size_t i) const;
+    double number(const Line& line, std::size_t i) const;
+
+    std::filesystem::path file_;
+    std::vector<Line> lines_;
+    std::size_t next_ = 0;
+    int frames_ = 0;
+    double since_ = -1.0;
+    bool closes_ = false;
+    struct Mouse {
+        Point at;
+        bool left = false;
+        double wheel = 0.0;
+    };
+    std::optional<Mouse> mouse_;
+    Point from_, to_;
+};
+
+}  // namespace tactus::view

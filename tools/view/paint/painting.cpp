@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/paint/painting.hpp"
+
+#include "assets/bone/labels.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/view/paint/erase_strokes.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace tactus::view {
+
+using segment::SeedLabel;
+
+namespace {
+
+constexpr std::size_t most_remembered = 500, most_points = 100'000;
+
+std::string free_name(const Painting::Labels& labels) {
+    for (std::size_t n = 1;; ++n) {
+        const std::string name = fmt::format("fragment {}", n);
+        if (std::ranges::none_of(labels, [&](const SeedLabel& l) { return l.name == name; })) return name;
+    }
+}
+
+/// Colours by place, as `segment` gives them to labels that have none.
+Vec3 free_colour(const Painting::Labels& labels) {
+    for (int n = 1; n <= 24; ++n) {
+        const Vec3 colour = bone::label_colour(n);
+        if (std::ranges::none_of(
+                labels, [&](const SeedLabel& l) { return l.colour && glm::length(*l.colour - colour) < 0.02; }))
+            return colour;
+    }
+    return bone::label_colour(static_cast<int>(labels.size()) + 1);
+}
+
+}  // namespace
+
+Painting::Painting(std::filesystem::path file, Touches touches) : file_(std::move(file)), touches_(std::move(touches)) {
+    if (std::filesystem::exists(file_)) labels_ = segment::read_seeds(file_, segment::SeedsUse::draft);
+    for (SeedLabel& label : labels_)
+        if (!label.colour) label.colour = free_colour(labels_);
+    while (labels_.size() < 2) labels_.push_back({free_name(labels_), free_colour(labels_), {}});
+}
+
+void Painting::begin(double radius, const Vec3& point, bool erases) {
+    open_ = {as_filed(Vec3(radius)).x, {as_filed(point)}};
+    is_open_ = true;
+    erases_ = erases;
+}
+
+void Painting::extend(const Vec3& point) {
+    if (!is_open_ || open_.points.size() >= most_points) return;
+    // The line between the points is painted, too.
+    if (glm::length(point - open_.points.back()) < 0.25 * open_.radius) return;
+    open_.points.push_back(as_filed(point));
+}
+
+bool Painting::end() {
+    if (!std::exchange(is_open_, false)) return false;
+    problem_.clear();
+    Labels next = labels_;
+    if (erases_) {
+        if (!erase_strokes(next, open_)) return false;
+    } else {
+        if (active >= next.size()) return false;
+        if (!touches_(open_)) {
+            problem_ = "there is no bone at that place: nothing was painted";
+            return false;
+        }
+        next[active].strokes.push_back(open_);
+    }
+    change(std::move(next));
+    return true;
+}
+
+bool Painting::add_label() {
+    if (labels_.size() >= segment::most_labels) {
+        problem_ = fmt::format("at most {} labels", segment::most_labels);
+        return false;
+    }
+    Labels next = labels_;
+    next.push_back({free_name(labels_), free_colour(labels_), {}});
+    change(std::move(next));
+    active = labels_.size() - 1;
+    return true;
+}
+
+bool Painting::remove_label(std::size_t label) {
+    if (label >= labels_.size() || labels_.size() < 2) return false;
+    Labels next = labels_;
+    next.erase(next.begin() + static_cast<std::ptrdiff_t>(label));
+    change(std::move(next));
+    if (active > label) --active;
+    active = std::min(active, labels_.size() - 1);
+    return true;
+}
+
+bool Painting::rename(std::size_t label, const std::string& name) {
+    if (label >= labels_.size() || labels_[label].name == name) return false;
+    const bool is_plain = !name.empty() && name.size() <= 200 &&
+                          std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+    if (!is_plain || std::ranges::any_of(labels_, [&](const SeedLabel& l) { return l.name == name; })) {
+        problem_ = fmt::format("'{}' is no name for a label, or another label has it", name);
+        return false;
+    }
+    Labels next = labels_;
+    next[label].name = name;
+    change(std::move(next));
+    return true;
+}
+
+void Painting::recolour(std::size_t label, const Vec3& colour) {
+    if (label >= labels_.size()) return;
+    Labels next = labels_;
+    next[label].colour = colour;
+    change(std::move(next));
+}
+
+bool Painting::undo() {
+    if (before_.empty()) return false;
+    is_open_ = false;
+    after_.push_back(std::exchange(labels_, std::move(before_.back())));
+    before_.pop_back();
+    active = std::min(active, labels_.size() - 1);
+    keep();
+    return true;
+}
+
+bool Painting::redo() {
+    if (after_.empty()) return false;
+    is_open_ = false;
+    before_.push_back(std::exchange(labels_, std::move(after_.back())));
+    after_.pop_back();
+    active = std::min(active, labels_.size() - 1);
+    keep();
+    return true;
+}
+
+std::size_t Painting::labels_with_strokes() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(labels_, [](const SeedLabel& label) { return !label.strokes.empty(); }));
+}
+
+void Painting::change(Labels labels) {
+    before_.push_back(std::exchange(labels_, std::move(labels)));
+    if (before_.size() > most_remembered) before_.pop_front();
+    after_.clear();
+    problem_.clear();
+    keep();
+}
+
+/// What cannot be written stays in the window, and is written with the next edit.
+void Painting::keep() {
+    ++version_;
+    try {
+        segment::write_seeds(labels_, file_);
+    } catch (const Error& error) {
+        problem_ = error.what();
+    }
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is painted on a scan: labels with strokes, their history, and their file. No user interface.
+#pragma once
+
+#include "assets/segment/seeds_file.hpp"
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+/// The file is written after every finished edit, whole or not at all, so that a program that is killed loses at most
+/// the stroke that is being drawn. It is the file that `tactus segment --seeds` takes, once two labels have strokes.
+class Painting {
+public:
+    using Labels = std::vector<segment::SeedLabel>;
+    using Touches = std::function<bool(const segment::Stroke&)>;
+
+    /// Continues a file that exists; otherwise begins with two labels without strokes. `touches`: whether a stroke meets
+    /// bone; others are refused, because the file would be. Throws Error for a file that cannot be read.
+    Painting(std::filesystem::path file, Touches touches);
+
+    const Labels& labels() const { return labels_; }
+    const std::filesystem::path& file() const { return file_; }
+    /// Increases with every finished edit.
+    int version() const { return version_; }
+    /// Why the last edit could not be made or kept; empty: it was.
+    const std::string& problem() const { return problem_; }
+
+    std::size_t active = 0;  ///< the label that is painted
+
+    /// A stroke of the active label: begins, follows the brush, and ends. `end` is false when it meets no bone; nothing has
+    /// changed then. m.
+    void begin(double radius, const Vec3& point, bool erases = false);
+    void extend(const Vec3& point);
+    bool end();
+    void cancel() { is_open_ = false; }
+    bool is_open() const { return is_open_; }
+    bool is_erasing() const { return is_open_ && erases_; }
+    const segment::Stroke& open_stroke() const { return open_; }
+
+    /// A label with a name and a colour that no other has; it becomes active. False: there are too many.
+    bool add_label();
+    bool remove_label(std::size_t label);
+    /// False for names that the file cannot hold, or that another label has.
+    bool rename(std::size_t label, const std::string& name);
+    void recolour(std::size_t label, const Vec3& colour);
+
+    bool undo();
+    bool redo();
+    bool can_undo() const { return !before_.empty(); }
+    bool can_redo() const { return !after_.empty(); }
+
+    std::size_t labels_with_strokes() const;
+
+private:
+    void change(Labels labels);
+    void keep();
+
+    std::filesystem::path file_;
+    Touches touches_;
+    Labels labels_;
+    std::deque<Labels> before_, after_;
+    segment::Stroke open_;
+    bool is_open_ = false, erases_ = false;
+    int version_ = 0;
+    std::string problem_;
+};
+
+}  // namespace tactus::view
