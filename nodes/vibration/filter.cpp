@@ -29,7 +29,11 @@ struct Filter {
         signal::Biquad section = section_;
         const float* const x = &in[0];
         float* const y = &out[0];
-        for (int i = 0; i < tick.frames; ++i) y[i] = signal::to_sample(section(signal::finite_or_zero(x[i])));
+        if (section.coefficients.b1 == 0.0)
+            for (int i = 0; i < tick.frames; ++i)
+                y[i] = signal::to_sample(section.without_b1(signal::finite_or_zero(x[i])));
+        else
+            for (int i = 0; i < tick.frames; ++i) y[i] = signal::to_sample(section(signal::finite_or_zero(x[i])));
         section_ = section;
     }
 
