@@ -6,8 +6,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace tactus::expression {
+
+/// How many of a, b and c an operation takes.
+constexpr std::size_t operands_of(Operation operation) {
+    switch (operation) {
+        case Operation::negate:
+        case Operation::opposite:
+        case Operation::absolute:
+        case Operation::square_root:
+        case Operation::exponential:
+        case Operation::logarithm:
+        case Operation::sine:
+        case Operation::cosine:
+        case Operation::tangent:
+        case Operation::arc_sine:
+        case Operation::arc_cosine:
+        case Operation::arc_tangent:
+        case Operation::floor:
+        case Operation::ceiling:
+        case Operation::sign: return 1;
+        case Operation::clip:
+        case Operation::choose:
+        case Operation::multiply_add:
+        case Operation::multiply_subtract:
+        case Operation::subtract_product: return 3;
+        default: return 2;
+    }
+}
 
 /// Calls `run` with the function of the operation, so that each caller's loop is compiled for each operation.
 template <class Run>

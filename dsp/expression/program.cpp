@@ -14,16 +14,31 @@ double apply(Operation operation, double a, double b, double c) noexcept {
     return result;
 }
 
-bool Program::uses(std::size_t variable) const noexcept {
-    const auto reads = [variable](const Instruction& i) {
-        return i.a == variable || i.b == variable || i.c == variable;
-    };
-    return result == variable || std::ranges::any_of(instructions, reads);
+bool Program::uses(std::size_t variable) const noexcept { return result == variable || count_of(variable) > 0; }
+
+std::size_t Program::count_of(std::size_t variable) const noexcept {
+    std::size_t count = 0;
+    for (const Instruction& i : instructions) {
+        const std::uint8_t operands[] = {i.a, i.b, i.c};
+        for (std::size_t k = 0; k < operands_of(i.operation); ++k) count += operands[k] == variable;
+    }
+    return count;
 }
 
 Machine::Machine(Program program) : program_(std::move(program)), registers_(program_.registers * block) {
     for (std::size_t k = 0; k < program_.constants.size(); ++k)
         std::fill_n(variable(program_.variables + k), block, program_.constants[k]);
+    // A product or a sum takes a variable first: the bits are the same.
+    for (Instruction& i : program_.instructions) {
+        const bool swaps = i.operation == Operation::add || i.operation == Operation::multiply ||
+                           i.operation == Operation::multiply_add || i.operation == Operation::multiply_subtract ||
+                           i.operation == Operation::subtract_product;
+        if (swaps && i.a >= program_.variables && i.b < program_.variables) std::swap(i.a, i.b);
+    }
+    for (Instruction& i : program_.instructions) {
+        i.reads_input = i.a < std::min<std::size_t>(program_.variables, 64) && program_.count_of(i.a) == 1;
+        if (i.reads_input) program_.read_directly |= std::uint64_t{1} << i.a;
+    }
 }
 
 void run_instruction(Operation operation, double* to, const double* a, const double* b, const double* c,

@@ -55,6 +55,8 @@ enum class Operation : std::uint8_t {
 struct Instruction {
     Operation operation;
     std::uint8_t to = 0, a = 0, b = 0, c = 0;
+    /// `a` is a variable that nothing else reads: a loop over samples takes it from where it comes. Set by Machine.
+    bool reads_input = false;
 };
 
 /// Runs one instruction on `count` values. Of `samples.cpp`, for what has no loop of its own there.
@@ -76,9 +78,12 @@ struct Program {
     std::size_t registers = 0;  ///< of all kinds
     std::vector<Instruction> instructions;
     std::uint8_t result = 0;  ///< register
+    std::uint64_t read_directly = 0;  ///< a bit for each variable below 64 that an instruction takes from its input
 
     /// The formula names this variable.
     bool uses(std::size_t variable) const noexcept;
+    /// How many operands it is.
+    std::size_t count_of(std::size_t variable) const noexcept;
 };
 
 /// A result as a sample: 0 when it is not finite, the end of the range when it is beyond that of a float.

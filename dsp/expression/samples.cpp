@@ -19,9 +19,13 @@ namespace {
 #endif
 
 /// Calls put(k, value) for each of `count` values of an operation. False: it has no loop here, and `put` was not called.
-template <class Put>
-[[gnu::always_inline]] inline bool run_loop(Operation operation, const double* a, const double* b, const double* c,
+template <class A, class Put>
+[[gnu::always_inline]] inline bool run_loop(Operation operation, const A* given, const double* b, const double* c,
                                             int count, Put put) noexcept {
+    struct {
+        const A* given;
+        double operator[](int k) const noexcept { return static_cast<double>(given[k]); }
+    } const a{given};
     switch (operation) {
         case Operation::negate: TACTUS_EACH_SAMPLE put(k, -a[k]); return true;
         case Operation::add: TACTUS_EACH_SAMPLE put(k, a[k] + b[k]); return true;
@@ -82,12 +86,13 @@ constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
         if (!is_small || (index >= variables && index < constants)) return registers + index * block;
         return near + (index < variables ? index : index - program.constants.size()) * block;
     };
-    for (std::size_t i = 0; i < variables; ++i) {
-        if (!inputs[i]) continue;
-        const float* const in = inputs[i];
-        double* const to = place(i);
+    const auto widen = [&](std::size_t variable) {
+        const float* const in = inputs[variable];
+        double* const to = place(variable);
         TACTUS_EACH_SAMPLE to[k] = static_cast<double>(in[k]);
-    }
+    };
+    for (std::size_t i = 0; i < variables; ++i)
+        if (inputs[i] && (i >= 64 || (program.read_directly >> i & 1) == 0)) widen(i);
     // The last operation makes samples at once; what a float does not hold is rare, and mended afterwards.
     std::uint64_t beyond = 0;
     const auto put_sample = [out, &beyond](int k, double value) __attribute__((always_inline)) {
@@ -99,13 +104,18 @@ constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
         const Instruction& i = program.instructions[n];
         double* const to = place(i.to);
         const double *const a = place(i.a), *const b = place(i.b), *const c = place(i.c);
-        if (n + 1 == many && run_loop(i.operation, a, b, c, count, put_sample)) {
-            if ((beyond & sign_bit) != 0)
-                for (int k = 0; k < count; ++k) out[k] = sample_of(apply(i.operation, a[k], b[k], c[k]));
+        const float* const in = i.reads_input ? inputs[i.a] : nullptr;
+        if (n + 1 == many && (in ? run_loop(i.operation, in, b, c, count, put_sample)
+                                 : run_loop(i.operation, a, b, c, count, put_sample))) {
+            if ((beyond & sign_bit) == 0) return;
+            if (in) widen(i.a);
+            for (int k = 0; k < count; ++k) out[k] = sample_of(apply(i.operation, a[k], b[k], c[k]));
             return;
         }
         const auto put = [to](int k, double value) __attribute__((always_inline)) { to[k] = value; };
-        if (!run_loop(i.operation, a, b, c, count, put)) run_instruction(i.operation, to, a, b, c, count);
+        if (in ? run_loop(i.operation, in, b, c, count, put) : run_loop(i.operation, a, b, c, count, put)) continue;
+        if (in) widen(i.a);
+        run_instruction(i.operation, to, a, b, c, count);
     }
     const double* const result = place(program.result);
     TACTUS_EACH_SAMPLE put_sample(k, result[k]);

@@ -4,14 +4,15 @@
 
 #include "dsp/expression/program.hpp"
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 namespace tactus::expression {
 
-/// Runs a program one value at a time, with the bits of `Machine`. Two common operations in sequence are one step, and a
-/// small formula lies in the object itself: at one value per call, finding the code and the memory costs more than the
-/// arithmetic.
+/// Runs a program one value at a time, with the bits of `Machine`: threaded code, in which each operation calls the next
+/// as its last act. The result of an operation stays in a register of the processor for the next one, as do the first
+/// two variables; the code of each operation knows from where it takes its operands. At one value per call, finding code
+/// and operands costs more than the arithmetic.
 class Single {
 public:
     Single() = default;
@@ -21,31 +22,33 @@ public:
 
     /// Allocates; the rest is real-time safe, once this was called.
     void prepare(const Program& program);
-    /// Where the value of a variable is put before `run`; all are 0 at first.
-    double& variable(std::size_t index) noexcept { return registers_[index]; }
-    double run() noexcept {
-        const Step* step = steps_;
-        double value = step->run(registers_, *step);
-        while (++step != past_) value = step->run(registers_, *step);
-        return value;
+    /// The value of a variable from the third one on; it stays until it is put again.
+    void put(std::size_t variable, double value) noexcept {
+        for (const Use& use : uses_)
+            if (use.variable == variable) *use.place = value;
     }
+    /// For these values of the first two variables.
+    double run(double first, double second) noexcept { return code_->run(code_, 0.0, first, second); }
 
 private:
-    /// One instruction or two. It gives the value of the last.
-    struct Step {
-        double (*run)(double* registers, const Step& step) noexcept = nullptr;
-        std::uint8_t to = 0, a = 0, b = 0, c = 0;
-        std::uint8_t to2 = 0, a2 = 0, b2 = 0, c2 = 0;
+    /// Code: the function of an operation, then its operands that are in no register, or the place for a result.
+    union Word {
+        double (*run)(const Word* at, double result, double first, double second) noexcept;
+        double value;
+        double* place;
     };
-    struct Steps;  ///< the functions of all steps
-    static constexpr std::size_t most_near_steps = 2, most_near_registers = 9;  ///< two cache lines with the pointers
+    struct Use {
+        std::size_t variable;
+        double* place;
+    };
+    struct Steps;  ///< the functions of all operations
+    struct Writer;  ///< from instructions to words
+    static constexpr std::size_t most_near = 10;
 
-    const Step *steps_ = nullptr, *past_ = nullptr;
-    double* registers_ = near_registers_;
-    Step near_steps_[most_near_steps];
-    double near_registers_[most_near_registers] = {};
-    std::vector<Step> far_steps_;
-    std::vector<double> far_registers_;
+    Word* code_ = near_;
+    Word near_[most_near] = {};  ///< a small formula lies in the object itself
+    std::vector<Word> far_;
+    std::vector<Use> uses_;
 };
 
 }  // namespace tactus::expression

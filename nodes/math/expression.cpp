@@ -38,7 +38,9 @@ struct Expression {
     AnyOut out{"the value of the formula, in SI units"};
 
 private:
-    std::uint8_t uses_ = 0;  ///< a bit for each input that the formula names
+    enum class Quick : std::uint8_t { none, one, two };
+    Quick quick_ = Quick::none;  ///< a formula of signals that names only the first input, or the first two
+    std::uint8_t uses_ = 0;      ///< a bit for each input that the formula names
     bool is_signal_ = false, has_ranges_ = false;
     expression::Single single_;
 
@@ -79,17 +81,14 @@ public:
         single_.prepare(compiled.program);
         machine_ = expression::Machine(std::move(compiled.program));
         is_signal_ = out.type == &value::signal;
+        const bool is_quick = is_signal_ && !has_ranges_ && uses_ <= 3 && in1.connected;
+        quick_ = !is_quick ? Quick::none : uses_ > 1 ? Quick::two : Quick::one;
     }
 
     void process(const Tick& tick) noexcept {
-        if (!is_signal_) {
-            const double result = run_one<double>();
-            *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
-        } else if (tick.frames == 1) {
-            *out.as<float>() = expression::sample_of(run_one<float>());
-        } else {
-            process_samples(tick);
-        }
+        if (tick.frames != 1 || quick_ == Quick::none) return process_any(tick);
+        const double second = quick_ == Quick::two ? static_cast<double>(*in2.as<float>()) : 0.0;
+        *out.as<float>() = expression::sample_of(single_.run(static_cast<double>(*in1.as<float>()), second));
     }
 
     /// The unit that `inputs` or `unit` gives a port; a name without one takes any.
@@ -155,30 +154,33 @@ private:
         }
     }
 
+    [[gnu::noinline]] void process_any(const Tick& tick) noexcept {
+        if (!is_signal_) {
+            const double result = run_one<double>();
+            *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
+        } else if (tick.frames == 1) {
+            *out.as<float>() = expression::sample_of(run_one<float>());
+        } else {
+            process_samples(tick);
+        }
+    }
+
     /// The value of the formula for the first value of each input.
     template <class Value>
     double run_one() noexcept {
-        read<Value>(in1, 0);
-        if (uses_ > 1) {
-            read<Value>(in2, 1);
-            if (uses_ > 3) {
-                read<Value>(in3, 2);
-                read<Value>(in4, 3);
-                read<Value>(in5, 4);
-                read<Value>(in6, 5);
-            }
+        if (uses_ > 3) {
+            const AnyIn* const others[] = {&in3, &in4, &in5, &in6};
+            for (std::size_t i = 2; i < most_inputs; ++i)
+                if ((uses_ >> i & 1) != 0) single_.put(i, read<Value>(*others[i - 2], i));
         }
-        return single_.run();
+        return single_.run((uses_ & 1) != 0 ? read<Value>(in1, 0) : 0.0, (uses_ & 2) != 0 ? read<Value>(in2, 1) : 0.0);
     }
     template <class Value>
-    void read(const AnyIn& port, std::size_t input) noexcept {
-        if ((uses_ >> input & 1) == 0) return;
-        Value x = *port.as<Value>();
-        if (has_ranges_) [[unlikely]] {
-            if constexpr (std::is_same_v<Value, float>) x = sample_within(x, input);
-            else x = within(x, ranges_[input].low, ranges_[input].high);
-        }
-        single_.variable(input) = static_cast<double>(x);
+    double read(const AnyIn& port, std::size_t input) const noexcept {
+        const Value x = *port.as<Value>();
+        if (!has_ranges_) return static_cast<double>(x);
+        if constexpr (std::is_same_v<Value, float>) return static_cast<double>(sample_within(x, input));
+        else return within(x, ranges_[input].low, ranges_[input].high);
     }
 
     void process_samples(const Tick& tick) noexcept {

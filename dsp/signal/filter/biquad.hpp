@@ -77,14 +77,6 @@ struct Biquad {
         s2 = c.b2 * x - c.a2 * y;
         return y;
     }
-    /// The same bits where b1 is 0, as of a band-pass, and one addition less on the way from a sample to the next.
-    double without_b1(double x) noexcept {
-        const auto& c = coefficients;
-        const double y = c.b0 * x + s1;
-        s1 = (c.b1 * x + s2) - c.a1 * y;  // b1 x is a zero, whose sign counts when all else is zero
-        s2 = c.b2 * x - c.a2 * y;
-        return y;
-    }
 };
 
 }  // namespace tactus::signal

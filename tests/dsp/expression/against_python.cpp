@@ -100,8 +100,9 @@ std::optional<double> value_of(const Asked& asked) {
         Machine machine(program);
         Single single;
         single.prepare(program);
-        for (std::size_t i = 0; i < 3; ++i) *machine.variable(i) = single.variable(i) = asked.given[i];
-        const double value = single.run(), of_block = machine.run(1).front();
+        for (std::size_t i = 0; i < 3; ++i) *machine.variable(i) = asked.given[i];
+        single.put(2, asked.given[2]);
+        const double value = single.run(asked.given[0], asked.given[1]), of_block = machine.run(1).front();
         if (std::isfinite(value) || std::isfinite(of_block))
             CHECK(std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(of_block));
         if (!std::isfinite(value)) return std::nullopt;

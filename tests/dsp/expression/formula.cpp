@@ -27,8 +27,8 @@ double value_of(std::string_view text, double x = 0.0, double v = 0.0, double n 
     Single single;
     single.prepare(program);
     const double given[] = {x, v, n};
-    for (std::size_t i = 0; i < 3; ++i) single.variable(i) = given[i];
-    const double one = single.run();
+    single.put(2, n);
+    const double one = single.run(x, v);
     // A block gives the same, for each of its values.
     for (std::size_t i = 0; i < 3; ++i)
         for (int k = 0; k < 5; ++k) machine.variable(i)[k] = given[i];
@@ -187,8 +187,7 @@ TEST_CASE("a declared name behind a number's unit is a factor, and a name that i
         const auto names = parse_variables(inputs);
         Single single;
         single.prepare(compile_formula(text, names, {}).program);
-        single.variable(0) = 3.0;
-        return single.run();
+        return single.run(3.0, 0.0);
     };
     CHECK(with("x m", "2 N/mm*x") == 6000.0);
     CHECK(with("x m", "6 N/x") == 2.0);
@@ -251,9 +250,7 @@ TEST_CASE("loops over samples give the bits of single values, whatever the sampl
             const float* const places[] = {n.data(), y.data(), nullptr};
             machine.run(places, out.data(), count);
             for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-                single.variable(0) = static_cast<double>(n[k]);
-                single.variable(1) = static_cast<double>(y[k]);
-                const float one = sample_of(single.run());
+                const float one = sample_of(single.run(static_cast<double>(n[k]), static_cast<double>(y[k])));
                 CAPTURE(k, n[k], y[k], out[k], one);
                 CHECK(std::isfinite(out[k]));
                 CHECK(out[k] == one);

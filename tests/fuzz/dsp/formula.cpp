@@ -24,8 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (std::size_t i = 0; i < variables.size(); ++i) *machine.variable(i) = 0.5;
         Single single;
         single.prepare(formula.program);
-        for (std::size_t i = 0; i < variables.size(); ++i) single.variable(i) = 0.5;
-        single.run();
+        single.put(2, 0.5);
+        single.run(0.5, 0.5);
         machine.run(Machine::block);
     } catch (const tactus::Error&) {
         // Refusing is right for most texts.
