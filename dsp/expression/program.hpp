@@ -55,6 +55,8 @@ enum class Operation : std::uint8_t {
 struct Instruction {
     Operation operation;
     std::uint8_t to = 0, a = 0, b = 0, c = 0;
+    /// `a` is a variable that nothing else reads: a loop over samples takes it from where it comes. Set by Machine.
+    bool reads_input = false;
 };
 
 /// Runs one instruction on `count` values. Of `samples.cpp`, for what has no loop of its own there.
@@ -76,9 +78,12 @@ struct Program {
     std::size_t registers = 0;  ///< of all kinds
     std::vector<Instruction> instructions;
     std::uint8_t result = 0;  ///< register
+    std::uint64_t read_directly = 0;  ///< a bit for each variable below 64 that an instruction takes from its input
 
     /// The formula names this variable.
     bool uses(std::size_t variable) const noexcept;
+    /// How many operands it is.
+    std::size_t count_of(std::size_t variable) const noexcept;
 };
 
 /// A result as a sample: 0 when it is not finite, the end of the range when it is beyond that of a float.
@@ -88,7 +93,7 @@ inline float sample_of(double value) noexcept {
     return std::isfinite(value) ? static_cast<float>(value < 0.0 ? -largest : largest) : 0.0f;
 }
 
-/// A program with its registers. `prepare` allocates; the rest is real-time safe.
+/// A program with its registers, for many values at a time. The constructor allocates; the rest is real-time safe.
 class Machine {
 public:
     static constexpr int block = 64;
@@ -98,12 +103,6 @@ public:
 
     /// Where the values of a variable are put before a run: one, or up to `block` of them.
     double* variable(std::size_t index) noexcept { return registers_.data() + index * block; }
-    /// The value for the first value of each variable.
-    double run() noexcept;
-    /// Where one value of a variable is put before `run_one`.
-    double& single(std::size_t index) noexcept { return singles_[index]; }
-    /// The value for the single value of each variable; the same bits as `run`, side by side in memory.
-    double run_one() noexcept;
     /// The values for the first `count` ≤ block values of each variable.
     std::span<const double> run(int count) noexcept;
     /// Samples in, samples out: `inputs` has a place for each variable, null for one that the formula does not name. A
@@ -113,7 +112,6 @@ public:
 private:
     Program program_;
     std::vector<double> registers_;  ///< `block` values each
-    std::vector<double> singles_;  ///< one value each
     SampleLoop loop_ = sample_loop();
 };
 

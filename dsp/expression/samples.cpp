@@ -18,6 +18,63 @@ namespace {
 #define TACTUS_EACH_SAMPLE _Pragma("GCC ivdep") for (int k = 0; k < count; ++k)
 #endif
 
+/// Calls put(k, value) for each of `count` values of an operation. False: it has no loop here, and `put` was not called.
+template <class A, class Put>
+[[gnu::always_inline]] inline bool run_loop(Operation operation, const A* given, const double* b, const double* c,
+                                            int count, Put put) noexcept {
+    struct {
+        const A* given;
+        double operator[](int k) const noexcept { return static_cast<double>(given[k]); }
+    } const a{given};
+    switch (operation) {
+        case Operation::negate: TACTUS_EACH_SAMPLE put(k, -a[k]); return true;
+        case Operation::add: TACTUS_EACH_SAMPLE put(k, a[k] + b[k]); return true;
+        case Operation::subtract: TACTUS_EACH_SAMPLE put(k, a[k] - b[k]); return true;
+        case Operation::multiply: TACTUS_EACH_SAMPLE put(k, a[k] * b[k]); return true;
+        case Operation::divide: TACTUS_EACH_SAMPLE put(k, a[k] / b[k]); return true;
+        case Operation::multiply_add: TACTUS_EACH_SAMPLE put(k, a[k] * b[k] + c[k]); return true;
+        case Operation::multiply_subtract: TACTUS_EACH_SAMPLE put(k, a[k] * b[k] - c[k]); return true;
+        case Operation::subtract_product: TACTUS_EACH_SAMPLE put(k, c[k] - a[k] * b[k]); return true;
+        case Operation::less: TACTUS_EACH_SAMPLE put(k, a[k] < b[k] ? 1.0 : 0.0); return true;
+        case Operation::greater: TACTUS_EACH_SAMPLE put(k, a[k] > b[k] ? 1.0 : 0.0); return true;
+        case Operation::minimum:
+            TACTUS_EACH_SAMPLE {
+                const double x = a[k], y = b[k];
+                put(k, y < x ? y : x);
+            }
+            return true;
+        case Operation::maximum:
+            TACTUS_EACH_SAMPLE {
+                const double x = a[k], y = b[k];
+                put(k, x < y ? y : x);
+            }
+            return true;
+        case Operation::absolute: TACTUS_EACH_SAMPLE put(k, std::abs(a[k])); return true;
+        case Operation::square_root: TACTUS_EACH_SAMPLE put(k, std::sqrt(a[k])); return true;
+        case Operation::choose:
+            TACTUS_EACH_SAMPLE {
+                const double yes = b[k], no = c[k];
+                put(k, a[k] != 0.0 ? yes : no);
+            }
+            return true;
+        case Operation::clip:
+            TACTUS_EACH_SAMPLE {
+                const double x = a[k], least = b[k], greatest = c[k], low = x > least ? x : least;
+                put(k, greatest < low ? greatest : low);
+            }
+            return true;
+        default: return false;
+    }
+}
+
+constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
+/// Its top bit is set where the size, as an integer, is above that of the largest float.
+[[gnu::always_inline]] inline std::uint64_t beyond_float(double value) noexcept {
+    constexpr double largest = std::numeric_limits<float>::max();
+    constexpr std::uint64_t room = sign_bit - std::bit_cast<std::uint64_t>(largest) - 1;
+    return (std::bit_cast<std::uint64_t>(value) & ~sign_bit) + room;
+}
+
 [[gnu::always_inline]] inline void run_samples(const Program& program, double* registers, const float* const* inputs,
                                                float* out, int count) noexcept {
     constexpr std::size_t block = Machine::block, most_near = 16;
@@ -29,65 +86,40 @@ namespace {
         if (!is_small || (index >= variables && index < constants)) return registers + index * block;
         return near + (index < variables ? index : index - program.constants.size()) * block;
     };
-    for (std::size_t i = 0; i < variables; ++i) {
-        if (!inputs[i]) continue;
-        const float* const in = inputs[i];
-        double* const to = place(i);
+    const auto widen = [&](std::size_t variable) {
+        const float* const in = inputs[variable];
+        double* const to = place(variable);
         TACTUS_EACH_SAMPLE to[k] = static_cast<double>(in[k]);
-    }
-    for (const Instruction& i : program.instructions) {
+    };
+    for (std::size_t i = 0; i < variables; ++i)
+        if (inputs[i] && (i >= 64 || (program.read_directly >> i & 1) == 0)) widen(i);
+    // The last operation makes samples at once; what a float does not hold is rare, and mended afterwards.
+    std::uint64_t beyond = 0;
+    const auto put_sample = [out, &beyond](int k, double value) __attribute__((always_inline)) {
+        out[k] = static_cast<float>(value);
+        beyond |= beyond_float(value);
+    };
+    const std::size_t many = program.instructions.size();
+    for (std::size_t n = 0; n < many; ++n) {
+        const Instruction& i = program.instructions[n];
         double* const to = place(i.to);
         const double *const a = place(i.a), *const b = place(i.b), *const c = place(i.c);
-        switch (i.operation) {
-            case Operation::negate: TACTUS_EACH_SAMPLE to[k] = -a[k]; break;
-            case Operation::add: TACTUS_EACH_SAMPLE to[k] = a[k] + b[k]; break;
-            case Operation::subtract: TACTUS_EACH_SAMPLE to[k] = a[k] - b[k]; break;
-            case Operation::multiply: TACTUS_EACH_SAMPLE to[k] = a[k] * b[k]; break;
-            case Operation::divide: TACTUS_EACH_SAMPLE to[k] = a[k] / b[k]; break;
-            case Operation::multiply_add: TACTUS_EACH_SAMPLE to[k] = a[k] * b[k] + c[k]; break;
-            case Operation::multiply_subtract: TACTUS_EACH_SAMPLE to[k] = a[k] * b[k] - c[k]; break;
-            case Operation::subtract_product: TACTUS_EACH_SAMPLE to[k] = c[k] - a[k] * b[k]; break;
-            case Operation::less: TACTUS_EACH_SAMPLE to[k] = a[k] < b[k] ? 1.0 : 0.0; break;
-            case Operation::greater: TACTUS_EACH_SAMPLE to[k] = a[k] > b[k] ? 1.0 : 0.0; break;
-            case Operation::minimum:
-                TACTUS_EACH_SAMPLE {
-                    const double x = a[k], y = b[k];
-                    to[k] = y < x ? y : x;
-                }
-                break;
-            case Operation::maximum:
-                TACTUS_EACH_SAMPLE {
-                    const double x = a[k], y = b[k];
-                    to[k] = x < y ? y : x;
-                }
-                break;
-            case Operation::absolute: TACTUS_EACH_SAMPLE to[k] = std::abs(a[k]); break;
-            case Operation::square_root: TACTUS_EACH_SAMPLE to[k] = std::sqrt(a[k]); break;
-            case Operation::choose:
-                TACTUS_EACH_SAMPLE {
-                    const double yes = b[k], no = c[k];
-                    to[k] = a[k] != 0.0 ? yes : no;
-                }
-                break;
-            case Operation::clip:
-                TACTUS_EACH_SAMPLE {
-                    const double x = a[k], least = b[k], greatest = c[k], low = x > least ? x : least;
-                    to[k] = greatest < low ? greatest : low;
-                }
-                break;
-            default: run_instruction(i.operation, to, a, b, c, count);
+        const float* const in = i.reads_input ? inputs[i.a] : nullptr;
+        if (n + 1 == many && (in ? run_loop(i.operation, in, b, c, count, put_sample)
+                                 : run_loop(i.operation, a, b, c, count, put_sample))) {
+            if ((beyond & sign_bit) == 0) return;
+            if (in) widen(i.a);
+            for (int k = 0; k < count; ++k) out[k] = sample_of(apply(i.operation, a[k], b[k], c[k]));
+            return;
         }
+        const auto put = [to](int k, double value) __attribute__((always_inline)) { to[k] = value; };
+        if (in ? run_loop(i.operation, in, b, c, count, put) : run_loop(i.operation, a, b, c, count, put)) continue;
+        if (in) widen(i.a);
+        run_instruction(i.operation, to, a, b, c, count);
     }
     const double* const result = place(program.result);
-    // The top bit of the sum is set where the size, as an integer, is above that of the largest float. Rarely.
-    constexpr double largest = std::numeric_limits<float>::max();
-    constexpr std::uint64_t sign = std::uint64_t{1} << 63, room = sign - std::bit_cast<std::uint64_t>(largest) - 1;
-    std::uint64_t beyond = 0;
-    TACTUS_EACH_SAMPLE {
-        out[k] = static_cast<float>(result[k]);
-        beyond |= (std::bit_cast<std::uint64_t>(result[k]) & ~sign) + room;
-    }
-    if ((beyond & sign) != 0)
+    TACTUS_EACH_SAMPLE put_sample(k, result[k]);
+    if ((beyond & sign_bit) != 0)
         for (int k = 0; k < count; ++k) out[k] = sample_of(result[k]);
 }
 

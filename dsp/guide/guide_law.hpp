@@ -47,8 +47,12 @@ struct GuideLaw {
     /// is damped. All m, m/s, N.
     Vec3 attract(const Vec3& offset, const Vec3& resisted) const noexcept {
         const double distance = std::hypot(offset.x, offset.y, offset.z);
-        const Vec3 spring = distance > 0.0 ? offset * (pull(distance) / distance) : Vec3(0.0);
-        return limited_sum(spring, resisted * (-damping * grip(distance)), max_force);
+        return limited_sum(spring_to(offset), resisted * (-damping * grip(distance)), max_force);
+    }
+    /// The spring's part of it.
+    Vec3 spring_to(const Vec3& offset) const noexcept {
+        const double distance = std::hypot(offset.x, offset.y, offset.z);
+        return distance > 0.0 ? offset * (pull(distance) / distance) : Vec3(0.0);
     }
     /// On a hand that is `depth` inside of a wall with this normal, which points to where the hand may be. A wall pushes
     /// and never pulls.

@@ -115,6 +115,12 @@ std::string renamed(const std::string& wire, const patch::PatchWire& read, std::
     return text;
 }
 
+std::string end_of(const patch::PatchWire& wire) { return wire.to_node + "." + wire.to_port; }
+/// An asset has no port.
+std::string start_of(const patch::PatchWire& wire) {
+    return wire.from_port.empty() ? wire.from_node : wire.from_node + "." + wire.from_port;
+}
+
 /// Nodes within a sub-patch are not part of this text.
 void refuse_within(std::string_view name) {
     const std::size_t end = name.find(patch::within_node);
@@ -182,12 +188,13 @@ std::string with_node_named(std::string_view text, std::string_view from, std::s
     return editing.result();
 }
 
-std::string with_wire(std::string_view text, const WireText& wire) {
+std::string with_wire(std::string_view text, const WireText& wire, InputTakes takes) {
     refuse_within(wire.from);
     refuse_within(wire.to);
     Editing editing(text);
     for (const WrittenWire& written : wires_of(editing)) {
-        if (!written.wire || written.wire->to_node + "." + written.wire->to_port != wire.to) continue;
+        if (!written.wire || end_of(*written.wire) != wire.to) continue;
+        if (takes == InputTakes::many_wires && start_of(*written.wire) != wire.from) continue;
         editing.replace(written.element.value, toml_quoted(joined(wire, arrow_column(written.text))));
         return editing.result();
     }
@@ -195,14 +202,16 @@ std::string with_wire(std::string_view text, const WireText& wire) {
     return editing.result();
 }
 
-std::string without_wire(std::string_view text, std::string_view to) {
+std::string without_wire(std::string_view text, std::string_view to, std::string_view from) {
     refuse_within(to);
     Editing editing(text);
     for (const WrittenWire& written : wires_of(editing)) {
-        if (!written.wire || written.wire->to_node + "." + written.wire->to_port != to) continue;
+        if (!written.wire || end_of(*written.wire) != to) continue;
+        if (!from.empty() && start_of(*written.wire) != from) continue;
         remove_element(editing, written.element);
         return editing.result();
     }
+    if (!from.empty()) throw Error(fmt::format("no wire leads from '{}' to '{}'", from, to));
     throw Error(fmt::format("no wire leads to '{}'", to));
 }
 

@@ -34,9 +34,11 @@ std::string with_node(std::string_view text, const NewNode& node);
 /// Removes a node and every wire that begins or ends there.
 std::string without_node(std::string_view text, std::string_view name);
 std::string with_node_named(std::string_view text, std::string_view from, std::string_view to);
-/// Adds a wire; it replaces one that feeds the same input.
-std::string with_wire(std::string_view text, const WireText& wire);
-/// Removes the wire to that input, "saw.load".
-std::string without_wire(std::string_view text, std::string_view to);
+/// How many wires an input takes: events come from any number of outputs.
+enum class InputTakes { one_wire, many_wires };
+/// Adds a wire; it replaces one that feeds the same input, or one of the same two ends where the input takes many.
+std::string with_wire(std::string_view text, const WireText& wire, InputTakes takes = InputTakes::one_wire);
+/// Removes the wire to that input, "saw.load"; where `from` is given, the one from there.
+std::string without_wire(std::string_view text, std::string_view to, std::string_view from = {});
 
 }  // namespace tactus::edit

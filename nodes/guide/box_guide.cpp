@@ -6,13 +6,15 @@ namespace tactus::nodes {
 
 struct BoxGuide {
     static constexpr auto about =
-        "Keeps the hand inside of a box, or out of it through the nearest face." TACTUS_GUIDE_ABOUT;
+        "Keeps the hand inside of a box, or out of it through the nearest face. Within the box the force turns from "
+        "face "
+        "to face: where two are as near, it is that of neither." TACTUS_GUIDE_ABOUT;
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
     In<Pose> frame{optional, "the guide's frame; open: the world. A frame that moves does work on the hand", "m"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
-    Out<double> distance{"in the wall; 0: no contact", "m"};
+    Out<double> distance{"in the wall, from its nearest face; 0: no contact", "m"};
     Vector centre{"0 mm, 0 mm, 0 mm", "of the box"};
     Vector size{"100 mm, 100 mm, 100 mm", "along the axes of the frame"};
     Choice keep{{"inside", "outside"}, "where the hand may be"};
@@ -28,9 +30,17 @@ struct BoxGuide {
         wrench = Wrench{};
         if (!hand.is_known) return;
         const Vec3 at = hand.position - centre.value, half = 0.5 * size.value;
-        const guide::WallContact wall = keep.index == 0 ? guide::outside_of(at, half) : guide::inside_of(at, half);
-        distance = wall.depth;
-        wrench = {frame->orientation * guide.law().repel(wall.depth, wall.normal, hand.velocity), {}};
+        Vec3 force(0.0);
+        if (keep.index == 0) {
+            const guide::WallContact wall = guide::outside_of(at, half);
+            distance = wall.depth;
+            force = guide.law().repel(wall.depth, wall.normal, hand.velocity);
+        } else {
+            distance = guide::inside_of(at, half).depth;
+            const guide::RoundedContact wall = guide::rounded_inside_of(at, half);
+            force = wall.share * guide.law().repel(wall.depth, wall.normal, hand.velocity);
+        }
+        wrench = {frame->orientation * force, {}};
     }
 };
 

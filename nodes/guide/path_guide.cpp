@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/guide/path.hpp"
+#include "dsp/guide/turning_pull.hpp"
 
 #include "dsp/core/number_list.hpp"
 #include "dsp/core/units.hpp"
@@ -9,7 +10,9 @@ namespace tactus::nodes {
 
 struct PathGuide {
     static constexpr auto about =
-        "Pulls the hand to the nearest place of a path through points, along which it is free." TACTUS_GUIDE_ABOUT;
+        "Pulls the hand to the nearest place of a path through points, along which it is free. Where another part of "
+        "the "
+        "path becomes nearer, the pull turns there within 50 ms." TACTUS_GUIDE_ABOUT;
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
@@ -27,6 +30,7 @@ struct PathGuide {
 
     void prepare(const Setup& setup) {
         path_ = {};
+        pull_.reset();
         const auto [text, factor] = without_unit(setup);
         std::vector<Vec3> all;
         for (const std::vector<double>& row : rows_of_numbers(text, points.where)) {
@@ -40,16 +44,16 @@ struct PathGuide {
         }
     }
 
-    void process(const Tick&) noexcept {
+    void process(const Tick& tick) noexcept {
         const GuidedHand hand(pose, twist, frame);
         wrench = Wrench{};
-        if (!hand.is_known) return;
+        if (!hand.is_known) return pull_.reset();
         const guide::Path::Place place = path_.nearest(hand.position);
-        const Vec3 offset = place.point - hand.position;
-        distance = glm::length(offset);
+        distance = glm::distance(place.point, hand.position);
         along = place.along;
-        const Vec3 across = hand.velocity - place.tangent * glm::dot(hand.velocity, place.tangent);
-        wrench = {frame->orientation * guide.law(reach).attract(offset, across), {}};
+        const Vec3 force = pull_.on(guide.law(reach), hand.position, hand.velocity, place.point, place.tangent,
+                                    tick.elapsed_seconds());
+        wrench = {frame->orientation * force, {}};
     }
 
 private:
@@ -69,6 +73,7 @@ private:
     }
 
     guide::Path path_;
+    guide::TurningPull pull_;
 };
 
 TACTUS_NODE(PathGuide, pose, twist, frame, wrench, distance, along, points, shape, closed, reach, guide)

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/expression/formula.hpp"
+#include "dsp/expression/single.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace tactus::nodes {
@@ -30,11 +33,21 @@ struct Expression {
         "gives 0.";
     static constexpr bool shapes_values = true;
 
+    // What each call of one value uses lies side by side: the first input, the output, and how the formula runs.
     AnyIn in1{"the first name of 'inputs'", types};
+    AnyOut out{"the value of the formula, in SI units"};
+
+private:
+    enum class Quick : std::uint8_t { none, one, two };
+    Quick quick_ = Quick::none;  ///< a formula of signals that names only the first input, or the first two
+    std::uint8_t uses_ = 0;      ///< a bit for each input that the formula names
+    bool is_signal_ = false, has_ranges_ = false;
+    expression::Single single_;
+
+public:
     AnyIn in2{optional, "the second name", types}, in3{optional, "the third name", types};
     AnyIn in4{optional, "the fourth name", types}, in5{optional, "the fifth name", types};
     AnyIn in6{optional, "the sixth name", types};
-    AnyOut out{"the value of the formula, in SI units"};
     Text formula{"x", "what is computed, as in \"k * x - c * v\""};
     Text inputs{"x, y, z, u, v, w",
                 "names of in1, in2, … with their units: \"x m, v m/s\"; a name without a unit is a bare number. \"x m "
@@ -59,20 +72,23 @@ struct Expression {
             throw Error(unit.value.empty() ? formula.where : unit.where,
                         "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
         check_wires(setup, names, compiled.program);
+        has_ranges_ = false;
         for (std::size_t i = 0; i < count_; ++i) {
             ranges_[i] = names[i].range;
             sample_ranges_[i] = samples_in(names[i].range);
+            has_ranges_ = has_ranges_ || has_range(i);
         }
+        single_.prepare(compiled.program);
         machine_ = expression::Machine(std::move(compiled.program));
         is_signal_ = out.type == &value::signal;
+        const bool is_quick = is_signal_ && !has_ranges_ && uses_ <= 3 && in1.connected;
+        quick_ = !is_quick ? Quick::none : uses_ > 1 ? Quick::two : Quick::one;
     }
 
     void process(const Tick& tick) noexcept {
-        if (is_signal_) return process_signal(tick);
-        for (std::size_t i = 0; i < count_; ++i)
-            if (used_[i]) machine_.single(i) = within(*used_[i]->as<double>(), ranges_[i].low, ranges_[i].high);
-        const double result = machine_.run_one();
-        *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
+        if (tick.frames != 1 || quick_ == Quick::none) return process_any(tick);
+        const double second = quick_ == Quick::two ? static_cast<double>(*in2.as<float>()) : 0.0;
+        *out.as<float>() = expression::sample_of(single_.run(static_cast<double>(*in1.as<float>()), second));
     }
 
     /// The unit that `inputs` or `unit` gives a port; a name without one takes any.
@@ -128,29 +144,55 @@ private:
     void check_wires(const Setup& setup, const std::vector<expression::Variable>& names,
                      const expression::Program& program) {
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
+        uses_ = 0;
         for (std::size_t i = 0; i < std::size(ports); ++i) {
             const std::string port = "in" + std::to_string(i + 1);
             if (i < count_ && !ports[i]->connected && program.uses(i))
                 setup.fail("'" + names[i].name + "' needs a wire to '" + port + "'");
-            used_[i] = i < count_ && program.uses(i) ? ports[i] : nullptr;
+            if (i < count_ && program.uses(i)) uses_ = static_cast<std::uint8_t>(uses_ | 1u << i);
             if (i >= count_ && ports[i]->connected) setup.fail("'" + port + "' has a wire but no name in 'inputs'");
         }
     }
 
-    void process_signal(const Tick& tick) noexcept {
-        if (tick.frames == 1) {
-            for (std::size_t i = 0; i < count_; ++i)
-                if (used_[i]) machine_.single(i) = static_cast<double>(sample_within(*used_[i]->as<float>(), i));
-            *out.as<float>() = expression::sample_of(machine_.run_one());
-            return;
+    [[gnu::noinline]] void process_any(const Tick& tick) noexcept {
+        if (!is_signal_) {
+            const double result = run_one<double>();
+            *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
+        } else if (tick.frames == 1) {
+            *out.as<float>() = expression::sample_of(run_one<float>());
+        } else {
+            process_samples(tick);
         }
+    }
+
+    /// The value of the formula for the first value of each input.
+    template <class Value>
+    double run_one() noexcept {
+        if (uses_ > 3) {
+            const AnyIn* const others[] = {&in3, &in4, &in5, &in6};
+            for (std::size_t i = 2; i < most_inputs; ++i)
+                if ((uses_ >> i & 1) != 0) single_.put(i, read<Value>(*others[i - 2], i));
+        }
+        return single_.run((uses_ & 1) != 0 ? read<Value>(in1, 0) : 0.0, (uses_ & 2) != 0 ? read<Value>(in2, 1) : 0.0);
+    }
+    template <class Value>
+    double read(const AnyIn& port, std::size_t input) const noexcept {
+        const Value x = *port.as<Value>();
+        if (!has_ranges_) return static_cast<double>(x);
+        if constexpr (std::is_same_v<Value, float>) return static_cast<double>(sample_within(x, input));
+        else return within(x, ranges_[input].low, ranges_[input].high);
+    }
+
+    void process_samples(const Tick& tick) noexcept {
+        const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
         const float* places[most_inputs];
         float clamped[most_inputs][expression::Machine::block];
         for (int from = 0; from < tick.frames; from += expression::Machine::block) {
             const int frames = std::min(tick.frames - from, expression::Machine::block);
             for (std::size_t i = 0; i < count_; ++i) {
-                places[i] = used_[i] ? used_[i]->as<float>() + from : nullptr;
-                if (!used_[i] || !has_range(i)) continue;
+                const bool is_used = (uses_ >> i & 1) != 0;
+                places[i] = is_used ? ports[i]->as<float>() + from : nullptr;
+                if (!is_used || !has_range(i)) continue;
                 for (int k = 0; k < frames; ++k) clamped[i][k] = sample_within(places[i][k], i);
                 places[i] = clamped[i];
             }
@@ -162,8 +204,6 @@ private:
     expression::Interval ranges_[most_inputs] = {};
     SampleRange sample_ranges_[most_inputs] = {};
     std::size_t count_ = 0;
-    const AnyIn* used_[most_inputs] = {};  ///< the port of each name that the formula has
-    bool is_signal_ = false;
 };
 
 TACTUS_NODE(Expression, in1, in2, in3, in4, in5, in6, out, formula, inputs, constants, unit)

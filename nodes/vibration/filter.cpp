@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/filter/biquad_block.hpp"
 #include "dsp/signal/filter/biquad_shelves.hpp"
-#include "dsp/signal/filter/sample.hpp"
 #include "graph/node/node.hpp"
 
 namespace tactus::nodes {
@@ -25,12 +25,7 @@ struct Filter {
 
     void process(const Tick& tick) noexcept {
         if (frequency != frequency_ || q != q_ || boost != boost_) design();
-        // Held in registers: what is written to the output might be a member, for all that the compiler knows.
-        signal::Biquad section = section_;
-        const float* const x = &in[0];
-        float* const y = &out[0];
-        for (int i = 0; i < tick.frames; ++i) y[i] = signal::to_sample(section(signal::finite_or_zero(x[i])));
-        section_ = section;
+        section_.run(&in[0], &out[0], tick.frames);
     }
 
 private:
@@ -52,7 +47,7 @@ private:
         }();
     }
 
-    signal::Biquad section_;
+    signal::BlockBiquad section_;
     double rate_ = 48000.0, frequency_ = 0.0, q_ = 0.0, boost_ = 0.0;
 };
 

@@ -5,6 +5,7 @@
 #include "graph/node/node.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace tactus::nodes {
 struct Player {
     static constexpr auto about =
         "Plays a sound once, from its beginning, when a trigger becomes true. A sound that still plays fades out while "
-        "the new one begins. Several channels are averaged; another rate is converted.";
+        "the new one begins, however soon that is. Several channels are averaged; another rate is converted.";
 
     In<bool> trigger{"plays when it becomes true"};
     Out<Signal> out{"the sound, then silence; full scale is 1"};
@@ -31,20 +32,31 @@ struct Player {
             samples_.assign(converted.begin(), converted.end());
         }
         rate_ = rate;
-        new_ = old_ = {samples_.size(), 0.0};
+        new_ = {samples_.size(), 0.0};
+        old_.fill(new_);
+        rest_ = 0.0;
         playing = was_ = false;
     }
     void process(const Tick& tick) noexcept {
         if (trigger && !was_) {
-            old_ = new_;
+            // The one that has faded most makes room. What it still gave fades with the rest.
+            std::rotate(old_.begin(), old_.end() - 1, old_.end());
+            rest_ += next(old_.front());
+            old_.front() = new_;
             new_ = {0, 1.0};
         }
         was_ = trigger;
         const double step = fade > 0.0 ? 1.0 / (fade * rate_) : 1.0;
         for (int i = 0; i < tick.frames; ++i) {
-            old_.level = std::max(old_.level - step, 0.0);
             playing[i] = new_.at < samples_.size();
-            out[i] = signal::to_sample(gain * (next(new_) + next(old_)));
+            double sum = next(new_);
+            for (Voice& voice : old_) {
+                if (!(voice.level > 0.0)) continue;
+                voice.level = std::max(voice.level - step, 0.0);
+                sum += next(voice);
+            }
+            rest_ *= 1.0 - step;
+            out[i] = signal::to_sample(gain * (sum + rest_));
         }
     }
 
@@ -58,7 +70,9 @@ private:
     }
 
     std::vector<float> samples_;
-    Voice new_, old_;
+    Voice new_;
+    std::array<Voice, 4> old_{};  ///< those that fade, the latest first
+    double rest_ = 0.0;  ///< of those that had no place
     double rate_ = 48000.0;
     bool was_ = false;
 };

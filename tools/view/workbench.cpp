@@ -156,12 +156,23 @@ bool Workbench::rename(const std::string& from, const std::string& to) {
 }
 
 bool Workbench::connect(const std::string& from, const std::string& to, const std::string& mode) {
-    return edit([&](std::string_view text) { return edit::with_wire(text, {from, to, mode}); },
+    return edit([&](std::string_view text) { return edit::with_wire(text, {from, to, mode}, taken_by(to)); },
                 fmt::format("{} -> {}{}{}", from, to, mode.empty() ? "" : " as ", mode));
 }
 
-bool Workbench::disconnect(const std::string& to) {
-    return edit([&](std::string_view text) { return edit::without_wire(text, to); }, fmt::format("no wire to {}", to));
+bool Workbench::disconnect(const std::string& to, const std::string& from) {
+    const std::string one = taken_by(to) == edit::InputTakes::many_wires ? from : "";
+    return edit([&](std::string_view text) { return edit::without_wire(text, to, one); },
+                one.empty() ? fmt::format("no wire to {}", to) : fmt::format("no wire from {} to {}", one, to));
+}
+
+edit::InputTakes Workbench::taken_by(const std::string& to) const {
+    if (!plan_) return edit::InputTakes::one_wire;
+    for (const compile::PlanNode& node : plan_->nodes)
+        for (const compile::PlanInput& input : node.inputs)
+            if (input.port->kind == InputKind::events && node.name + "." + input.name == to)
+                return edit::InputTakes::many_wires;
+    return edit::InputTakes::one_wire;
 }
 
 bool Workbench::undo() {
@@ -196,7 +207,7 @@ void Workbench::turn(const std::string& node, const std::string& param, const st
 std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
     patch::Problems problems;
     try {
-        const std::string text = edit::with_wire(editor_->text(), {from, to, {}});
+        const std::string text = edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to));
         plan_of(patch::read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed,
                 nullptr, problems);
     } catch (const Error& error) {

@@ -53,9 +53,10 @@ public:
     bool add(const edit::NewNode& node);
     bool remove(const std::string& node);
     bool rename(const std::string& from, const std::string& to);
-    /// Wires "node.port" to "node.port"; replaces an existing wire to that input.
+    /// Wires "node.port" to "node.port"; replaces an existing wire to that input, unless it takes events of many.
     bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
-    bool disconnect(const std::string& to);
+    /// Removes the wire to that input; of several the one from `from`, or the first when none is given.
+    bool disconnect(const std::string& to, const std::string& from = {});
     /// Moves the saw's site to a point of the bone (scene, m), along the surface's normal, as one edit. Refused for a
     /// patch without a bone to saw.
     bool cut_at(const Vec3& site);
@@ -126,6 +127,7 @@ public:
 
 private:
     bool edit(const edit::PatchEditor::Edit& how, std::string done);
+    edit::InputTakes taken_by(const std::string& to) const;
     std::optional<std::string> check(std::string_view text);
     void adopt();
     void adopt_text();

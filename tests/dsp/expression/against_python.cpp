@@ -3,6 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/expression/formula.hpp"
+#include "dsp/expression/single.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
@@ -10,7 +11,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -93,9 +96,15 @@ std::vector<std::string> answers(const std::vector<Asked>& asked) {
 std::optional<double> value_of(const Asked& asked) {
     static const auto names = parse_variables("x, y, z");
     try {
-        Machine machine(compile_formula(asked.text, names, {}).program);
+        const Program program = compile_formula(asked.text, names, {}).program;
+        Machine machine(program);
+        Single single;
+        single.prepare(program);
         for (std::size_t i = 0; i < 3; ++i) *machine.variable(i) = asked.given[i];
-        const double value = machine.run();
+        single.put(2, asked.given[2]);
+        const double value = single.run(asked.given[0], asked.given[1]), of_block = machine.run(1).front();
+        if (std::isfinite(value) || std::isfinite(of_block))
+            CHECK(std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(of_block));
         if (!std::isfinite(value)) return std::nullopt;
         return value;
     } catch (const Error& error) {

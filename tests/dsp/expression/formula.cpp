@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/expression/formula.hpp"
+#include "dsp/expression/single.hpp"
 
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
@@ -21,10 +22,13 @@ namespace {
 double value_of(std::string_view text, double x = 0.0, double v = 0.0, double n = 0.0,
                 std::string_view constants = "") {
     const auto names = parse_variables("x m, v m/s, n");
-    Machine machine(compile_formula(text, names, parse_constants(constants)).program);
+    const Program program = compile_formula(text, names, parse_constants(constants)).program;
+    Machine machine(program);
+    Single single;
+    single.prepare(program);
     const double given[] = {x, v, n};
-    for (std::size_t i = 0; i < 3; ++i) *machine.variable(i) = given[i];
-    const double one = machine.run();
+    single.put(2, n);
+    const double one = single.run(x, v);
     // A block gives the same, for each of its values.
     for (std::size_t i = 0; i < 3; ++i)
         for (int k = 0; k < 5; ++k) machine.variable(i)[k] = given[i];
@@ -181,9 +185,9 @@ TEST_CASE("a long formula with many parts keeps them apart") {
 TEST_CASE("a declared name behind a number's unit is a factor, and a name that is a unit too is refused") {
     const auto with = [](std::string_view inputs, std::string_view text) {
         const auto names = parse_variables(inputs);
-        Machine machine(compile_formula(text, names, {}).program);
-        *machine.variable(0) = 3.0;
-        return machine.run();
+        Single single;
+        single.prepare(compile_formula(text, names, {}).program);
+        return single.run(3.0, 0.0);
     };
     CHECK(with("x m", "2 N/mm*x") == 6000.0);
     CHECK(with("x m", "6 N/x") == 2.0);
@@ -233,7 +237,10 @@ TEST_CASE("loops over samples give the bits of single values, whatever the sampl
           "(n+1)*((y+2)*((n+3)*((y+4)*((n+5)*((y+6)*((n+7)*((y+8)*((n+9)*((y+10)*((n+11)*((y+12)*((n+13)*((y+14)*"
           "((n+15)*((y+16)*((n+17)*(y+18)))))))))))))))))"}) {
         INFO(text);
-        Machine machine(compile_formula(text, parse_variables("n, y, unused"), {}).program);
+        const Program program = compile_formula(text, parse_variables("n, y, unused"), {}).program;
+        Machine machine(program);
+        Single single;
+        single.prepare(program);
         std::vector<float> n, y, out(Machine::block);
         for (std::size_t k = 0; k < Machine::block; ++k) {
             n.push_back(k < 30 ? odd[k % odd.size()] : 0.1f * static_cast<float>(k) - 3.0f);
@@ -243,9 +250,7 @@ TEST_CASE("loops over samples give the bits of single values, whatever the sampl
             const float* const places[] = {n.data(), y.data(), nullptr};
             machine.run(places, out.data(), count);
             for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-                machine.single(0) = static_cast<double>(n[k]);
-                machine.single(1) = static_cast<double>(y[k]);
-                const float one = sample_of(machine.run_one());
+                const float one = sample_of(single.run(static_cast<double>(n[k]), static_cast<double>(y[k])));
                 CAPTURE(k, n[k], y[k], out[k], one);
                 CHECK(std::isfinite(out[k]));
                 CHECK(out[k] == one);

@@ -6,11 +6,13 @@
 #include "dsp/core/rotation.hpp"
 #include "dsp/guide/box.hpp"
 #include "dsp/guide/guide_law.hpp"
+#include "dsp/guide/turning_pull.hpp"
 #include "dsp/guide/twist_angle.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -119,6 +121,115 @@ TEST_CASE("the walls of a box are its nearest faces") {
     CHECK(corner.depth == Approx(5.0));
     CHECK(corner.normal.x == Approx(-0.6));
     CHECK(corner.normal.y == Approx(-0.8));
+}
+
+TEST_CASE("the wall within a box turns from face to face no faster than its stiffness allows, and keeps its energy") {
+    const Vec3 half(0.05, 0.03, 0.02);
+    const guide::GuideLaw law{.stiffness = 500.0, .damping = 0.0, .max_force = 3.0};
+    const auto force = [&](const Vec3& p) {
+        const guide::RoundedContact wall = guide::rounded_inside_of(p, half);
+        return wall.share * law.repel(wall.depth, wall.normal, {});
+    };
+    const Random random{11};
+    double steepest = 0.0;
+    for (std::uint64_t n = 0; n < 20'000; ++n) {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = half[axis] * (2.0 * random.uniform(3 * n + static_cast<std::uint64_t>(axis)) - 1.0);
+        // Half of them near the planes where two faces are as near.
+        if (n % 2 == 1) p[static_cast<int>(n / 2 % 3)] *= 1e-3;
+        const Vec3 q = p + some_vector(n, 1e-6);
+        if (guide::inside_of(q, half).depth == 0.0) continue;
+        steepest = std::max(steepest, glm::distance(force(p), force(q)) / glm::distance(p, q));
+        CHECK(glm::length(force(p)) <= 3.0 * (1.0 + 1e-12));
+    }
+    CHECK(steepest < 3.6 * 500.0);
+    CHECK(steepest > 500.0);
+    // Close to a face it is the wall of that face.
+    CHECK(force({0.0, 0.0, 0.019}).z == Approx(0.5).epsilon(1e-4));
+    CHECK(force({0.0, 0.0281, 0.012}).y == Approx(0.95).epsilon(0.01));
+    // A closed way through all of it gives nothing back.
+    const auto at = [&](double t) {
+        const double w = 2.0 * std::numbers::pi * t;
+        return Vec3(0.045 * std::sin(w), 0.028 * std::sin(2.0 * w + 0.4), 0.019 * std::cos(3.0 * w));
+    };
+    double work = 0.0, moved = 0.0;
+    constexpr int steps = 100'000;
+    for (int k = 0; k < steps; ++k) {
+        const Vec3 from = at(1.0 * k / steps), to = at((k + 1.0) / steps);
+        const double given = glm::dot(0.5 * (force(from) + force(to)), to - from);
+        work += given;
+        moved += std::abs(given);
+    }
+    CHECK(moved > 0.1);
+    CHECK(std::abs(work) < 1e-6 * moved);
+}
+
+TEST_CASE("a pull goes over to another place in 50 ms, and takes energy from the hand meanwhile, whatever it does") {
+    constexpr double dt = 1e-3;
+    const guide::GuideLaw law{.stiffness = 200.0, .damping = 0.0, .max_force = 3.0, .reach = 0.0};
+    // Two parallel lines 20 mm apart.
+    const guide::Path path(std::vector<Vec3>{{-0.1, 0.01, 0}, {0.1, 0.01, 0}, {0.1, -0.01, 0}, {-0.1, -0.01, 0}}, false,
+                           false);
+    guide::TurningPull pull;
+    const auto on = [&](const Vec3& p) {
+        const guide::Path::Place place = path.nearest(p);
+        return pull.on(law, p, {}, place.point, place.tangent, dt);
+    };
+    Vec3 before = on({0.0, 0.005, 0.0});
+    CHECK(before.y == Approx(1.0));
+    double most = 0.0;
+    for (int k = 1; k <= 110; ++k) {
+        const Vec3 now = on({0.0, 0.005 - 1e-4 * std::min(k, 100), 0.0});
+        most = std::max(most, glm::distance(now, before));
+        before = now;
+    }
+    CHECK(before.y == Approx(-1.0));
+    CHECK(most < 4.0 * dt / guide::TurningPull::turn_s + 200.0 * 2e-4);
+
+    // A hand that crosses to and fro at random: the work is no more than sampling explains.
+    pull.reset();
+    const Random random{5};
+    Vec3 p(0.0, 0.01, 0.0), v(0.0), acting = on(p);
+    double work = 0.0, explained = 0.0;
+    const auto potential = [&](const Vec3& at) {
+        return 0.5 * 200.0 * std::pow(glm::distance(path.nearest(at).point, at), 2.0);
+    };
+    for (std::uint64_t n = 0; n < 100'000; ++n) {
+        const Vec3 push(random.normal(3 * n), random.normal(3 * n + 1), random.normal(3 * n + 2));
+        v = 0.97 * v + 0.02 * push;
+        const Vec3 step = v * dt;
+        if (std::abs(p.x + step.x) > 0.05) v.x = -v.x;
+        if (std::abs(p.y + step.y) > 0.015) v.y = -v.y;
+        if (std::abs(p.z + step.z) > 0.005) v.z = -v.z;
+        const Vec3 moved = v * dt;
+        work += glm::dot(acting, moved);
+        explained += 0.5 * 200.0 * glm::dot(moved, moved);
+        p += moved;
+        acting = on(p);
+        if (n % 1000 == 0) CHECK(work <= explained - potential(p) + 1e-3);
+    }
+    CHECK(work < 0.0);
+}
+
+TEST_CASE("damping turns with a path, and only takes") {
+    const guide::GuideLaw law{.stiffness = 0.0, .damping = 10.0, .max_force = 50.0, .reach = 0.0};
+    guide::TurningPull pull;
+    const Vec3 along(1.0, 0.0, 0.0), v(0.3, 0.0, 0.0);
+    Vec3 before = pull.on(law, {}, v, {}, along, 1e-3);
+    CHECK(glm::length(before) == 0.0);
+    // The path bends by a right angle.
+    for (int k = 0; k < 100; ++k) {
+        const Vec3 now = pull.on(law, {}, v, {}, {0.0, 1.0, 0.0}, 1e-3);
+        CHECK(glm::distance(now, before) < 0.3);
+        CHECK(glm::dot(now, v) <= 0.0);
+        before = now;
+    }
+    CHECK(before.x == Approx(-3.0).epsilon(1e-3));
+    for (std::uint64_t n = 0; n < 1000; ++n) {
+        const Vec3 w = some_vector(2 * n), tangent = glm::normalize(some_vector(2 * n + 1));
+        CHECK(glm::dot(pull.on(law, {}, w, {}, tangent, 1e-3), w) <= 1e-12);
+    }
 }
 
 TEST_CASE("the angle about an axis is that of the rotation about it, and its gradient is its rate") {

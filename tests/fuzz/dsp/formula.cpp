@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // compile_formula: any text is a program that stays within its registers, or a tactus::Error.
-#include "dsp/core/error.hpp"
 #include "dsp/expression/formula.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/expression/single.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (formula.program.result >= formula.program.registers) std::abort();
         Machine machine(formula.program);
         for (std::size_t i = 0; i < variables.size(); ++i) *machine.variable(i) = 0.5;
-        machine.run();
+        Single single;
+        single.prepare(formula.program);
+        single.put(2, 0.5);
+        single.run(0.5, 0.5);
         machine.run(Machine::block);
     } catch (const tactus::Error&) {
         // Refusing is right for most texts.

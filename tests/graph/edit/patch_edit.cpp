@@ -109,6 +109,22 @@ TEST_CASE("an input has one wire: a second takes the place of the first") {
     CHECK(made.find("loud.out") == std::string::npos);
 }
 
+TEST_CASE("an input of events keeps its wires when another one is added, and each goes by itself") {
+    using edit::InputTakes;
+    const std::string both = edit::with_wire(plain, {"tone.signal", "kept.in", ""}, InputTakes::many_wires);
+    CHECK(both.find("\"loud.out    -> kept.in\"") != std::string::npos);
+    CHECK(both.find("\"tone.signal -> kept.in\"") != std::string::npos);
+    // The same two ends are one wire.
+    const std::string again = edit::with_wire(both, {"loud.out", "kept.in", "delay 1"}, InputTakes::many_wires);
+    CHECK(again.find("\"loud.out    -> kept.in as delay 1\"") != std::string::npos);
+    CHECK(again.find("\"loud.out    -> kept.in\"") == std::string::npos);
+    CHECK(again.find("\"tone.signal -> kept.in\"") != std::string::npos);
+    CHECK(meaning(edit::without_wire(both, "kept.in", "tone.signal")) == meaning(plain));
+    CHECK(edit::without_wire(both, "kept.in", "loud.out").find("\"tone.signal -> kept.in\"") != std::string::npos);
+    CHECK_THROWS_WITH(edit::without_wire(plain, "kept.in", "tone.signal"),
+                      Catch::Matchers::ContainsSubstring("no wire leads from 'tone.signal' to 'kept.in'"));
+}
+
 TEST_CASE("a wire that goes takes its line, not its neighbours'") {
     const std::string made = edit::without_wire(plain, "loud.in");
     CHECK(made.find("  # first\n\n  # second\n  \"loud.out    -> kept.in\"\n]") != std::string::npos);

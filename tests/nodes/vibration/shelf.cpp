@@ -152,6 +152,25 @@ TEST_CASE("a player plays its sound once per trigger, and fades out what still p
     CHECK_FALSE(playing[1456]);
 }
 
+TEST_CASE("a player that is triggered again and again does not click") {
+    // Rises to 1 within 100 samples and stays.
+    auto made = std::make_shared<sound::Sound>(sound::Sound{48000, 1, 4800, {}});
+    for (std::size_t k = 0; k < 4800; ++k) made->samples.push_back(std::min(1.0f, 0.01f * static_cast<float>(k)));
+    for (const std::int64_t apart : {48, 72, 144}) {
+        NodeHarness node("player");
+        node.asset("sound", made).set("fade", "10 ms");
+        node.feed<bool>("trigger", [=](std::int64_t k) { return k < 2400 && k % apart < apart / 2; });
+        node.prepare();
+        node.run(9600);
+        const auto out = node.values<float>("out");
+        float most = 0.0f;
+        // The sound ends with a step of its own.
+        for (std::size_t k = 1; k < 6000; ++k) most = std::max(most, std::abs(out[k] - out[k - 1]));
+        CAPTURE(apart, most);
+        CHECK(most < 0.15f);
+    }
+}
+
 TEST_CASE("a player converts the rate of its sound") {
     auto made = std::make_shared<sound::Sound>(sound::Sound{24000, 2, 2400, {}});
     for (std::size_t k = 0; k < 2400; ++k)

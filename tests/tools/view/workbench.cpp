@@ -57,6 +57,33 @@ TEST_CASE("an edit at the bench that does not compile is refused with the compil
     CHECK(bench.picture().nodes.size() == 3);
 }
 
+TEST_CASE("a second wire to an input of events is added, and removing one leaves the other") {
+    const Folder folder;
+    RunChoice choice = choice_in(folder);
+    choice.patch = folder
+                       .write("events.toml", R"(title = "Events"
+wires = ["slow.out -> a.in", "fast.out -> b.in", "a.events -> count.in"]
+[nodes]
+slow = { type = "clock", rate = "1 kHz" }
+fast = { type = "clock", rate = "1 kHz" }
+a = { type = "button_events", rate = "1 kHz" }
+b = { type = "button_events", rate = "1 kHz" }
+count = { type = "event_counter", rate = "1 kHz" }
+)")
+                       .string();
+    Workbench bench(choice);
+    REQUIRE(bench.plan());
+    CHECK(bench.plan()->wires.size() == 3);
+    REQUIRE(bench.connect("b.events", "count.in"));
+    CHECK(bench.plan()->wires.size() == 4);
+    REQUIRE(bench.disconnect("count.in", "a.events"));
+    CHECK(bench.plan()->wires.size() == 3);
+    CHECK(bench.editor().text().find("b.events -> count.in") != std::string::npos);
+    // A number's input still has one wire.
+    REQUIRE(bench.connect("slow.out", "b.in"));
+    CHECK(bench.plan()->wires.size() == 3);
+}
+
 TEST_CASE("a new node waits as a draft until its inputs have wires, then joins as one edit") {
     const Folder folder;
     Workbench bench(choice_in(folder));

@@ -109,7 +109,7 @@ void PatchPanel::menus() {
                         if (ImGui::MenuItem(mode)) bench_.connect(a, b, mode);
                     ImGui::EndMenu();
                 }
-                if (ImGui::MenuItem("Remove the wire")) bench_.disconnect(b);
+                if (ImGui::MenuItem("Remove the wire")) bench_.disconnect(b, a);
             }
         } else if (menu_.what == Hit::What::output) {
             if (ImGui::MenuItem("Show in a scope")) wants_scope = port_name(menu_);

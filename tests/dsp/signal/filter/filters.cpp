@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/signal/filter/biquad.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/signal/filter/biquad_block.hpp"
 #include "dsp/signal/filter/one_pole.hpp"
 #include "dsp/signal/filter/oscillator.hpp"
 #include "dsp/signal/filter/ramp.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 using namespace tactus;
 
@@ -45,6 +50,49 @@ TEST_CASE("low-pass and high-pass are 3 dB down at their frequency and fall 12 d
     const signal::Biquad slow{signal::lowpass(50.0, rate)};
     CHECK(measured_gain(slow, 400.0) - measured_gain(slow, 800.0) == Approx(12.04).margin(0.1));
     CHECK(measured_gain(high, 124.0) - measured_gain(high, 62.0) == Approx(12.04).margin(0.1));
+}
+
+TEST_CASE("a block of a biquad has the bits of single samples, whatever the samples are") {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    const Random random{9};
+    std::vector<float> in;
+    for (std::uint64_t n = 0; n < 5000; ++n) {
+        const std::uint64_t kind = random.bits(2 * n) % 40;
+        const auto any = static_cast<float>(random.normal(2 * n + 1));
+        in.push_back(kind == 0   ? 0.0f
+                     : kind == 1 ? -0.0f
+                     : kind == 2 ? infinite
+                     : kind == 3 ? std::numeric_limits<float>::quiet_NaN()
+                     : kind == 4 ? any * 1e38f
+                     : kind == 5 ? any * 1e-44f
+                                 : any);
+        // Silence, in which only the signs of zeros differ.
+        if (n % 500 < 120) in.back() = n % 3 == 0 ? -0.0f : 0.0f;
+    }
+    for (const signal::BiquadCoefficients& c :
+         {signal::bandpass(250.0, rate, 1.0), signal::bandpass(20000.0, rate, 8.0), signal::lowpass(300.0, rate),
+          signal::highpass(40.0, rate), signal::notch(50.0, rate, 3.0), signal::BiquadCoefficients{0.5, -0.0, 0.1}}) {
+        signal::BlockBiquad single{c}, whole{c};
+        signal::Biquad other{c};
+        std::vector<float> out(in.size());
+        std::size_t from = 0;
+        for (int count = 1; from < in.size(); count = count % 150 + 7) {
+            const int part = std::min(count, static_cast<int>(in.size() - from));
+            whole.run(in.data() + from, out.data() + from, part);
+            from += static_cast<std::size_t>(part);
+        }
+        std::size_t different = 0;
+        double loudest = 1.0;
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            const double x = signal::finite_or_zero(in[i]), y = other(x);
+            const float wanted = signal::to_sample(single(x));
+            if (std::abs(single.last - y) > 1e-11 * loudest) FAIL_CHECK(i << ": " << single.last << ", not " << y);
+            loudest = std::max(loudest, std::abs(y));
+            different += std::bit_cast<std::uint32_t>(wanted) != std::bit_cast<std::uint32_t>(out[i]);
+        }
+        CHECK(different == 0);
+        CHECK(std::bit_cast<std::uint64_t>(single.further) == std::bit_cast<std::uint64_t>(whole.further));
+    }
 }
 
 TEST_CASE("the gain of a low-pass at its frequency is its quality factor") {
