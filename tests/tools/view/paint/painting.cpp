@@ -161,7 +161,7 @@ TEST_CASE("the eraser cuts strokes and takes dabs away") {
     CHECK(painting.labels()[1].strokes.size() == 1);
 }
 
-TEST_CASE("labels are added, named, coloured and removed; names that the file cannot hold are refused") {
+TEST_CASE("labels are added, named, coloured and removed, and names that the file cannot hold are refused") {
     const Scene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block);
