@@ -97,7 +97,10 @@ void PaintBench::tend() {
                              labels_->unseeded > 0 ? fmt::format("; {} in islands without a seed", labels_->unseeded)
                                                    : std::string()));
     }
-    if (!painting_.problem().empty()) tell(painting_.problem(), true);
+    if (told_problem_ != painting_.problem()) {
+        told_problem_ = painting_.problem();
+        if (!told_problem_.empty()) tell(told_problem_, true);
+    }
     const std::size_t before = vessels_.size();
     vessels_ = followers_.found();
     if (vessels_.size() > before) tell(vessels_.back()->words, vessels_.back()->track.branches.empty());

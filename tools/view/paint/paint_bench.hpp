@@ -65,7 +65,7 @@ private:
     std::vector<std::shared_ptr<const LiveVessel>> vessels_;
     std::future<std::string> plan_;
     int asked_ = -1;
-    std::string message_;
+    std::string message_, told_problem_;
     bool is_problem_ = false;
 };
 

@@ -15,6 +15,11 @@
 
 #include <glm/geometric.hpp>
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -156,7 +161,7 @@ TEST_CASE("the eraser cuts strokes and takes dabs away") {
     CHECK(painting.labels()[1].strokes.size() == 1);
 }
 
-TEST_CASE("labels are added, named, coloured and removed; names that the file cannot hold are refused") {
+TEST_CASE("labels are added, named, coloured and removed, and names that the file cannot hold are refused") {
     const Scene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block);
@@ -309,4 +314,37 @@ TEST_CASE("the surface of the bone is closed, and a ray meets it where it is") {
     REQUIRE(bench.first_bone(left_block + Vec3(-0.1, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), found));
     CHECK(found.x == Approx(-0.03 + 4.5 * mm).margin(0.6 * mm));
     CHECK_FALSE(bench.first_bone(left_block + Vec3(-0.1, 0.1, 0.0), Vec3(1.0, 0.0, 0.0), found));
+}
+
+TEST_CASE("a program that is killed while it paints leaves a whole file with every finished stroke") {
+    const Scene scene;
+    for (int round = 0; round < 5; ++round) {
+        std::filesystem::remove(scene.seeds());
+        int ends[2];
+        REQUIRE(::pipe(ends) == 0);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            Painting painting(scene.seeds(), [](const segment::Stroke&) { return true; });
+            for (;;) {
+                painting.begin(1e-3, left_block);
+                painting.end();
+                const char done = 1;
+                if (::write(ends[1], &done, 1) != 1) ::_exit(1);
+            }
+        }
+        ::close(ends[1]);
+        std::size_t finished = 0;
+        char buffer[64];
+        while (finished < 10 + 7 * static_cast<std::size_t>(round))
+            finished += static_cast<std::size_t>(::read(ends[0], buffer, sizeof(buffer)));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        for (ssize_t got = 0; (got = ::read(ends[0], buffer, sizeof(buffer))) > 0;)
+            finished += static_cast<std::size_t>(got);
+        ::close(ends[0]);
+        const auto labels = segment::read_seeds(scene.seeds(), segment::SeedsUse::draft);
+        // One more may have been written, but not yet said.
+        CHECK(labels[0].strokes.size() >= finished);
+        CHECK(labels[0].strokes.size() <= finished + 1);
+    }
 }
