@@ -18,10 +18,10 @@ namespace tactus::driver {
 /// m, rad, m/s, rad/s.
 struct Reading {
     Pose pose;
-    Twist twist;             ///< ignored unless has_twist
+    Twist twist;  ///< ignored unless has_twist
     std::uint32_t buttons = 0;
     bool has_twist = false;  ///< false: the velocity is estimated from the poses by an adaptive window
-    bool is_valid = true;    ///< false: the device is there, but its pose is none, as before a calibration
+    bool is_valid = true;  ///< false: the device is there, but its pose is none, as before a calibration
 };
 
 /// What a device may be given.

@@ -78,7 +78,8 @@ TEST_CASE("a library or a function that is missing is named") {
 TEST_CASE("a device that is not there is one clear error") {
     const auto dhd = make_dhd_peer();
     dhd->unplug(true);
-    CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD), ContainsSubstring("no Force Dimension device was found"));
+    CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD),
+               ContainsSubstring("no Force Dimension device was found"));
     CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD), ContainsSubstring("'no device found'"));
     const auto hd = make_hd_peer();
     hd->unplug(true);
@@ -88,7 +89,8 @@ TEST_CASE("a device that is not there is one clear error") {
 
 TEST_CASE("what the library says of a device is known without opening it") {
     Options options = options_of({{"library", "/none/libx.so", {}}});
-    const auto outline = haptic::describe_haptic_device("touch", {}, options, [](const std::string& name) { return name; });
+    const auto outline =
+        haptic::describe_haptic_device("touch", {}, options, [](const std::string& name) { return name; });
     CHECK_THAT(outline.absence, ContainsSubstring("/none/libx.so"));
     CHECK(haptic::is_real_driver("touch"));
 }
@@ -153,7 +155,8 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
     CHECK(tell<int>(*peer, "fake_force_on") == 0);
 }
 
-TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one that was confirmed gives all", "[live]") {
+TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one that was confirmed gives all",
+          "[live]") {
     const OwnConfig config;
     const auto peer = make_dhd_peer();
     driver::Opened opened;
