@@ -74,6 +74,7 @@ private:
     hosted::ForceGate gate_;
     ForceLimits limits_;
     hosted::ForceRecord committed_;
+    std::uint64_t commit_number_ = 0;
     control::AdaptiveWindow speed_, spin_;
     Quat turned_from_{1.0, 0.0, 0.0, 0.0};
     Vec3 turned_{0.0};

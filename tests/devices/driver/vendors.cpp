@@ -8,6 +8,8 @@
 #include "tests/devices/driver/library_peers.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 
 #include <dlfcn.h>
 
@@ -200,6 +202,31 @@ TEST_CASE("a device that comes back as another one is not used", "[live]") {
     CHECK_FALSE(wait_until([&] { return device->acquire(1e-3).valid; }, 200));
     tell<void, int>(*peer, "fake_number", 4711);
     CHECK(wait_until([&] { return device->acquire(1e-3).valid; }));
+}
+
+TEST_CASE("a vendor's library reads its numbers with points, whatever language the user speaks", "[live]") {
+    const OwnConfig config;
+    std::filesystem::create_directories(config.folder / "locales");
+    const std::string make =
+        "localedef -i de_DE -f UTF-8 " + (config.folder / "locales/de_DE.UTF-8").string() + " >/dev/null 2>&1";
+    if (std::system(make.c_str()) != 0) return skip("this machine cannot make a German locale");
+    ::setenv("LOCPATH", (config.folder / "locales").c_str(), 1);
+    ::setenv("LC_ALL", "de_DE.UTF-8", 1);
+    ::setenv("TACTUS_DEVICE_HOST", (std::filesystem::path(command()).parent_path() / "tactus-device-host").c_str(), 1);
+    {
+        const auto device = hosted::open_placed({"touch", "device 'hand'", {{"library", TACTUS_FAKE_HD, {}}}, {}},
+                                                [](const std::string& name) { return name; });
+        device->prepare(1e-3);
+        CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 2000));
+        bool stayed = true;
+        for (int i = 0; i < 100; ++i) {
+            device->commit({});
+            stayed = stayed && device->acquire(1e-3).valid;
+            hosted::sleep_until(hosted::steady_ns() + ms);
+        }
+        CHECK(stayed);
+    }
+    for (const char* name : {"LOCPATH", "LC_ALL", "TACTUS_DEVICE_HOST"}) ::unsetenv(name);
 }
 
 TEST_CASE("a device that does not open in time names its step", "[live]") {

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -136,7 +137,15 @@ std::string ask() {
 
 }  // namespace
 
+namespace {
+
+/// Before a driver's thread begins: vendors' libraries ask for the user's language and then misread their own files.
+void speak_c() { ::setenv("LC_ALL", "C", 1); }
+
+}  // namespace
+
 int probe_device(const DeviceLook& look) {
+    speak_c();
     Options options = options_of(look);
     std::unique_ptr<ThreadedDevice> device;
     try {
@@ -154,6 +163,7 @@ int probe_device(const DeviceLook& look) {
 }
 
 int verify_device(const DeviceLook& look) {
+    speak_c();
     Options options = options_of(look);
     std::unique_ptr<ThreadedDevice> device;
     try {
