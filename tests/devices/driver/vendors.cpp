@@ -148,7 +148,7 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
         CHECK(device->opened().serial == "20-1234");
         for (int i = 0; i < 20; ++i) tell(*peer, "fake_warm");
         CHECK(most_given(*device, *peer, 2.0) == 2.0);  // warm motors are no loss
-        CHECK(device->acquire(1e-3).valid);
+        CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 200));
         CHECK(tell<int>(*peer, "fake_errors_left") == 0);
         CHECK(tell<int>(*peer, "fake_forces_before_enable") == 0);
         CHECK(device->returns() == 0);
