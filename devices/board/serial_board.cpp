@@ -59,9 +59,10 @@ public:
         const std::vector<std::uint8_t> hello = protocol_->greeting();
         for (const std::int64_t end = hosted::steady_ns() + longest_opening_ns; protocol_->told().count == before;) {
             if (hosted::steady_ns() > end)
-                throw Error(fmt::format("the board at {} does not answer; is it the right port, and does the board run "
-                                        "the right program?",
-                                        settings_.port));
+                throw Error(
+                    fmt::format("the board at {} does not answer; is it the right port, and does the board run "
+                                "the right program?",
+                                settings_.port));
             if (!hello.empty() && !port_.write(hello) && !port_.is_open()) throw Error("the line was lost");
             // Some boards start anew when their line is opened: asked again until they have.
             for (int i = 0; i < 50 && protocol_->told().count == before; ++i) {
@@ -126,7 +127,8 @@ private:
         std::error_code failure;
         const fs::path line = fs::canonical(settings_.port, failure);
         if (!failure)
-            for (fs::directory_iterator at("/dev/serial/by-id", failure), end; !failure && at != end; at.increment(failure))
+            for (fs::directory_iterator at("/dev/serial/by-id", failure), end; !failure && at != end;
+                 at.increment(failure))
                 if (std::error_code bad; fs::canonical(at->path(), bad) == line && !bad)
                     return at->path().filename().string();
         return {};

@@ -60,7 +60,8 @@ void write(const fs::path& path, const file::Json& all) {
 /// The list without the device, and where it is kept.
 std::pair<fs::path, file::Json> without(std::string_view driver, const Opened& device) {
     if (device.serial.empty())
-        throw Error("the device states no serial number, so nothing can be kept of it; give one with the option 'serial'");
+        throw Error(
+            "the device states no serial number, so nothing can be kept of it; give one with the option 'serial'");
     const fs::path path = confirmations_file();
     if (path.empty()) throw Error("neither XDG_CONFIG_HOME nor HOME says where to keep what you confirm");
     file::Json all = read(path), rest = file::Json::array();
@@ -96,10 +97,8 @@ bool is_confirmed(std::string_view driver, const Opened& device) {
 
 void confirm(std::string_view driver, const Opened& device) {
     auto [path, all] = without(driver, device);
-    all[list].push_back({{"driver", driver},
-                         {"serial", device.serial},
-                         {"setup", device.setup},
-                         {"name", device.info.name}});
+    all[list].push_back(
+        {{"driver", driver}, {"serial", device.serial}, {"setup", device.setup}, {"name", device.info.name}});
     write(path, all);
 }
 

@@ -97,10 +97,9 @@ void Exchange::publish_loss() noexcept {
 
 Wrench Exchange::force() noexcept {
     const std::int64_t now = now_();
-    std::uint64_t number = 0;
-    force_.read(committed_, number);
+    force_.read(committed_, commit_number_);
     gate_.limit_ns = oldest_ns_.load(std::memory_order_relaxed);
-    const Wrench given = gate_.give(committed_, number, now);
+    const Wrench given = gate_.give(committed_, commit_number_, now);
     if (!is_finite(given)) return {};
     return {shorten(given.force, limits_.force), shorten(given.torque, limits_.torque)};
 }

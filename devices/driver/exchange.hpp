@@ -18,10 +18,10 @@ namespace tactus::driver {
 /// m, rad, m/s, rad/s.
 struct Reading {
     Pose pose;
-    Twist twist;             ///< ignored unless has_twist
+    Twist twist;  ///< ignored unless has_twist
     std::uint32_t buttons = 0;
     bool has_twist = false;  ///< false: the velocity is estimated from the poses by an adaptive window
-    bool is_valid = true;    ///< false: the device is there, but its pose is none, as before a calibration
+    bool is_valid = true;  ///< false: the device is there, but its pose is none, as before a calibration
 };
 
 /// What a device may be given.
@@ -74,6 +74,7 @@ private:
     hosted::ForceGate gate_;
     ForceLimits limits_;
     hosted::ForceRecord committed_;
+    std::uint64_t commit_number_ = 0;
     control::AdaptiveWindow speed_, spin_;
     Quat turned_from_{1.0, 0.0, 0.0, 0.0};
     Vec3 turned_{0.0};

@@ -27,9 +27,10 @@ SharedLibrary::SharedLibrary(const std::string& product, const std::vector<std::
         const char* const said = ::dlerror();
         why = said ? said : "unknown error";
     }
-    throw Error(fmt::format("{} is not installed: none of {} can be loaded; the last one: {}. Install it, or name the "
-                            "file with the option 'library'",
-                            product_, fmt::join(candidates, ", "), why));
+    throw Error(
+        fmt::format("{} is not installed: none of {} can be loaded; the last one: {}. Install it, or name the "
+                    "file with the option 'library'",
+                    product_, fmt::join(candidates, ", "), why));
 }
 
 void* SharedLibrary::find(const char* name) const noexcept { return ::dlsym(handle_, name); }

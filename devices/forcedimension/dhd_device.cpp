@@ -65,9 +65,10 @@ public:
         }
         step("look for a device");
         if (api_->count() <= 0)
-            throw Error(fmt::format("no Force Dimension device was found ({}); is it connected and switched on, and may "
-                                    "you open it (udev rule)?",
-                                    api_->error()));
+            throw Error(
+                fmt::format("no Force Dimension device was found ({}); is it connected and switched on, and may "
+                            "you open it (udev rule)?",
+                            api_->error()));
         step("open the device");
         open_device();
         step("read its type");

@@ -54,9 +54,10 @@ public:
         const InverseState state = first_state();
         step("check its axes");
         if (!state.changed_axes.empty())
-            throw Error(fmt::format("the service has {} for this device, so directions would be wrong; reset it in "
-                                    "Haply's hub",
-                                    state.changed_axes));
+            throw Error(
+                fmt::format("the service has {} for this device, so directions would be wrong; reset it in "
+                            "Haply's hub",
+                            state.changed_axes));
         device_ = state.device;
         key_ = settings_.force_key == 0 ? force_key_of(state.version)
                                         : (settings_.force_key == 1 ? ForceKey::vector : ForceKey::values);

@@ -119,9 +119,10 @@ std::string force_text(std::string_view device, const Vec3& newton, ForceKey key
         if (c == '"' || c == '\\') id += '\\';
         if (static_cast<unsigned char>(c) >= 0x20) id += c;
     }
-    return fmt::format(R"({{{}"inverse3":[{{"device_id":"{}","commands":{{"set_cursor_force":{{"{}":{{"x":{},"y":{},"z":{}}}}}}}}}]}})",
-                       first ? R"("session":{"configure":{"profile":{"name":"tactus"}}},)" : "", id,
-                       key == ForceKey::vector ? "vector" : "values", newton.x, newton.y, newton.z);
+    return fmt::format(
+        R"({{{}"inverse3":[{{"device_id":"{}","commands":{{"set_cursor_force":{{"{}":{{"x":{},"y":{},"z":{}}}}}}}}}]}})",
+        first ? R"("session":{"configure":{"profile":{"name":"tactus"}}},)" : "", id,
+        key == ForceKey::vector ? "vector" : "values", newton.x, newton.y, newton.z);
 }
 
 }  // namespace tactus::haply

@@ -57,6 +57,7 @@ std::string HdApi::pop_errors() const {
     for (int i = 0; i < 64; ++i) {
         const HdError error = get_error();
         if (error.code == 0) break;
+        if (error.code >= first_force_error && error.code < first_device_error) continue;
         const char* const said = error_string(error.code);
         oldest = fmt::format("{} (0x{:04x}, internal {})", said ? said : "unknown error", error.code, error.internal);
     }

@@ -25,8 +25,9 @@ inline constexpr unsigned model_type = 0x2501, driver_version = 0x2502, serial_n
                           max_stiffness = 0x2602, max_force = 0x2603, max_torque = 0x2622;
 inline constexpr unsigned force_output = 0x4000, max_force_clamping = 0x4001;
 inline constexpr unsigned calibration_ok = 0x5000, calibration_needs_update = 0x5001;
-/// From here on an error means that the device itself is gone.
-inline constexpr unsigned first_device_error = 0x0300, last_device_error = 0x03FF;
+/// Up to the first device error: warm motors, clipped forces, the device's own protection. Then, errors that mean that
+/// the device itself is gone.
+inline constexpr unsigned first_force_error = 0x0200, first_device_error = 0x0300, last_device_error = 0x03FF;
 
 using HdCallback = unsigned (*)(void*);
 inline constexpr unsigned callback_continue = 1;
@@ -37,7 +38,7 @@ public:
     explicit HdApi(const std::string& library);
 
     const std::string& path() const { return library_.path(); }
-    /// Empties the stack of errors; the text of the oldest, or "".
+    /// Empties the stack of errors; the text of the oldest that is not about force, or "".
     std::string pop_errors() const;
 
 private:

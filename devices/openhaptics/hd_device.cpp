@@ -190,9 +190,10 @@ private:
             device_ = invalid_device;
             why += fmt::format("{}'{}': {}", why.empty() ? "" : "; ", name, said.empty() ? "no such device" : said);
         }
-        throw Error(fmt::format("no device can be opened: {}. Run the vendor's setup program, and name what it set up "
-                                "with the option 'config'",
-                                why));
+        throw Error(
+            fmt::format("no device can be opened: {}. Run the vendor's setup program, and name what it set up "
+                        "with the option 'config'",
+                        why));
     }
 
     std::string text(unsigned what) const {

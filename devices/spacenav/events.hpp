@@ -13,7 +13,7 @@ namespace tactus::spacenav {
 /// Deflection and buttons after the last whole event.
 struct CapState {
     std::array<int, 6> deflection{};  ///< as the daemon sends it: about ±350 at full deflection, clipped at ±500
-    std::uint32_t buttons = 0;        ///< bit n: button n, up to 31
+    std::uint32_t buttons = 0;  ///< bit n: button n, up to 31
     std::uint64_t events = 0;
 };
 

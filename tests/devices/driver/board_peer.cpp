@@ -81,7 +81,8 @@ public:
             d[i][0] = (angle_for(x_ + step, y_, side) - angle_for(x_ - step, y_, side)) / (2.0 * step);
             d[i][1] = (angle_for(x_, y_ + step, side) - angle_for(x_, y_ - step, side)) / (2.0 * step);
         }
-        return {{-(d[0][0] * torque_[0] + d[1][0] * torque_[1]), -(d[0][1] * torque_[0] + d[1][1] * torque_[1]), 0.0}, {}};
+        return {{-(d[0][0] * torque_[0] + d[1][0] * torque_[1]), -(d[0][1] * torque_[0] + d[1][1] * torque_[1]), 0.0},
+                {}};
     }
     void hang(bool on) override { is_silent_ = on; }
     void unplug(bool on) override {
@@ -112,12 +113,10 @@ private:
         torque_ = {};
     }
     void tell(const std::uint8_t* bytes, std::size_t size) {
-        for (int i = 0; i < (must_burst_.exchange(false) ? 20 : 1); ++i)
-            [[maybe_unused]] const ssize_t sent = ::write(master_, bytes, size);
+        for (int i = 0; i < (must_burst_.exchange(false) ? 20 : 1); ++i) [[maybe_unused]]
+            const ssize_t sent = ::write(master_, bytes, size);
     }
-    std::array<double, 2> angles() const {
-        return {angle_for(x_, y_, -1), angle_for(x_, y_, 1)};
-    }
+    std::array<double, 2> angles() const { return {angle_for(x_, y_, -1), angle_for(x_, y_, 1)}; }
     void take_frame(std::uint8_t byte) {
         board::TorqueFrame torque;
         if (!reader_.take(byte) || !board::unpack(reader_.frame(), torque)) return;

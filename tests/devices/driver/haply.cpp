@@ -37,8 +37,8 @@ std::unique_ptr<driver::ThreadedDevice> open(const HaplyService& service, std::v
 }  // namespace
 
 TEST_CASE("messages of a WebSocket are put together from any pieces and any parts") {
-    const std::string all = frame(0x01, "one ") + frame(0x89, "ping") + frame(0x00, "two ") + frame(0x80, "three") +
-                            frame(0x81, "next");
+    const std::string all =
+        frame(0x01, "one ") + frame(0x89, "ping") + frame(0x00, "two ") + frame(0x80, "three") + frame(0x81, "next");
     MessageReader reader;
     std::vector<std::string> found;
     for (const char byte : all) {
@@ -102,7 +102,8 @@ TEST_CASE("a state of the Inverse Service is read, and changed axes are noticed"
     CHECK(changed(R"("mount":{"position":{"x":0.1,"y":0,"z":0}})") == "a mount that is moved");
     for (const std::string bad : {"", "[]", "{", "{\"inverse3\":7}", "{\"inverse3\":[]}", "{\"inverse3\":[1e999]}"})
         CHECK_FALSE(haply::read_inverse(bad));
-    CHECK_FALSE(haply::read_inverse(R"({"inverse3":[{"device_id":"A","state":{"cursor_position":{"x":"1"}}}]})")->has_pose);
+    CHECK_FALSE(
+        haply::read_inverse(R"({"inverse3":[{"device_id":"A","state":{"cursor_position":{"x":"1"}}}]})")->has_pose);
 }
 
 TEST_CASE("a force is told by the name that the service's version knows") {
@@ -110,8 +111,9 @@ TEST_CASE("a force is told by the name that the service's version knows") {
     CHECK(haply::force_key_of("3.5") == haply::ForceKey::vector);
     CHECK(haply::force_key_of("10.0.1") == haply::ForceKey::vector);
     CHECK(haply::force_key_of("") == haply::ForceKey::vector);
-    CHECK(haply::force_text("A\"1", {0.5, -1.25, 0.0}, haply::ForceKey::vector, false) ==
-          R"({"inverse3":[{"device_id":"A\"1","commands":{"set_cursor_force":{"vector":{"x":0.5,"y":-1.25,"z":0}}}}]})");
+    CHECK(
+        haply::force_text("A\"1", {0.5, -1.25, 0.0}, haply::ForceKey::vector, false) ==
+        R"({"inverse3":[{"device_id":"A\"1","commands":{"set_cursor_force":{"vector":{"x":0.5,"y":-1.25,"z":0}}}}]})");
     CHECK_THAT(haply::force_text("A", {}, haply::ForceKey::values, true), ContainsSubstring("\"name\":\"tactus\""));
 }
 

@@ -16,7 +16,9 @@ const std::vector<PeerKind>& peer_kinds() {
     return all;
 }
 
-Options options_of(std::vector<OptionText> given) { return Options("device 'hand'", std::move(given), {"p.toml", 3, 1}); }
+Options options_of(std::vector<OptionText> given) {
+    return Options("device 'hand'", std::move(given), {"p.toml", 3, 1});
+}
 
 std::unique_ptr<driver::ThreadedDevice> open_peer(Peer& peer, driver::OpenMode mode, bool is_untested) {
     driver::DeviceOptions how{.driver = "test", .mode = mode, .is_untested = is_untested};

@@ -25,18 +25,18 @@ public:
     virtual void press(std::uint32_t mask) = 0;  ///< bit n: button n, in the maker's order
     /// What the motors give now.
     virtual Wrench given() = 0;
-    virtual void hang(bool on) = 0;   ///< the vendor's code, or the peer, does not return or answer
+    virtual void hang(bool on) = 0;  ///< the vendor's code, or the peer, does not return or answer
     virtual void unplug(bool on) = 0;
     virtual void send_nan(bool on) = 0;
     /// Sends a lot at once, where the other side decides what is sent.
     virtual void burst() {}
 
-    bool turns = true;            ///< senses rotation
-    bool moves_up = true;         ///< false: it moves in a plane
-    bool twists = false;          ///< gives torque
+    bool turns = true;  ///< senses rotation
+    bool moves_up = true;  ///< false: it moves in a plane
+    bool twists = false;  ///< gives torque
     int buttons = 4;
-    double exact = 1e-15;         ///< m, error of a pose that is due to the peer's own format
-    double exact_force = 1e-12;   ///< N
+    double exact = 1e-15;  ///< m, error of a pose that is due to the peer's own format
+    double exact_force = 1e-12;  ///< N
 };
 
 /// A kind of peer, by its driver's name.

@@ -57,8 +57,8 @@ std::string HaplyService::state() {
         R"("basis":{{"permutation":"{}"}}}},"state":{{"cursor_position":{{"x":{},"y":{},"z":{}}},)"
         R"("cursor_velocity":{{"x":0,"y":0,"z":0}}}},"status":{{"ready":true}}}}],"wireless_verse_grip":[{{"device_id":"61",)"
         R"("state":{{"orientation":{{"w":{},"x":{},"y":{},"z":{}}},"buttons":{{"a":{},"b":{},"c":{}}}}}}}]}})",
-        version, basis, coordinate(position_.x), position_.y, position_.z, orientation_.w, orientation_.x, orientation_.y,
-        orientation_.z, (buttons & 1u) != 0, (buttons & 2u) != 0, (buttons & 4u) != 0);
+        version, basis, coordinate(position_.x), position_.y, position_.z, orientation_.w, orientation_.x,
+        orientation_.y, orientation_.z, (buttons & 1u) != 0, (buttons & 2u) != 0, (buttons & 4u) != 0);
 }
 
 void HaplyService::move(const Vec3& p, const Quat& q) {
@@ -90,7 +90,9 @@ void HaplyService::accept(const std::string& text) {
 }
 
 void HaplyService::serve(int client) {
-    const auto send = [&](const std::string& bytes) { return ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL) > 0; };
+    const auto send = [&](const std::string& bytes) {
+        return ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL) > 0;
+    };
     std::string held;
     bool is_greeted = false;
     while (!ends_ && !is_away) {
@@ -110,12 +112,14 @@ void HaplyService::serve(int client) {
             if (end == std::string::npos) continue;
             held.erase(0, end + 4);
             is_greeted = true;
-            send("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n" + frame(state()));
+            send("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n" +
+                 frame(state()));
         }
         while (held.size() >= 6) {
             std::size_t size = held[1] & 0x7F, head = 2;
             if (size == 126) {
-                size = static_cast<std::size_t>(static_cast<std::uint8_t>(held[2])) << 8 | static_cast<std::uint8_t>(held[3]);
+                size = static_cast<std::size_t>(static_cast<std::uint8_t>(held[2])) << 8 |
+                       static_cast<std::uint8_t>(held[3]);
                 head = 4;
             }
             if (held.size() < head + 4 + size) break;

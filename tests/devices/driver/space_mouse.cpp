@@ -94,7 +94,8 @@ TEST_CASE("events of spacenavd are put together from any pieces") {
     std::memcpy(all.data(), moved.data(), sizeof moved);
     std::memcpy(all.data() + sizeof(Event), other.data(), sizeof other);
     std::memcpy(all.data() + 2 * sizeof(Event), pressed.data(), sizeof pressed);
-    for (std::size_t i = 0; i < all.size(); i += 5) reader.take({all.data() + i, std::min<std::size_t>(5, all.size() - i)});
+    for (std::size_t i = 0; i < all.size(); i += 5)
+        reader.take({all.data() + i, std::min<std::size_t>(5, all.size() - i)});
     CHECK(reader.state().deflection == std::array<int, 6>{10, -20, 30, 400, -500, 6});
     CHECK(reader.state().buttons == 8u);
     CHECK(reader.state().events == 2);

@@ -8,6 +8,8 @@
 #include "tests/devices/driver/library_peers.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 
 #include <dlfcn.h>
 
@@ -78,7 +80,8 @@ TEST_CASE("a library or a function that is missing is named") {
 TEST_CASE("a device that is not there is one clear error") {
     const auto dhd = make_dhd_peer();
     dhd->unplug(true);
-    CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD), ContainsSubstring("no Force Dimension device was found"));
+    CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD),
+               ContainsSubstring("no Force Dimension device was found"));
     CHECK_THAT(open_error("force_dimension", TACTUS_FAKE_DHD), ContainsSubstring("'no device found'"));
     const auto hd = make_hd_peer();
     hd->unplug(true);
@@ -88,7 +91,8 @@ TEST_CASE("a device that is not there is one clear error") {
 
 TEST_CASE("what the library says of a device is known without opening it") {
     Options options = options_of({{"library", "/none/libx.so", {}}});
-    const auto outline = haptic::describe_haptic_device("touch", {}, options, [](const std::string& name) { return name; });
+    const auto outline =
+        haptic::describe_haptic_device("touch", {}, options, [](const std::string& name) { return name; });
     CHECK_THAT(outline.absence, ContainsSubstring("/none/libx.so"));
     CHECK(haptic::is_real_driver("touch"));
 }
@@ -144,7 +148,7 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
         CHECK(device->opened().serial == "20-1234");
         for (int i = 0; i < 20; ++i) tell(*peer, "fake_warm");
         CHECK(most_given(*device, *peer, 2.0) == 2.0);  // warm motors are no loss
-        CHECK(device->acquire(1e-3).valid);
+        CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 200));
         CHECK(tell<int>(*peer, "fake_errors_left") == 0);
         CHECK(tell<int>(*peer, "fake_forces_before_enable") == 0);
         CHECK(device->returns() == 0);
@@ -153,7 +157,8 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
     CHECK(tell<int>(*peer, "fake_force_on") == 0);
 }
 
-TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one that was confirmed gives all", "[live]") {
+TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one that was confirmed gives all",
+          "[live]") {
     const OwnConfig config;
     const auto peer = make_dhd_peer();
     driver::Opened opened;
@@ -197,6 +202,31 @@ TEST_CASE("a device that comes back as another one is not used", "[live]") {
     CHECK_FALSE(wait_until([&] { return device->acquire(1e-3).valid; }, 200));
     tell<void, int>(*peer, "fake_number", 4711);
     CHECK(wait_until([&] { return device->acquire(1e-3).valid; }));
+}
+
+TEST_CASE("a vendor's library reads its numbers with points, whatever language the user speaks", "[live]") {
+    const OwnConfig config;
+    std::filesystem::create_directories(config.folder / "locales");
+    const std::string make =
+        "localedef -i de_DE -f UTF-8 " + (config.folder / "locales/de_DE.UTF-8").string() + " >/dev/null 2>&1";
+    if (std::system(make.c_str()) != 0) return skip("this machine cannot make a German locale");
+    ::setenv("LOCPATH", (config.folder / "locales").c_str(), 1);
+    ::setenv("LC_ALL", "de_DE.UTF-8", 1);
+    ::setenv("TACTUS_DEVICE_HOST", (std::filesystem::path(command()).parent_path() / "tactus-device-host").c_str(), 1);
+    {
+        const auto device = hosted::open_placed({"touch", "device 'hand'", {{"library", TACTUS_FAKE_HD, {}}}, {}},
+                                                [](const std::string& name) { return name; });
+        device->prepare(1e-3);
+        CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 2000));
+        bool stayed = true;
+        for (int i = 0; i < 100; ++i) {
+            device->commit({});
+            stayed = stayed && device->acquire(1e-3).valid;
+            hosted::sleep_until(hosted::steady_ns() + ms);
+        }
+        CHECK(stayed);
+    }
+    for (const char* name : {"LOCPATH", "LC_ALL", "TACTUS_DEVICE_HOST"}) ::unsetenv(name);
 }
 
 TEST_CASE("a device that does not open in time names its step", "[live]") {

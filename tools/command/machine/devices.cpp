@@ -21,9 +21,9 @@ int devices(bool json) {
     file::Json list{{"haptic", file::Json::array()}, {"audio", file::Json::array()}};
     for (const haptic::HapticDriver& driver : haptic::haptic_drivers())
         list["haptic"].push_back({{"driver", driver.name},
-                                   {"about", driver.summary},
-                                   {"real", driver.is_real},
-                                   {"untested_on_hardware", driver.is_untested}});
+                                  {"about", driver.summary},
+                                  {"real", driver.is_real},
+                                  {"untested_on_hardware", driver.is_untested}});
     std::string no_sound = "none";
     try {
         for (const audio::AudioOutput& output : audio::list_audio_outputs())

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -68,8 +69,7 @@ bool wait_for_pose(ThreadedDevice& device) {
 }
 
 int say_failure(const DeviceLook& look, const std::string& why, const std::vector<std::string>& steps) {
-    if (look.json)
-        fmt::print("{}\n", file::Json{{"driver", look.driver}, {"failed", why}, {"steps", steps}}.dump(2));
+    if (look.json) fmt::print("{}\n", file::Json{{"driver", look.driver}, {"failed", why}, {"steps", steps}}.dump(2));
     else {
         for (std::size_t i = 0; i < steps.size(); ++i)
             fmt::print("{}  {}\n", i + 1 == steps.size() ? "FAILED" : "done  ", steps[i]);
@@ -105,9 +105,10 @@ void print(const DeviceLook& look, const ThreadedDevice& device, const DeviceSam
     for (const std::string& step : device.steps()) fmt::print("  done: {}\n", step);
     if (sample.valid) {
         const Vec3 p = sample.pose.position * 1e3;
-        fmt::print("  position {:.3f}, {:.3f}, {:.3f} mm (right, away, up); orientation {:.4f} {:.4f} {:.4f} {:.4f} (w x "
-                   "y z)\n",
-                   p.x, p.y, p.z, q.w, q.x, q.y, q.z);
+        fmt::print(
+            "  position {:.3f}, {:.3f}, {:.3f} mm (right, away, up); orientation {:.4f} {:.4f} {:.4f} {:.4f} (w x "
+            "y z)\n",
+            p.x, p.y, p.z, q.w, q.x, q.y, q.z);
     } else fmt::print("  no valid pose: is the device calibrated?\n");
     fmt::print("  buttons {:#x}, {:.0f} samples/s, largest force {:.2f} N\n", sample.buttons, rate,
                opened.info.max_force);
@@ -136,7 +137,15 @@ std::string ask() {
 
 }  // namespace
 
+namespace {
+
+/// Before a driver's thread begins: vendors' libraries ask for the user's language and then misread their own files.
+void speak_c() { ::setenv("LC_ALL", "C", 1); }
+
+}  // namespace
+
 int probe_device(const DeviceLook& look) {
+    speak_c();
     Options options = options_of(look);
     std::unique_ptr<ThreadedDevice> device;
     try {
@@ -147,13 +156,14 @@ int probe_device(const DeviceLook& look) {
     wait_for_pose(*device);
     const std::int64_t before = device->published(), begin = hosted::steady_ns();
     const DeviceSample sample = hold(*device, {}, looking_ns);
-    const double rate = static_cast<double>(device->published() - before) * 1e9 /
-                        static_cast<double>(hosted::steady_ns() - begin);
+    const double rate =
+        static_cast<double>(device->published() - before) * 1e9 / static_cast<double>(hosted::steady_ns() - begin);
     print(look, *device, sample, rate);
     return leave(std::move(device), sample.valid ? done : answer_is_no);
 }
 
 int verify_device(const DeviceLook& look) {
+    speak_c();
     Options options = options_of(look);
     std::unique_ptr<ThreadedDevice> device;
     try {
@@ -167,18 +177,21 @@ int verify_device(const DeviceLook& look) {
         return leave(std::move(device), done);
     }
     if (opened.serial.empty()) {
-        fmt::print("{} states no serial number, under which the answers could be kept: give one with --option "
-                   "serial=NAME, and in the patch\n",
-                   opened.info.name);
+        fmt::print(
+            "{} states no serial number, under which the answers could be kept: give one with --option "
+            "serial=NAME, and in the patch\n",
+            opened.info.name);
         return leave(std::move(device), answer_is_no);
     }
     if (!wait_for_pose(*device)) {
-        fmt::print("{} has no valid pose; calibrate it first: tactus devices --probe {}\n", opened.info.name, look.driver);
+        fmt::print("{} has no valid pose; calibrate it first: tactus devices --probe {}\n", opened.info.name,
+                   look.driver);
         return leave(std::move(device), answer_is_no);
     }
-    fmt::print("{}, serial number {}. Hold the handle lightly, away from its stops. It pushes with {:.1f} N for a "
-               "second each time.\n",
-               opened.info.name, opened.serial, push_N);
+    fmt::print(
+        "{}, serial number {}. Hold the handle lightly, away from its stops. It pushes with {:.1f} N for a "
+        "second each time.\n",
+        opened.info.name, opened.serial, push_N);
     const Push pushes[] = {{{1.0, 0.0, 0.0}, "right"}, {{0.0, -1.0, 0.0}, "towards"}, {{0.0, 0.0, 1.0}, "up"}};
     for (int i = 0; i < opened.axes; ++i) {
         hold(*device, {}, 50 * ms);
@@ -191,9 +204,10 @@ int verify_device(const DeviceLook& look) {
         const std::string answer = ask();
         if (answer == pushes[i].word) continue;
         driver::forget(look.driver, opened);
-        fmt::print("\nnot confirmed: it should have pushed to '{}'. It stays capped at {:.1f} N; please report this "
-                   "with the text of 'tactus devices --probe {}'\n",
-                   pushes[i].word, driver::unconfirmed_force, look.driver);
+        fmt::print(
+            "\nnot confirmed: it should have pushed to '{}'. It stays capped at {:.1f} N; please report this "
+            "with the text of 'tactus devices --probe {}'\n",
+            pushes[i].word, driver::unconfirmed_force, look.driver);
         return leave(std::move(device), answer_is_no);
     }
     driver::confirm(look.driver, opened);

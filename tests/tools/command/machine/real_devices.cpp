@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 using namespace tactus::test;
 using Catch::Matchers::ContainsSubstring;
@@ -77,20 +79,26 @@ TEST_CASE("right answers about pushes lift the cap of that device, a wrong one k
 
 TEST_CASE("a library patch runs with a device by its driver's name alone, and its take repeats it", "[live]") {
     const Bench bench;
-    for (const std::string driver : {"force_dimension", "touch"})
-        for (const std::string patch : {"saw-training", "planning-trauma"}) {
-            if (driver == "touch" && patch == "planning-trauma") continue;  // one of each kind
-            CAPTURE(driver, patch);
-            const fs::path take = bench.folder.path / (driver + patch);
-            const Outcome run = bench.folder.tactus("run " + patch + " --set hand.device=" + driver +
-                                                    " --audio none --seconds 2 --record " + take.string() + " --out " +
-                                                    take.string() + "-out");
-            INFO(run.out << run.err);
-            REQUIRE(run.code == 0);
-            CHECK_THAT(run.err, ContainsSubstring("untested on hardware: at most 0.5 N"));
-            const Outcome replay = bench.folder.tactus("replay " + take.string() + " --json");
-            INFO(replay.out << replay.err);
-            REQUIRE(replay.code == 0);
-            CHECK(json::parse(replay.out)["identical"] == true);
+    for (const auto& [driver, patch] :
+         {std::pair<std::string, std::string>{"force_dimension", "saw-training"}, {"touch", "planning-trauma"}}) {
+        CAPTURE(driver, patch);
+        // A busy machine makes ticks late; such a run ends with a fault, and is made again.
+        Outcome run;
+        fs::path take;
+        for (int attempt = 0; attempt < 3 && run.code != 0; ++attempt) {
+            take = bench.folder.path / (driver + std::to_string(attempt));
+            run = bench.folder.tactus("run " + patch + " --set hand.device=" + driver +
+                                      " --audio none --seconds 1 --record " + take.string() + " --out " +
+                                      take.string() + "-out");
         }
+        INFO(run.out << run.err);
+        REQUIRE(run.code == 0);
+        CHECK_THAT(run.err, ContainsSubstring("untested on hardware: at most 0.5 N"));
+        // The patch is stiffer than the device: it knows nothing of it.
+        CHECK_THAT(run.out + run.err, ContainsSubstring("it is lowered to"));
+        const Outcome replay = bench.folder.tactus("replay " + take.string() + " --json");
+        INFO(replay.out << replay.err);
+        REQUIRE(replay.code == 0);
+        CHECK(json::parse(replay.out)["identical"] == true);
+    }
 }
