@@ -65,8 +65,8 @@ Candidates scatter(const geometry::TriangleSurface& surface, double per_area, co
     return made;
 }
 
-/// The normals of a cube's points: those who compare with a normal that has at least this cosine with the axis have none
-/// of them more than the allowed turn away.
+/// About the normals of a cube's points. A normal whose cosine with the axis is `enough` or more is within the allowed
+/// turn of all of them.
 struct NormalCone {
     Vec3 axis{0.0};
     double enough = 2.0;  // more than any cosine: none

@@ -2,10 +2,11 @@
 #include "assets/bone/mesh_part.hpp"
 
 #include "assets/bone/import.hpp"
-#include "assets/file/whole_file.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -22,13 +23,20 @@ void write_block(const std::filesystem::path& path) {
             "8\n";
 }
 
+volume::Grid imported(const std::filesystem::path& path) {
+    bone::ImportOptions options;
+    options.input = path;
+    options.unit = "mm";
+    return bone::import_bone(options).distance;
+}
+
 }  // namespace
 
 TEST_CASE("a part of a mesh has the distances that an import of all of it has there") {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path / "block.obj";
     write_block(path);
-    const volume::Grid whole = bone::import_bone({.input = path, .unit = "mm"}).distance;
+    const volume::Grid whole = imported(path);
     const std::array<Vec3, 2> box{Vec3(0.012, 0.020, 0.030), Vec3(0.026, 0.034, 0.044)};
     const volume::Grid part =
         bone::distance_of_mesh({.input = path, .unit = "mm", .is_coarse = false, .within = box, .run = run_in_turn});
@@ -59,7 +67,7 @@ TEST_CASE("a coarse mesh has an eighth of the voxels and the same size") {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path / "block.obj";
     write_block(path);
-    const volume::Grid whole = bone::import_bone({.input = path, .unit = "mm"}).distance;
+    const volume::Grid whole = imported(path);
     const volume::Grid coarse =
         bone::distance_of_mesh({.input = path, .unit = "mm", .is_coarse = true, .within = {}, .run = run_in_turn});
     CHECK(coarse.spacing.x == Approx(2.0 * whole.spacing.x));
