@@ -93,6 +93,7 @@
     X(Onset, event)                     \
     X(Or, logic)                        \
     X(Oscillator, vibration)            \
+    X(Panner, vibration)                \
     X(PassivityObserver, coupling)      \
     X(PathGuide, guide)                 \
     X(PlanFrame, training)              \

@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace tactus::audio {
 
@@ -17,6 +19,10 @@ public:
     ~JackWatch();
     JackWatch(const JackWatch&) = delete;
     JackWatch& operator=(const JackWatch&) = delete;
+
+    /// Names the outputs of the stream that PortAudio has opened last; "": as they are. A name that another port has is
+    /// left out.
+    void name_outputs(const std::vector<std::string>& names) const;
 
     // Any thread; wait-free.
     bool freewheels() const noexcept { return freewheels_.load(std::memory_order_relaxed); }

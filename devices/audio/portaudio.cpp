@@ -79,10 +79,11 @@ public:
 
     const std::string& name() const override { return name_; }
 
-    void prepare(double rate, int channels) override {
+    void prepare(double rate, const std::vector<std::string>& channels) override {
         release();
         try {
-            open(rate, channels);
+            open(rate, static_cast<int>(channels.size()));
+            if (open_->jack) open_->jack->name_outputs(channels);
         } catch (...) {
             open_.reset();
             throw;

@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <pa_jack.h>
 #include <portaudio.h>
 
 namespace tactus::audio {
@@ -12,6 +13,8 @@ namespace tactus::audio {
 PortAudioSession::PortAudioSession() {
     const QuietStderr quiet;
     require_alsa_default();
+    // What programs that connect sound show.
+    PaJack_SetClientName("tactus");
     if (const PaError error = Pa_Initialize(); error != paNoError)
         throw Error(fmt::format("the sound system cannot be used: {}", Pa_GetErrorText(error)));
 }

@@ -125,11 +125,12 @@ void GenerationBuilder::find_survivors() {
 }
 
 void GenerationBuilder::prepare() {
-    std::vector<io::SoundCard*> playing;
+    std::vector<io::SoundChannel*> playing;
     for (std::size_t i = 0; i < plan().nodes.size(); ++i)
-        if (const auto& cards = made_->nodes[i]->uses.cards; made_->survived[i])
-            playing.insert(playing.end(), cards.begin(), cards.end());
-    context_.host.keep_cards(std::move(playing));
+        if (const auto& sounds = made_->nodes[i]->uses.sounds; made_->survived[i])
+            playing.insert(playing.end(), sounds.begin(), sounds.end());
+    context_.host.expect_sounds(plan());
+    context_.host.keep_sounds(std::move(playing));
     for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
         if (made_->survived[i]) continue;
         const compile::PlanNode& node = plan().nodes[i];

@@ -18,12 +18,6 @@ namespace tactus::io {
 
 namespace {
 
-class NullSink : public Sink {
-public:
-    void take(std::int64_t, const std::byte*, std::size_t) override {}
-    void finish() override {}
-};
-
 /// What a device reported is in the log that is replayed; there is no hand to feel the forces.
 class StandIn : public HapticDevice {
 public:
@@ -192,7 +186,7 @@ RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocatio
     const bool is_sound = format.type == &value::signal;
     if (!is_sound && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
-    std::unique_ptr<Sink> sink = std::make_unique<NullSink>();
+    std::unique_ptr<Sink> sink = make_null_sink();
     if (folder_ && format.keeper) {
         format.keeper->open((*folder_ / format.file).string());
         sink = std::make_unique<AsyncSink>(format.keeper, format.type->size);
@@ -214,45 +208,6 @@ bool EngineHost::service_devices() {
         lost = lost || !loss.empty();
     }
     return lost;
-}
-
-/// One whose node an edit took away: it plays on, and only one thread ever writes to it.
-SoundCard* EngineHost::spare_card(const StreamFormat& format) const {
-    for (const auto& card : cards)
-        if (!card->is_lost() && card->serves(group_, format.period) &&
-            std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
-            return card.get();
-    return nullptr;
-}
-
-RecordStream& EngineHost::audio(const StreamFormat& format, const SourceLocation& where) {
-    if (!live_ || audio_.device == "file") return record(format, where);
-    if (audio_.device == "none") {
-        StreamFormat unheard = format;
-        unheard.file.clear();
-        opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NullSink>()));
-        uses_->streams.push_back(opened_.streams.back().get());
-        return *opened_.streams.back();
-    }
-    if (SoundCard* card = spare_card(format)) {
-        cards_in_use_.push_back(card);
-        uses_->cards.push_back(card);
-        return *card;
-    }
-    try {
-        std::unique_ptr<AudioSink> sink =
-            audio::make_portaudio_sink(audio_.device == "default" ? "" : audio_.device, audio_.margin_s);
-        sink->prepare(rate_of(format.period), 1);
-        opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
-        opened_.cards.push_back(std::make_unique<SoundCard>(std::move(sink), format.period, audio_.margin_s, group_));
-        uses_->cards.push_back(opened_.cards.back().get());
-        return *opened_.cards.back();
-    } catch (const Error& error) {
-        if (audio_.is_required()) throw Error(where, error.message());
-        opened_.notices.push_back(
-            fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
-    }
-    return record(format, where);
 }
 
 }  // namespace tactus::io

@@ -6,9 +6,11 @@
 #include "engine/io/driver_gate.hpp"
 #include "engine/io/sound_card.hpp"
 #include "engine/io/streams.hpp"
+#include "graph/compile/plan.hpp"
 #include "graph/patch/patch.hpp"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +30,7 @@ struct RecordedDevice {
 /// What a node asked for.
 struct HostUses {
     std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
-    std::vector<SoundCard*> cards;
+    std::vector<SoundChannel*> sounds;
     std::vector<const RecordStream*> streams;
 };
 
@@ -48,12 +50,14 @@ public:
 
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
-    RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
+    RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
 
     /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
     void begin(const patch::Patch& patch);
-    /// Cards of nodes that go on; the others are given to nodes that are prepared anew.
-    void keep_cards(std::vector<SoundCard*> in_use) { cards_in_use_ = std::move(in_use); }
+    /// The channels that nodes of the plan will ask for: a card is opened with all of its own.
+    void expect_sounds(const compile::Plan& plan);
+    /// Channels of nodes that go on; the others are given to nodes that are prepared anew.
+    void keep_sounds(std::vector<SoundChannel*> in_use) { sounds_in_use_ = std::move(in_use); }
     /// Which group the node being prepared belongs to, where it is in the patch, and where to note what it asks for.
     void prepare_for(int group, Flicks period, const SourceLocation& where, HostUses& uses) {
         group_ = group;
@@ -88,7 +92,11 @@ private:
     std::string device_name(const std::string& wanted, const SourceLocation& where) const;
     build::DeviceSlot* find_device(const std::string& name) const;
     DevicePort& use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
-    SoundCard* spare_card(const StreamFormat& format) const;
+    bool is_in_use(const SoundCard& card, int channel) const;
+    std::unique_ptr<SoundCard> open_card(const StreamFormat& format, const SoundPlace& place) const;
+    SoundChannel& own_channel(const StreamFormat& format, const SoundPlace& place);
+    SoundChannel& shared_channel(const StreamFormat& format, const SoundPlace& place);
+    SoundChannel& opened_channel(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names, int index);
 
     struct Opened {
         std::vector<std::unique_ptr<build::DeviceSlot>> devices;
@@ -104,7 +112,8 @@ private:
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
     HostUses* uses_ = nullptr;
-    std::vector<SoundCard*> cards_in_use_;
+    std::vector<SoundChannel*> sounds_in_use_;
+    std::map<std::string, std::vector<std::string>> channel_names_;  ///< by the text that names a card
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;

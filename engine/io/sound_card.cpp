@@ -2,18 +2,54 @@
 #include "engine/io/sound_card.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <span>
 
 namespace tactus::io {
 
-SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s, int group)
-    : sink_(std::move(sink)), period_(period), group_(group) {
-    follower_.prepare(rate_of(period), margin_s);
+bool SoundChannel::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
+    return card_.write(index_, first, values, count, stride);
 }
 
-bool SoundCard::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
+SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, CardUse use) : sink_(std::move(sink)), use_(std::move(use)) {
+    follower_.prepare(rate_of(use_.period), use_.margin_s);
+}
+
+void SoundCard::open(const std::vector<std::string>& names) {
+    sink_->prepare(rate(), names);
+    gather_.resize(static_cast<int>(names.size()), use_.max_frames);
+}
+
+SoundChannel& SoundCard::channel(int index) {
+    for (const auto& known : listed_)
+        if (known->index() == index) return *known;
+    return *listed_.emplace_back(std::make_unique<SoundChannel>(*this, index));
+}
+
+bool SoundCard::write(int channel, std::int64_t first, const void* values, std::size_t count,
+                      std::ptrdiff_t stride) noexcept {
+    const auto* from = static_cast<const std::byte*>(values);
+    bool fits = true;
+    while (count > 0) {
+        const std::size_t n = std::min(count, gather_.max_frames());
+        if (gather_.is_blocked(channel, first, n)) fits = flush() && fits;
+        if (gather_.put(channel, first, from, n, stride)) fits = flush() && fits;
+        from += static_cast<std::ptrdiff_t>(n) * stride;
+        first += static_cast<std::int64_t>(n);
+        count -= n;
+    }
+    return fits;
+}
+
+bool SoundCard::flush() noexcept {
+    std::int64_t first = 0;
+    const std::span<const float> block = gather_.take(first);
+    return write_frames(first, block.data(), block.size() / static_cast<std::size_t>(channels()));
+}
+
+bool SoundCard::write_frames(std::int64_t first, const float* frames, std::size_t count) noexcept {
     static constexpr std::size_t piece = 256;
     static constexpr float silence[piece] = {};
+    const std::size_t most_silent = piece / static_cast<std::size_t>(channels());
     std::size_t lost = 0;
     if (expected_ < 0) {
         expected_ = first;
@@ -22,15 +58,8 @@ bool SoundCard::write(std::int64_t first, const void* values, std::size_t count,
     // What the ring has no room for is not worth writing as silence.
     auto gap = static_cast<std::size_t>(first - expected_);
     for (const std::size_t room = sink_->writable(); gap > room; gap = room) lost += gap - room;
-    for (; gap > 0; gap -= std::min(gap, piece)) sink_->write(silence, std::min(gap, piece));
-    const auto* from = static_cast<const std::byte*>(values);
-    for (std::size_t done = 0; done < count;) {
-        float block[piece];
-        const std::size_t n = std::min(count - done, piece);
-        for (std::size_t i = 0; i < n; ++i, from += stride) std::memcpy(&block[i], from, sizeof(float));
-        lost += n - sink_->write(block, n);
-        done += n;
-    }
+    for (; gap > 0; gap -= std::min(gap, most_silent)) sink_->write(silence, std::min(gap, most_silent));
+    lost += count - sink_->write(frames, count);
     expected_ = first + static_cast<std::int64_t>(count);
     if (lost > 0) shift_.fetch_add(static_cast<std::int64_t>(lost), std::memory_order_relaxed);
     return lost == 0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dsp/control/card_follower.hpp"
+#include "engine/io/channel_gather.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/setup.hpp"
 
@@ -12,27 +13,60 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::io {
 
-class SoundCard : public RecordStream {
-public:
-    /// `sink` is prepared for one channel with that period. `margin_s` of sound waits in its ring. Only the thread of
-    /// `group` writes.
-    SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s, int group);
+class SoundCard;
 
-    /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
+/// A channel of a card.
+class SoundChannel : public RecordStream {
+public:
+    SoundChannel(SoundCard& card, int index) : card_(card), index_(index) {}
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
 
+    SoundCard& card() const { return card_; }
+    int index() const { return index_; }  ///< from 0
+
+private:
+    SoundCard& card_;
+    int index_;
+};
+
+/// How a card is used.
+struct CardUse {
+    Flicks period = 0;
+    double margin_s = 0.0;  ///< sound that waits in the ring
+    int group = 0;  ///< only its thread writes
+    std::string wanted = {};  ///< the text by which the card was chosen
+    bool is_shared = false;  ///< nodes share it, each with a channel of its own
+    int max_frames = 256;  ///< most samples per write
+};
+
+class SoundCard {
+public:
+    SoundCard(std::unique_ptr<AudioSink> sink, CardUse use);
+
+    /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
+    bool write(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
+
     // Control thread.
+    /// Opens the card with one channel per name. Programs that connect sound show the names that are not empty. Throws
+    /// Error.
+    void open(const std::vector<std::string>& names);
+    int channels() const { return gather_.channels(); }
+    /// `index`: from 0, below `channels()`.
+    SoundChannel& channel(int index);
+    /// The first frame waits for these channels. Before the first sample.
+    void expect(int index) { gather_.expect(index); }
     /// Looks at what the card did. Trims `clock`, when given one, where it is at `now_ns`. `reached`: logical time. True at the moment when the card turns out to be lost:
     /// no callback came for `longest_silence_ns`.
     bool service(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock);
     void close() { sink_->close(); }
 
     const std::string& name() const { return sink_->name(); }
-    double rate() const { return rate_of(period_); }
-    bool serves(int group, Flicks period) const { return group == group_ && period == period_; }
+    double rate() const { return rate_of(use_.period); }
+    const CardUse& use() const { return use_; }
     AudioStatistics statistics() const { return sink_->statistics(); }
     const control::CardFollower& follower() const { return follower_; }
     std::int64_t largest_callback() const { return largest_; }
@@ -44,9 +78,13 @@ public:
     static constexpr std::int64_t longest_silence_ns = 500'000'000;
 
 private:
+    bool write_frames(std::int64_t first, const float* frames, std::size_t count) noexcept;
+    bool flush() noexcept;
+
     std::unique_ptr<AudioSink> sink_;
-    Flicks period_;
-    int group_;
+    CardUse use_;
+    std::vector<std::unique_ptr<SoundChannel>> listed_;
+    ChannelGather gather_;  // thread of the group
     control::CardFollower follower_;
     std::atomic<std::int64_t> shift_{0};  // index of the activation that is frame 0 of the ring
     std::int64_t expected_ = -1;  // thread of the group

@@ -117,6 +117,14 @@ private:
 std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format) {
     return std::make_unique<SoundFileSink>(path, format);
 }
+std::unique_ptr<Sink> make_null_sink() {
+    class NullSink : public Sink {
+    public:
+        void take(std::int64_t, const std::byte*, std::size_t) override {}
+        void finish() override {}
+    };
+    return std::make_unique<NullSink>();
+}
 std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format) {
     return std::make_unique<CsvSink>(path, format);
 }

@@ -34,6 +34,8 @@ public:
 
 /// A sound file: one float channel, silence where activations are missing. Its comment states the unit of the values.
 std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format);
+/// Keeps nothing.
+std::unique_ptr<Sink> make_null_sink();
 /// A CSV file: a line of column names with units, then time in s and the values.
 std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format);
 

@@ -2,6 +2,7 @@
 #include "graph/compile/compile.hpp"
 
 #include "graph/compile/decide_types.hpp"
+#include "graph/compile/sounds.hpp"
 #include "graph/compile/units.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -19,6 +20,7 @@ std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Prob
     decide_types(plan);
     form_groups(plan, problems);
     resolve_wires(plan, problems);
+    if (problems.empty()) check_sounds(plan, problems);
     if (problems.empty()) check_units(plan, problems);
     // An order is only worth finding among wires that exist: otherwise one slip is reported twice.
     if (problems.empty()) order_nodes(plan, problems);

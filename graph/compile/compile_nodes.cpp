@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace tactus::compile {
@@ -27,6 +29,7 @@ public:
         offer(name, [&c](const OptionText& given) { c.set(given.text); });
     }
     void text(std::string_view name, Text& t) override {
+        node_.texts.emplace(name, &t);
         offer(name, [&t](const OptionText& given) {
             t.value = given.text;
             t.where = given.where;
@@ -45,6 +48,9 @@ public:
             a.where = given.where;
         });
     }
+
+    const std::vector<std::string>& names() const { return names_; }
+    bool knows(std::string_view name) const { return std::ranges::find(names_, name) != names_.end(); }
 
     void apply(const OptionText& given, patch::Problems& problems) const {
         const auto found = std::ranges::find(names_, given.name);
@@ -95,6 +101,58 @@ void check_assets(const PlanNode& node, const std::vector<std::string>& names,
     }
 }
 
+/// Gives nodes that name an actuator its settings, where they have none of their own.
+class Actuators {
+public:
+    Actuators(const std::vector<patch::PatchActuator>& list, patch::Problems& problems)
+        : list_(list), problems_(problems) {}
+
+    void apply(const patch::PatchNode& node, const PlanNode& made, const Collector& collector) {
+        const auto text = made.texts.find("actuator");
+        if (text == made.texts.end() || text->second->value.empty()) return;
+        const std::string& wanted = text->second->value;
+        const auto actuator = std::ranges::find(list_, wanted, &patch::PatchActuator::name);
+        if (actuator == list_.end()) {
+            std::vector<std::string> names;
+            for (const patch::PatchActuator& known : list_) names.push_back(known.name);
+            problems_.add(text->second->where,
+                          fmt::format("no actuator '{}' in [actuators]{}", wanted, did_you_mean(wanted, names)));
+            return;
+        }
+        Seen& seen = seen_[actuator->name];
+        for (const OptionText& given : actuator->settings) {
+            if (!collector.knows(given.name) || given.name == "actuator") continue;
+            seen.known.insert(given.name);
+            if (std::ranges::find(node.settings, given.name, &OptionText::name) == node.settings.end())
+                collector.apply(given, problems_);
+        }
+        std::ranges::copy(collector.names(), std::back_inserter(seen.names));
+    }
+
+    /// A setting that no node understands is an error.
+    void finish() const {
+        for (const patch::PatchActuator& actuator : list_) {
+            const auto seen = seen_.find(actuator.name);
+            if (seen == seen_.end()) continue;
+            for (const OptionText& given : actuator.settings)
+                if (!seen->second.known.contains(given.name))
+                    problems_.add(given.where,
+                                  fmt::format("no node that names actuator '{}' has a parameter '{}'{}", actuator.name,
+                                              given.name, did_you_mean(given.name, seen->second.names)));
+        }
+    }
+
+private:
+    struct Seen {
+        std::unordered_set<std::string> known;
+        std::vector<std::string> names;
+    };
+
+    const std::vector<patch::PatchActuator>& list_;
+    patch::Problems& problems_;
+    std::unordered_map<std::string, Seen> seen_;
+};
+
 }  // namespace
 
 void resolve_nodes(Plan& plan, Catalogue catalogue, patch::Problems& problems) {
@@ -102,6 +160,7 @@ void resolve_nodes(Plan& plan, Catalogue catalogue, patch::Problems& problems) {
     std::vector<std::string> assets;
     for (const patch::PatchAsset& asset : plan.patch.assets) assets.push_back(asset.name);
     const std::unordered_set<std::string_view> known(assets.begin(), assets.end());
+    Actuators actuators(plan.patch.actuators, problems);
     for (const patch::PatchNode& patch_node : plan.patch.nodes) {
         PlanNode& node = plan.nodes.emplace_back();
         node.name = patch_node.name;
@@ -112,8 +171,10 @@ void resolve_nodes(Plan& plan, Catalogue catalogue, patch::Problems& problems) {
         Collector collector(node);
         node.type->visit(node.instance.get(), collector);
         for (const OptionText& given : patch_node.settings) collector.apply(given, problems);
+        actuators.apply(patch_node, node, collector);
         check_assets(node, assets, known, problems);
     }
+    actuators.finish();
 }
 
 }  // namespace tactus::compile

@@ -36,6 +36,7 @@ struct PlanNode {
     std::vector<PlanInput> inputs;
     std::vector<PlanOutput> outputs;
     std::map<std::string, Param*> params;
+    std::map<std::string, const Text*> texts;
     std::vector<AssetParam*> assets;
     bool takes_blocks = false;  ///< processes several activations in one call
 };

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace tactus {
 
@@ -117,9 +118,9 @@ public:
 
     virtual const std::string& name() const = 0;
 
-    /// Opens the output with `rate` Hz and `channels` channels. May allocate and take seconds. Throws Error with the
-    /// reason.
-    virtual void prepare(double rate, int channels) = 0;
+    /// Opens the output with `rate` Hz and one channel per name, in this order. Programs that connect sound show the names
+    /// that are not empty. May allocate and take seconds. Throws Error with the reason.
+    virtual void prepare(double rate, const std::vector<std::string>& channels) = 0;
 
     /// Adds interleaved frames to the buffer, full scale ±1. Returns how many fitted. Never waits for the card.
     virtual std::size_t write(const float* interleaved, std::size_t frames) noexcept = 0;

@@ -86,7 +86,7 @@ enum class NodeRole : std::uint8_t {
     hand_source,  ///< gives the pose of a hand; has a text parameter `device`
     hand_sink,  ///< sends a force to a hand; has a text parameter `device`
     placement,  ///< places a device in the scene; has a parameter `scale`: metres of the scene per metre of the device
-    sound_sink,  ///< sends a signal to a sound card
+    sound_sink,  ///< sends a signal to a sound card; has `card` and `channel` where nodes can share one
     file_sink  ///< writes a file
 };
 

@@ -84,6 +84,17 @@ struct StreamFormat {
     std::shared_ptr<StreamKeeper> keeper{};  ///< writes the file; null: the engine does
 };
 
+/// Where a sound goes in a live run.
+struct SoundPlace {
+    std::string card;  ///< part of a card's name; "": the one that the run chooses
+    /// From 1: that channel of a stream that all nodes with a channel of the card share, sample by sample. 0: a stream of
+    /// its own with one channel.
+    int channel = 0;
+    std::string name;  ///< of the channel, for programs that show it
+    int max_frames = 1;  ///< most samples per write
+    SourceLocation where;
+};
+
 /// Gives `prepare` what lies outside the patch: devices, recordings, sound. `where` is the place of the node in the
 /// patch, for errors.
 class Host {
@@ -95,7 +106,7 @@ public:
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
     /// Sound for a listener or an actuator: to the sound card in a live run with a card, otherwise to the format's
     /// file. Throws Error.
-    virtual RecordStream& audio(const StreamFormat& format, const SourceLocation& where) = 0;
+    virtual RecordStream& audio(const StreamFormat& format, const SoundPlace& place) = 0;
 };
 
 /// What `prepare` is given.

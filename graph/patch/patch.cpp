@@ -20,8 +20,9 @@ namespace tactus::patch {
 
 namespace {
 
-const std::array<std::string, 13> top_level{"title",   "about", "wires",  "quantum", "seed",       "assets", "groups",
-                                            "devices", "nodes", "inputs", "outputs", "parameters", "parts"};
+const std::array<std::string, 14> top_level{"title",  "about",   "wires",      "quantum",   "seed",
+                                            "assets", "groups",  "devices",    "actuators", "nodes",
+                                            "inputs", "outputs", "parameters", "parts"};
 
 class PatchReader {
 public:
@@ -44,6 +45,7 @@ public:
         sort_by_place(patch_.nodes);
         sort_by_place(patch_.assets);
         sort_by_place(patch_.devices);
+        sort_by_place(patch_.actuators);
         if (patch_.nodes.empty() && problems_.empty())
             problems_.add({file_.string(), 1, 1}, "the patch has no nodes; a node is a table such as [nodes.hand]");
         std::ranges::stable_sort(problems_.list.begin() + static_cast<std::ptrdiff_t>(earlier_), problems_.list.end(),
@@ -84,6 +86,8 @@ private:
         else if (name == "assets") for_each(value, name, [this](const auto& k, const toml::node& v) { asset(k, v); });
         else if (name == "groups") for_each(value, name, [this](const auto& k, const toml::node& v) { group(k, v); });
         else if (name == "devices") for_each(value, name, [this](const auto& k, const toml::node& v) { device(k, v); });
+        else if (name == "actuators")
+            for_each(value, name, [this](const auto& k, const toml::node& v) { actuator(k, v); });
         else if (name == "nodes") for_each(value, name, [this](const auto& k, const toml::node& v) { node(k, v); });
         else if (name == "inputs" || name == "parameters" || name == "outputs") {
             auto& ends = name == "inputs" ? patch_.inputs : name == "outputs" ? patch_.outputs : patch_.parameters;
@@ -273,6 +277,16 @@ private:
             problems_.add(device.where, fmt::format("device '{}' names no driver", device.name));
         sort_by_place(device.settings);
         patch_.devices.push_back(std::move(device));
+    }
+
+    void actuator(const toml::key& key, const toml::node& value) {
+        const toml::table* table = table_of(key, value, "actuators");
+        if (!table) return;
+        PatchActuator actuator{std::string(key.str()), at(key.source()), {}};
+        for (const auto& [name, item] : *table)
+            setting(name, item, fmt::format("actuators.{}", actuator.name), actuator.settings);
+        sort_by_place(actuator.settings);
+        patch_.actuators.push_back(std::move(actuator));
     }
 
     void node(const toml::key& key, const toml::node& value) {

@@ -58,6 +58,13 @@ struct PatchDevice {
     std::vector<OptionText> settings;
 };
 
+/// An entry [actuators.NAME]: settings of the nodes that name it.
+struct PatchActuator {
+    std::string name;
+    SourceLocation where;
+    std::vector<OptionText> settings;
+};
+
 /// A port or parameter that a sub-patch offers: its name outside, and the node and port inside. An input or a parameter
 /// has one entry for each port that it sets.
 struct PatchEnd {
@@ -83,6 +90,7 @@ struct Patch {
     std::vector<PatchAsset> assets;
     std::vector<PatchGroup> groups;
     std::vector<PatchDevice> devices;
+    std::vector<PatchActuator> actuators;
     std::vector<PatchNode> nodes;  ///< in the order of the file
     std::vector<PatchEnd> inputs, outputs, parameters;
     std::vector<PatchPart> parts;

@@ -46,14 +46,17 @@ public:
         deep_.push_back(path);
         std::vector<PatchNode> nodes = std::exchange(patch.nodes, {});
         OuterWires wires(std::exchange(patch.wires, {}), nodes);
-        std::unordered_set<std::string> devices;
+        std::unordered_set<std::string> devices, actuators;
         for (const PatchDevice& device : patch.devices) devices.insert(device.name);
+        for (const PatchActuator& actuator : patch.actuators) actuators.insert(actuator.name);
         for (PatchNode& node : nodes) {
             if (!is_sub_patch(node)) patch.nodes.push_back(std::move(node));
             else if (const FlatPart* within = part(node, path)) {
                 splice(patch, node, *within, wires);
                 for (const PatchDevice& device : within->patch.devices)
                     if (devices.insert(device.name).second) patch.devices.push_back(device);
+                for (const PatchActuator& actuator : within->patch.actuators)
+                    if (actuators.insert(actuator.name).second) patch.actuators.push_back(actuator);
             }
             if (patch.nodes.size() > most_nodes && !has_stopped_) {
                 has_stopped_ = true;

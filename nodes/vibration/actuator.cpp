@@ -18,6 +18,7 @@ struct Actuator {
     Out<Signal> voltage{"output of the amplifier", "V"};
     Out<Signal> signal{"acceleration of the handle", "m/s^2"};
     Out<Signal> current{"in the coil", "A"};
+    Text actuator{"", "name of an entry of [actuators], which has the settings that are not given here"};
     Choice preset{{"haptuator_small", "haptuator_large", "markII_D"},
                   "data of the actuator; used for parameters that are 0"};
     Param gain{"1 V", "-100 V", "100 V", "drive voltage per unit of the signal"};
@@ -88,7 +89,7 @@ private:
     std::string name_;
 };
 
-TACTUS_NODE(Actuator, drive, voltage, signal, current, preset, gain, mass, moving_mass, resonance, damping, resistance,
-            inductance, voltage_limit, current_limit)
+TACTUS_NODE(Actuator, drive, voltage, signal, current, actuator, preset, gain, mass, moving_mass, resonance, damping,
+            resistance, inductance, voltage_limit, current_limit)
 
 }  // namespace tactus::nodes

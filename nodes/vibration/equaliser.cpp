@@ -18,6 +18,7 @@ struct Equaliser {
 
     In<Signal> in{"the desired vibration"};
     Out<Signal> out{"drive signal that makes the actuator produce it"};
+    Text actuator{"", "name of an entry of [actuators], which has the settings that are not given here"};
     Asset<tactus::vibration::Equaliser> filter{"file written by 'tactus equalise'"};
     Param amount{"1", "0", "1", "0: only the delay of the filter; 1: full equalisation; a mix in between"};
 
@@ -51,6 +52,6 @@ private:
     std::size_t delay_ = 0;
 };
 
-TACTUS_NODE(Equaliser, in, out, filter, amount)
+TACTUS_NODE(Equaliser, in, out, actuator, filter, amount)
 
 }  // namespace tactus::nodes

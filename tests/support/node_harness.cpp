@@ -53,7 +53,7 @@ RecordStream& FakeHost::record(const StreamFormat& format, const SourceLocation&
     return *records.emplace_back(std::make_unique<MemoryStream>(format, 1 << 21));
 }
 
-RecordStream& FakeHost::audio(const StreamFormat& format, const SourceLocation&) {
+RecordStream& FakeHost::audio(const StreamFormat& format, const SoundPlace&) {
     return *sounds.emplace_back(std::make_unique<MemoryStream>(format, 1 << 21));
 }
 

@@ -38,7 +38,7 @@ struct MemoryStream final : RecordStream {
 struct FakeHost final : Host {
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
-    RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
+    RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
 
     std::map<std::string, std::unique_ptr<DevicePort>> devices;
     bool driven = false;  ///< a node asked to drive one

@@ -81,7 +81,7 @@ TEST_CASE("an output that does not exist is refused with a reason, quietly, and 
     const auto sink = audio::make_portaudio_sink("an output that nobody has");
     for (std::string& one : said) {
         try {
-            sink->prepare(48000.0, 2);
+            sink->prepare(48000.0, {"", ""});
         } catch (const Error& error) {
             one = error.what();
         }
@@ -125,7 +125,7 @@ TEST_CASE("an output opens, asks for sound and closes") {
 
 TEST_CASE("run by the test of an output that opens", "[.null_card]") {
     const auto sink = audio::make_portaudio_sink("default");
-    sink->prepare(48000.0, 1);
+    sink->prepare(48000.0, {""});
     const std::array<float, 64> sound{};
     CHECK(sink->write(sound.data(), sound.size()) == sound.size());
     const std::int64_t before = sink->progress().frames;

@@ -20,7 +20,7 @@ class PlayedSink : public AudioSink {
 public:
     explicit PlayedSink(std::size_t frames = 4096) : state(1, frames) {}
     const std::string& name() const override { return name_; }
-    void prepare(double, int) override {}
+    void prepare(double, const std::vector<std::string>&) override {}
     std::size_t write(const float* samples, std::size_t frames) noexcept override {
         return state.write(samples, frames);
     }
@@ -46,15 +46,18 @@ struct Bench {
     explicit Bench(std::size_t frames = 4096) {
         auto owned = std::make_unique<PlayedSink>(frames);
         sink = owned.get();
-        card = std::make_unique<io::SoundCard>(std::move(owned), period, 0.005, 0);
+        card = std::make_unique<io::SoundCard>(std::move(owned), io::CardUse{period, 0.005});
+        card->open({"played"});
+        channel = &card->channel(0);
     }
     void write(std::int64_t first, std::size_t count) const {
         std::vector<float> values(count);
         std::iota(values.begin(), values.end(), static_cast<float>(first));
-        card->write(first, values.data(), count, sizeof(float));
+        channel->write(first, values.data(), count, sizeof(float));
     }
     PlayedSink* sink;
     std::unique_ptr<io::SoundCard> card;
+    io::SoundChannel* channel;
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ class QuietHost : public Host {
 public:
     DevicePort& device(const std::string&, DeviceUse, const SourceLocation& where) override { refuse(where); }
     RecordStream& record(const StreamFormat&, const SourceLocation& where) override { refuse(where); }
-    RecordStream& audio(const StreamFormat&, const SourceLocation& where) override { refuse(where); }
+    RecordStream& audio(const StreamFormat&, const SoundPlace& place) override { refuse(place.where); }
 
 private:
     [[noreturn]] static void refuse(const SourceLocation& where) { throw Error(where, "not of this host"); }

@@ -88,6 +88,7 @@ int check(const CheckChoice& choice) {
                 json["warnings"].push_back(fmt::format(
                     "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel",
                     node));
+            if (const Json sound = sound_json(engine.plan()); !sound.is_null()) json["sound"] = sound;
             json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
             if (choice.z_width || !choice.z_width_figure.empty()) {
                 const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());

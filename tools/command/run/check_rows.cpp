@@ -2,6 +2,8 @@
 #include "tools/command/run/check_rows.hpp"
 
 #include "assets/file/json.hpp"
+#include "devices/audio/portaudio.hpp"
+#include "engine/io/host.hpp"
 #include "graph/analyse/latency.hpp"
 #include "tools/command/run/check_process.hpp"
 
@@ -55,6 +57,23 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
         paths.push_back(std::move(row));
     }
     return paths;
+}
+
+Json sound_json(const compile::Plan& plan) {
+    const bool plays = std::ranges::any_of(
+        plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::sound_sink; });
+    if (!plays) return {};
+    Json json{{"buffer_ms", 1e3 * io::AudioChoice{}.margin_s}, {"card", nullptr}, {"card_ms", nullptr}};
+    try {
+        for (const audio::AudioOutput& output : audio::list_audio_outputs())
+            if (output.is_default) {
+                json["card"] = output.name;
+                json["card_ms"] = 1e3 * output.latency;
+            }
+    } catch (const Error&) {
+        // Without a sound system there is no card.
+    }
+    return json;
 }
 
 Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {

@@ -20,6 +20,9 @@ file::Json check_json(const std::optional<compile::Plan>& plan, const patch::Pro
 /// One row per path; loops through a hand also have a stiffness.
 file::Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops);
 
+/// What a sound card adds to the latency of paths that end there; null when nothing is played.
+file::Json sound_json(const compile::Plan& plan);
+
 /// The position loops of admittance controllers: gain and stability limit.
 file::Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
 

@@ -93,6 +93,16 @@ void print_loops(const Json& loops) {
                    loop["hand_stiffness_N_per_mm"].get<double>(), loop["ok"].get<bool>() ? "" : "  UNSTABLE");
 }
 
+/// What a sound card adds to the paths that end there.
+void print_sound(const Json& sound) {
+    fmt::print("Sound: a run adds the card's buffer, {:.4g} ms (--audio-margin) and one callback, and ",
+               sound["buffer_ms"].get<double>());
+    if (sound["card"].is_null()) fmt::print("a card's own latency; there is no card here.\n");
+    else
+        fmt::print("the card's own latency, {:.3g} ms as '{}' states it.\n", sound["card_ms"].get<double>(),
+                   sound["card"].get<std::string>());
+}
+
 void print_plan(const Json& json) {
     for (const Json& group : json["groups"])
         fmt::print("{:>10}  latency {:.4g} ms  {}\n", group["name"].get<std::string>(),
@@ -107,6 +117,7 @@ void print_plan(const Json& json) {
         line += stiffness_text(path);
         fmt::print("{}\n", line);
     }
+    if (json.contains("sound")) print_sound(json["sound"]);
     fmt::print("Limit of stable stiffness: damping of the device / (period / 2 + latency).\n");
     if (json.contains("contact")) print_contact(json["contact"]);
     if (json.contains("device_classes")) print_classes(json["device_classes"]);

@@ -20,11 +20,13 @@
 namespace tactus::study {
 namespace {
 
-/// How a contact is put between the hand and the device's output. `%` is the stiffness.
+/// How a contact is put between the hand and the device's output.
 struct Setting {
-    std::string_view name;
-    double height;  ///< m, from which the hand is thrown at the surface
-    std::string_view wires, nodes;
+    std::string_view name;  ///< type of the node `contact`
+    double height;          ///< m, from which the hand is thrown at the surface
+    std::string_view wires;
+    /// Of `contact`, then other nodes. Where `%` stands is the stiffness; without it `contact` has it.
+    std::string_view options;
     double kerf = 0.0;  ///< mm, of a tool on the library's jaw that is not powered; it starts as far from the bone
 };
 
@@ -78,64 +80,37 @@ a_at = "0 mm, 0 mm, -10 mm"
 
 constexpr Setting settings[] = {
     {"sphere_contact", 1e-3, R"("hand.pose -> contact.pose", "contact.wrench -> out.wrench")", R"(
-[nodes.contact]
-type = "sphere_contact"
-rate = "1 kHz"
 centre = "0 m, 0 m, -1 m"
 radius = "1 m"
 tool_radius = "0 mm"
-stiffness = "% N/mm"
 )"},
     {"plane_guide", 1e-3, guide_wires, R"(
-[nodes.contact]
-type = "plane_guide"
-rate = "1 kHz"
 max_force = "10 N"
-stiffness = "% N/mm"
 )"},
     {"box_guide", 1e-3, guide_wires, R"(
-[nodes.contact]
-type = "box_guide"
-rate = "1 kHz"
 centre = "0 mm, 0 mm, -50 mm"
 keep = "outside"
 max_force = "10 N"
-stiffness = "% N/mm"
 )"},
     // What pulls must let go: less than 1.5 mJ, so that every throw gets through once. The bound is that of one contact; a
     // hand that is caught swings through many.
     {"point_guide", 6e-3, guide_wires, R"(
-[nodes.contact]
-type = "point_guide"
-rate = "1 kHz"
 reach = "5 mm"
 max_force = "0.3 N"
-stiffness = "% N/mm"
 )"},
     {"line_guide", 6e-3, guide_wires, R"(
-[nodes.contact]
-type = "line_guide"
-rate = "1 kHz"
 reach = "5 mm"
 max_force = "0.3 N"
-stiffness = "% N/mm"
 )"},
     {"path_guide", 6e-3, guide_wires, R"(
-[nodes.contact]
-type = "path_guide"
-rate = "1 kHz"
 points = "-20 0 0, 0 3 0, 20 0 0 mm"
 reach = "5 mm"
 max_force = "0.3 N"
-stiffness = "% N/mm"
 )"},
     {"voxmap_contact", 3e-3,
      R"("plate.body -> scene.a", "tip.body -> scene.b", "scene.scene -> contact.scene", "hand.pose -> contact.pose",
 "contact.wrench -> coupling.contact", "contact.stiffness -> coupling.contact_stiffness", "coupling.wrench -> out.wrench")",
      R"(
-[nodes.contact]
-type = "voxmap_contact"
-rate = "1 kHz"
 held = "1"
 [nodes.coupling]
 type = "direct_coupling"
@@ -144,72 +119,37 @@ stiffness = "% N/mm"
 )"},
     {"point_proxy", 1e-3,
      R"("plate.body -> scene.a", "scene.scene -> contact.scene", "hand.pose -> contact.device", "contact.wrench -> out.wrench")",
-     R"(
-[nodes.contact]
-type = "point_proxy"
-rate = "1 kHz"
-stiffness = "% N/mm"
-)"},
+     ""},
     {"sphere_proxy", 3e-3,
      R"("plate.body -> scene.a", "scene.scene -> contact.scene", "hand.pose -> contact.device", "contact.wrench -> out.wrench")",
      R"(
-[nodes.contact]
-type = "sphere_proxy"
-rate = "1 kHz"
 radius = "2 mm"
-stiffness = "% N/mm"
 )"},
     {"quasi_static_coupling", 3e-3,
      R"("plate.body -> scene.a", "tip.body -> scene.b", "scene.scene -> contact.scene", "hand.pose -> contact.device",
 "contact.wrench -> out.wrench")",
      R"(
-[nodes.contact]
-type = "quasi_static_coupling"
-rate = "1 kHz"
 held = "1"
-stiffness = "% N/mm"
 )"},
     {"dynamic_coupling", 3e-3,
      R"("plate.body -> scene.a", "tip.body -> scene.b", "scene.scene -> contact.scene", "hand.pose -> contact.device",
 "hand.twist -> contact.device_twist", "contact.wrench -> out.wrench")",
      R"(
-[nodes.contact]
-type = "dynamic_coupling"
-rate = "1 kHz"
 held = "1"
-stiffness = "% N/mm"
 )"},
     {"blade_contact", 3e-3,
      R"("place.pose -> carve.path as batch", "contact.load -> carve.load as batch", "still.pressed -> carve.running")",
-     R"(
-[nodes.contact]
-type = "blade_contact"
-rate = "1 kHz"
-stiffness = "% N/mm"
-)",
-     1.0},
-    {"saw_blade", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")",
-     R"(
-[nodes.contact]
-type = "saw_blade"
-rate = "1 kHz"
-stiffness = "% N/mm"
-)",
-     1.0},
-    {"burr", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")",
-     R"(
-[nodes.contact]
-type = "burr"
-rate = "1 kHz"
-stiffness = "% N/mm"
-)",
-     4.0},
+     "", 1.0},
+    {"saw_blade", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")", "", 1.0},
+    {"burr", 3e-3, R"("contact.front -> carve.front as batch", "still.pressed -> contact.running")", "", 4.0},
 };
 
 std::string patch_of(const Setting& setting, double stiffness, bool capped) {
-    std::string nodes(setting.nodes);
-    const std::size_t at = nodes.find('%');
-    nodes.replace(at, 1, fmt::format("{}", stiffness * 1e-3));
+    const std::string per_mm = fmt::format("{}", stiffness * 1e-3);
+    std::string nodes = fmt::format("[nodes.contact]\ntype = \"{}\"\nrate = \"1 kHz\"\n", setting.name);
+    if (setting.options.find('%') == std::string_view::npos) nodes += fmt::format("stiffness = \"{} N/mm\"\n", per_mm);
+    nodes += setting.options;
+    if (const std::size_t at = nodes.find('%'); at != std::string::npos) nodes.replace(at, 1, per_mm);
     const bool has_scene = setting.wires.find("scene.") != std::string_view::npos;
     const bool has_tip = setting.wires.find("tip.body") != std::string_view::npos;
     std::string scene(has_scene ? plate_and_tip : "");

@@ -31,8 +31,12 @@ bool same_around(const patch::Patch& a, const patch::Patch& b) {
                                   return x.name == y.name && x.rate == y.rate && x.latency == y.latency &&
                                          x.backlog == y.backlog;
                               }) &&
-           std::ranges::equal(a.devices, b.devices, [](const auto& x, const auto& y) {
-               return x.name == y.name && x.driver == y.driver && same(x.settings, y.settings);
+           std::ranges::equal(a.devices, b.devices,
+                              [](const auto& x, const auto& y) {
+                                  return x.name == y.name && x.driver == y.driver && same(x.settings, y.settings);
+                              }) &&
+           std::ranges::equal(a.actuators, b.actuators, [](const auto& x, const auto& y) {
+               return x.name == y.name && same(x.settings, y.settings);
            });
 }
 

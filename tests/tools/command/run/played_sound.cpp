@@ -2,35 +2,22 @@
 // A JACK server without hardware; a second client records what the command plays.
 #include "assets/sound/sound.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
-#include "tests/tools/run_command.hpp"
+#include "tests/tools/jack_server.hpp"
 
-#include <jack/jack.h>
 #include <nlohmann/json.hpp>
 
-#include <fcntl.h>
-#include <sched.h>
-#include <signal.h>
-#include <sys/file.h>
-#include <sys/mount.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cstdlib>
-#include <fstream>
 #include <future>
 #include <memory>
-#include <thread>
-#include <utility>
 #include <vector>
 
 using namespace std::chrono_literals;
 using nlohmann::json;
 using tactus::test::Folder;
+using tactus::test::has_server;
 using tactus::test::Outcome;
+using tactus::test::Recorder;
+using tactus::test::Server;
 using tactus::test::slurp;
 
 namespace {
@@ -45,157 +32,6 @@ frequency = "441.7 Hz"
 type = "audio_output"
 rate = "48 kHz"
 )";
-
-/// Tests that play run one at a time: two servers at once keep each other from their deadlines.
-class Turn {
-public:
-    Turn()
-        : file_(::open((std::filesystem::temp_directory_path() / "tactus_test_sound.lock").c_str(),
-                       O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
-        ::flock(file_, LOCK_EX);
-    }
-    ~Turn() { ::close(file_); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-private:
-    int file_;
-};
-
-/// Gives this process and its children a /dev/shm of their own. JACK keeps a table of eight servers there, and a server
-/// that was killed keeps its place: servers of other programs must not decide about these tests. Where this is not
-/// permitted, the machine's own is used.
-void use_own_shared_memory() {
-    static bool is_done = false;
-    if (std::exchange(is_done, true)) return;
-    if (::unshare(CLONE_NEWNS) != 0) {
-        const auto user = ::getuid();
-        const auto group = ::getgid();
-        if (::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return;
-        std::ofstream("/proc/self/setgroups") << "deny";
-        std::ofstream("/proc/self/uid_map") << user << ' ' << user << " 1";
-        std::ofstream("/proc/self/gid_map") << group << ' ' << group << " 1";
-    }
-    if (::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return;
-    static_cast<void>(::mount("tmpfs", "/dev/shm", "tmpfs", 0, "mode=1777"));
-}
-
-/// A server of our own. Nothing of it is left behind.
-class Server {
-public:
-    Server(const Folder& folder, int period) : name("tactus_test_" + std::to_string(::getpid())) {
-        use_own_shared_memory();
-        folder.write("asound.conf", "pcm.!default { type null }\n");
-        ::setenv("JACK_DEFAULT_SERVER", name.c_str(), 1);
-        ::setenv("JACK_NO_START_SERVER", "1", 1);
-        ::setenv("JACK_NO_AUDIO_RESERVATION", "1", 1);
-        ::setenv("ALSA_CONFIG_PATH", (folder.path / "asound.conf").c_str(), 1);
-        jack_set_error_function([](const char*) {});
-        jack_set_info_function([](const char*) {});
-        log_ = (folder.path / "jackd.log").string();
-        start(period);
-    }
-    ~Server() {
-        if (was_killed_) {
-            // Only a server of the same name that ends in order gives back the place that this one has in JACK's table
-            // of eight.
-            start(256);
-            for (int i = 0; i < 100 && !has_client(); ++i) std::this_thread::sleep_for(20ms);
-        }
-        end(SIGTERM);
-        static_cast<void>(std::system(("rm -f /dev/shm/jack_sem.*_" + name + "_*").c_str()));
-    }
-    void end(int how) {
-        if (pid_ <= 0) return;
-        was_killed_ = how == SIGKILL;
-        ::kill(pid_, how);
-        ::waitpid(pid_, nullptr, 0);
-        pid_ = 0;
-    }
-
-    /// What the server said, for the message of a failed check.
-    std::string said() const { return slurp(log_); }
-
-    std::string name;
-
-private:
-    void start(int period) {
-        const std::string frames = std::to_string(period), &log = log_;
-        pid_ = ::fork();
-        if (pid_ == 0) {
-            ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-            if (!std::freopen(log.c_str(), "w", stdout) || !std::freopen(log.c_str(), "w", stderr)) ::_exit(1);
-            // Synchronous: the server waits for late clients instead of leaving them out.
-            ::execlp("jackd", "jackd", "-n", name.c_str(), "-S", "-r", "-m", "-t", "5000", "-d", "dummy", "-r", "48000",
-                     "-p", frames.c_str(), "-C", "2", "-P", "2", nullptr);
-            ::_exit(1);
-        }
-    }
-    static bool has_client() {
-        jack_client_t* client = jack_client_open("probe", JackNoStartServer, nullptr);
-        if (client != nullptr) jack_client_close(client);
-        return client != nullptr;
-    }
-
-    Turn turn_;
-    std::string log_;
-    bool was_killed_ = false;
-    pid_t pid_ = 0;
-};
-
-class Recorder {
-public:
-    Recorder() : heard_(48000 * 20) {
-        for (int i = 0; i < 200 && client_ == nullptr; ++i) {
-            client_ = jack_client_open("recorder", JackNoStartServer, nullptr);
-            if (client_ == nullptr) std::this_thread::sleep_for(50ms);
-        }
-        if (client_ == nullptr) return;
-        port_ = jack_port_register(client_, "in", JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0);
-        jack_set_process_callback(
-            client_, [](jack_nframes_t n, void* self) { return static_cast<Recorder*>(self)->hear(n); }, this);
-        jack_activate(client_);
-    }
-    ~Recorder() {
-        if (client_ != nullptr) jack_client_close(client_);
-    }
-    bool is_there() const { return client_ != nullptr; }
-    bool listen_to(const char* port) {
-        for (int i = 0; i < 4000; ++i, std::this_thread::sleep_for(5ms))
-            if (jack_port_by_name(client_, port) != nullptr)
-                return jack_connect(client_, port, jack_port_name(port_)) == 0;
-        return false;
-    }
-    void freewheel(bool on) { jack_set_freewheel(client_, on ? 1 : 0); }
-    void wait_for(std::size_t frames) const {
-        for (int i = 0; i < 4000 && count_.load() < frames; ++i) std::this_thread::sleep_for(5ms);
-    }
-    /// From the first sound on. After the player ended.
-    std::vector<float> heard() const {
-        return {heard_.begin(), heard_.begin() + static_cast<std::ptrdiff_t>(count_.load())};
-    }
-
-private:
-    int hear(jack_nframes_t n) {
-        const auto* in = static_cast<const float*>(jack_port_get_buffer(port_, n));
-        std::size_t count = count_.load(std::memory_order_relaxed);
-        for (jack_nframes_t i = 0; i < n; ++i)
-            if ((count > 0 || in[i] != 0.0F) && count < heard_.size()) heard_[count++] = in[i];
-        count_.store(count, std::memory_order_release);
-        return 0;
-    }
-
-    jack_client_t* client_ = nullptr;
-    jack_port_t* port_ = nullptr;
-    std::vector<float> heard_;
-    std::atomic<std::size_t> count_{0};
-};
-
-bool has_server() {
-    if (std::system("command -v jackd >/dev/null") == 0) return true;
-    tactus::test::skip("no JACK server (apt-get install jackd2)");
-    return false;
-}
 
 std::vector<float> rendered(const Folder& folder, const std::string& patch) {
     const Outcome done =
@@ -218,7 +54,7 @@ bool plays_the_same(const Folder& folder, int period, bool freewheel, const std:
         return folder.tactus("run " + (folder.path / "tone.toml").string() +
                              " --seconds 1.5 --audio default --audio-margin 500 --overwrite --out " + out);
     });
-    const bool listens = recorder.listen_to("PortAudio:out_0");
+    const bool listens = recorder.listen_to("tactus:speaker");
     if (listens && freewheel) {
         recorder.freewheel(true);
         // Leaving a server that freewheels takes a client ten seconds: it goes back to the usual pace before.
@@ -276,7 +112,7 @@ TEST_CASE("a server that dies leaves a run that ends by itself, silent, with fad
     auto playing = std::async(std::launch::async, [&] {
         return folder.tactus("run saw-training --seconds 4 --audio default --out " + out + " --record " + take);
     });
-    CHECK(recorder->listen_to("PortAudio:out_0"));
+    CHECK(recorder->listen_to("tactus:speaker"));
     recorder.reset();
     std::this_thread::sleep_for(1500ms);
     server.end(SIGKILL);

@@ -30,7 +30,7 @@ jack_wait -w -t 10 >/dev/null 2>&1 || { kill $server; exit 77; }
 "$2" measure --device default --amplitude 0.5 --duration 2 --pause 0.5 --repeats 2 --json -o card.csv >measured.json 2>measured.err &
 measuring=$!
 for attempt in 1 2 3 4 5 6 7 8 9 10; do
-  jack_connect PortAudio:out_0 PortAudio:in_0 >/dev/null 2>&1 && break
+  jack_connect tactus:out_0 tactus:in_0 >/dev/null 2>&1 && break
   sleep 0.02
 done
 wait $measuring; code=$?

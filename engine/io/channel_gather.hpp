@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a card with several channels, each of which another node writes.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace tactus::io {
+
+/// Gathers one block of samples per channel into interleaved frames. All calls come from the thread of one group, which
+/// calls its nodes one after the other with the same activations. Nothing allocates but `resize`.
+///
+/// A block is complete when every channel wrote that wrote the block before; at first, when all did. A channel that
+/// misses its block (its node was taken away by an edit) is silent and is not waited for in the next one; a channel
+/// that comes too late (a new node) is silent once and waited for from then on.
+class ChannelGather {
+public:
+    static constexpr int most_channels = 64;
+
+    /// Before the first sample, or after `take`.
+    void resize(int channels, int max_frames) {
+        channels_ = static_cast<std::size_t>(channels);
+        max_frames_ = static_cast<std::size_t>(std::max(max_frames, 1));
+        frames_.assign(channels_ * max_frames_, 0.0F);
+    }
+    int channels() const noexcept { return static_cast<int>(channels_); }
+    std::size_t max_frames() const noexcept { return max_frames_; }
+    /// Waits for this channel from the first block on. Before the first sample.
+    void expect(int channel) noexcept { expected_ |= bit(channel); }
+
+    /// True when a block is in the way of `count` samples of that channel: `take` it first.
+    bool is_blocked(int channel, std::int64_t first, std::size_t count) const noexcept {
+        return count_ > 0 && (first != first_ || count != count_ || (written_ & bit(channel)) != 0);
+    }
+
+    /// Samples of activations first, first + 1, …, `stride` bytes apart; at most `max_frames`. True when the block is
+    /// complete.
+    bool put(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
+        if (first < next_) {  // the block went without this channel
+            expected_ |= bit(channel);
+            return false;
+        }
+        if (count_ == 0) {
+            first_ = first;
+            count_ = count;
+            std::fill_n(frames_.begin(), static_cast<std::ptrdiff_t>(count * channels_), 0.0F);
+        }
+        const auto* from = static_cast<const std::byte*>(values);
+        float* to = frames_.data() + channel;
+        for (std::size_t i = 0; i < count; ++i, from += stride, to += channels_) std::memcpy(to, from, sizeof(float));
+        written_ |= bit(channel);
+        return (written_ & expected_) == expected_;
+    }
+
+    /// The block's frames, valid until the next `put`; `first`: the activation of the first one.
+    std::span<const float> take(std::int64_t& first) noexcept {
+        first = first_;
+        const std::span<const float> block(frames_.data(), count_ * channels_);
+        if (count_ > 0) {
+            expected_ = written_;
+            next_ = first_ + static_cast<std::int64_t>(count_);
+        }
+        written_ = 0;
+        count_ = 0;
+        return block;
+    }
+
+private:
+    static constexpr std::uint64_t bit(int channel) noexcept { return std::uint64_t{1} << channel; }
+
+    std::size_t channels_ = 1, max_frames_ = 1, count_ = 0;
+    std::vector<float> frames_;
+    std::int64_t first_ = 0, next_ = INT64_MIN;
+    std::uint64_t written_ = 0, expected_ = 0;
+};
+
+}  // namespace tactus::io

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/compile/sounds.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <utility>
+
+namespace tactus::compile {
+
+std::optional<SoundTarget> sound_target(const PlanNode& node) {
+    if (!node.type || node.type->role != NodeRole::sound_sink) return std::nullopt;
+    const auto channel = node.params.find("channel");
+    const auto card = node.texts.find("card");
+    if (channel == node.params.end() || card == node.texts.end() || channel->second->value < 1.0) return std::nullopt;
+    return SoundTarget{card->second->value, static_cast<int>(channel->second->value)};
+}
+
+void check_sounds(const Plan& plan, patch::Problems& problems) {
+    std::map<std::string, const PlanNode*> cards;
+    std::map<std::pair<std::string, int>, const PlanNode*> channels;
+    for (const PlanNode& node : plan.nodes) {
+        const std::optional<SoundTarget> target = sound_target(node);
+        if (!target) continue;
+        const auto& [card, channel] = *target;
+        const std::string of_card = card.empty() ? "of the sound card" : fmt::format("of card '{}'", card);
+        if (const auto [first, is_new] = channels.try_emplace({card, channel}, &node); !is_new)
+            problems.add(node.where, fmt::format("node '{}' plays on channel {} {}, and so does '{}'", node.name,
+                                                 channel, of_card, first->second->name));
+        if (const auto [first, is_new] = cards.try_emplace(card, &node); first->second->group != node.group)
+            problems.add(node.where,
+                         fmt::format("nodes '{}' and '{}' play on channels {}, so they need one rate and one group",
+                                     first->second->name, node.name, of_card));
+    }
+}
+
+}  // namespace tactus::compile
