@@ -185,7 +185,8 @@ double overlap_area(const Section& a, const Section& b, const Plane& plane, doub
         high = std::min(high, greatest);
     }
     if (!(high > low)) return 0.0;
-    const double rows = std::ceil((high - low) / step), width = (high - low) / rows;
+    // At most 2000 lines, however large the bone is.
+    const double rows = std::clamp(std::ceil((high - low) / step), 1.0, 2000.0), width = (high - low) / rows;
     std::vector<double> of_a, of_b;
     double sum = 0.0;
     for (double row = 0.5; row < rows; row += 1.0) {

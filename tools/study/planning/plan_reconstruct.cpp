@@ -89,7 +89,8 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
     if (fs::exists(path))
         throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", path.string()));
     const cases::PlanLock lock(path);
-    Reconstruction made{{}, reconstruct::plan_fibula(inputs)};
+    Reconstruction made;
+    made.fibula = reconstruct::plan_fibula(inputs);
     std::vector<Piece> pieces;
     if (inputs.jaw) add_jaw(pieces, inputs, made.fibula);
     const std::size_t jaw_pieces = pieces.size();
