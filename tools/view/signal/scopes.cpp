@@ -219,7 +219,7 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
 
 /// A menu: signals over this one, and the trigger.
 void Scopes::options(Scope& scope, std::size_t index) {
-    if (ImGui::SmallButton("…")) ImGui::OpenPopup("options");
+    if (ImGui::SmallButton("more")) ImGui::OpenPopup("options");
     mark_spot(fmt::format("scope {} options", index));
     if (!ImGui::BeginPopup("options")) return;
     if (ImGui::BeginMenu("Draw another signal over it")) {
