@@ -146,6 +146,79 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
     return plot;
 }
 
+Plot histogram_plot(const Trace& trace, const Display& display, double now, double span) {
+    constexpr int parts = 60;
+    Plot plot;
+    plot.x_unit = display.unit;
+    plot.y_unit = "%";
+    Curve curve{trace.names.empty() ? "" : trace.names[0], tone::curves[0], {}, false};
+    const Histogram histogram = histogram_of(trace, 0, {now - span, now}, parts);
+    double most = 0.0;
+    for (std::size_t k = 0; k < histogram.counts.size(); ++k) {
+        const double percent = 100.0 * static_cast<double>(histogram.counts[k]) / static_cast<double>(histogram.total);
+        const double wide = histogram.values.span() / parts;
+        const double left = histogram.values.low + static_cast<double>(k) * wide;
+        for (const Point p : {Point{left, 0.0}, {left, percent}, {left + wide, percent}, {left + wide, 0.0}})
+            curve.points.push_back({p.x * display.factor, p.y});
+        most = std::max(most, percent);
+    }
+    const Range values{histogram.values.low * display.factor, histogram.values.high * display.factor};
+    plot.x = fitted({0.0, 0.0}, values);
+    plot.y = {0.0, most > 0.0 ? 1.08 * most : 1.0};
+    plot.curves.push_back(std::move(curve));
+    return plot;
+}
+
+Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, const Trace& y, std::size_t y_column,
+             const Display& y_display, double now, double span) {
+    constexpr std::size_t most = 4000;
+    Plot plot;
+    plot.x_unit = x_display.unit;
+    plot.y_unit = y_display.unit;
+    Curve curve{y_column < y.names.size() ? y.names[y_column] : "", tone::curves[0], {}, false};
+    Range across{1e300, -1e300}, up = across;
+    for (const Point& p : pairs_of(x, x_column, y, y_column, {now - span, now}, most)) {
+        const Point at{p.x * x_display.factor, p.y * y_display.factor};
+        curve.points.push_back(at);
+        across = {std::min(across.low, at.x), std::max(across.high, at.x)};
+        up = {std::min(up.low, at.y), std::max(up.high, at.y)};
+    }
+    const bool is_empty = curve.points.empty();
+    plot.x = fitted({0.0, 0.0}, is_empty ? Range{-1.0, 1.0} : across);
+    plot.y = fitted({0.0, 0.0}, is_empty ? Range{-1.0, 1.0} : up);
+    plot.curves.push_back(std::move(curve));
+    return plot;
+}
+
+Plot waterfall_plot(const Trace& trace, const Display& display, double rate, double now, double span) {
+    Plot plot;
+    plot.is_logarithmic = true;
+    plot.waterfall = waterfall_of(trace, 0, rate, {now - span, now}, 48, 160, display.factor);
+    plot.x = plot.waterfall->hz;
+    plot.x_unit = "Hz";
+    plot.y = {now - span, now};
+    plot.y_unit = "s";
+    return plot;
+}
+
+double top_of(const Waterfall& waterfall) {
+    double largest = lowest_db;
+    for (const double level : waterfall.cells) largest = std::max(largest, level);
+    return largest <= lowest_db ? 0.0 : 10.0 * std::ceil(largest / 10.0);
+}
+
+std::uint32_t waterfall_ink(double level_db, double top_db) {
+    // From black over blue and orange to white: brighter is louder, for those who see no colours, too.
+    constexpr double stops[][3] = {{13, 17, 24}, {30, 58, 120}, {170, 80, 90}, {250, 170, 60}, {255, 250, 220}};
+    const double at = std::clamp((level_db - top_db + 90.0) / 90.0, 0.0, 1.0) * 4.0;
+    const auto low = std::min(static_cast<std::size_t>(at), std::size_t{3});
+    const auto part = [&](std::size_t c) {
+        const double share = at - static_cast<double>(low);
+        return static_cast<std::uint32_t>(std::lround(stops[low][c] + share * (stops[low + 1][c] - stops[low][c])));
+    };
+    return colour(part(0) << 16 | part(1) << 8 | part(2));
+}
+
 signal::Spectrum spectrum_of_file(const std::filesystem::path& path) {
     sound::RecordReader reader(path, {}, std::nullopt);
     signal::WelchSettings settings;
@@ -181,6 +254,23 @@ display::Figure figure_of(const Plot& plot, double width, double height) {
     figure.text({0.5 * (left + right), height - 8}, plot.x_unit, 10, ink, display::TextAnchor::middle);
     figure.text({14, 0.5 * (top + bottom)}, plot.y_unit, 10, ink, display::TextAnchor::middle, false, true);
     figure.clip(left, top, right - left, bottom - top);
+    if (plot.waterfall && plot.waterfall->rows > 0) {
+        const Waterfall& all = *plot.waterfall;
+        const double loudest = top_of(all);
+        std::vector<display::Colour> palette;
+        for (int k = 0; k < 256; ++k) {
+            const std::uint32_t shade = waterfall_ink(loudest - 90.0 + 90.0 * k / 255.0, loudest);
+            const auto part = [&](int shift) { return static_cast<std::uint8_t>(shade >> shift & 0xFF); };
+            palette.push_back({part(0), part(8), part(16), 1.0});
+        }
+        std::vector<std::uint8_t> cells;
+        for (int row = all.rows; row-- > 0;)
+            for (int c = 0; c < all.columns; ++c)
+                cells.push_back(static_cast<std::uint8_t>(
+                    std::clamp((all.at(row, c) - loudest + 90.0) / 90.0 * 255.0, 0.0, 255.0)));
+        figure.cells(left, top, right - left, bottom - top, all.columns, all.rows, std::move(cells),
+                     std::move(palette));
+    }
     for (const Curve& curve : plot.curves) {
         std::vector<display::FigurePoint> line;
         for (const Point& p : curve.points) line.push_back({x_of(p.x), y_of(p.y)});

@@ -7,9 +7,11 @@
 #include "tools/view/canvas.hpp"
 #include "tools/view/signal/axis.hpp"
 #include "tools/view/signal/feed.hpp"
+#include "tools/view/signal/measures.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct Plot {
     Range x, y;
     bool is_logarithmic = false;  ///< across
     std::vector<Curve> curves;
+    std::optional<Waterfall> waterfall;  ///< across: its frequencies; up: its times
 
     /// Position as a fraction of the width, or of the height from the bottom.
     double across(double value) const;
@@ -53,6 +56,18 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
 /// the same power over the frequencies that both have.
 Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
                    const signal::Spectrum& reference);
+
+/// Shares of the values of one column in equal parts of their range, over the last `span` seconds.
+Plot histogram_plot(const Trace& trace, const Display& display, double now, double span);
+/// One column over another; both of the last `span` seconds.
+Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, const Trace& y, std::size_t y_column,
+             const Display& y_display, double now, double span);
+/// Spectra of the last `span` seconds, the latest at the top.
+Plot waterfall_plot(const Trace& trace, const Display& display, double rate, double now, double span);
+/// The colour of a level in a waterfall, of 90 dB below `top`: dark to bright.
+std::uint32_t waterfall_ink(double level_db, double top_db);
+/// The largest level of a waterfall, rounded up to 10 dB.
+double top_of(const Waterfall& waterfall);
 
 /// Spectrum of a sound file. Throws Error.
 signal::Spectrum spectrum_of_file(const std::filesystem::path& path);

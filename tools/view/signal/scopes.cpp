@@ -17,7 +17,7 @@ namespace tactus::view {
 void Scopes::add(const std::string& port, bool is_spectrum) {
     Scope scope;
     scope.port = port;
-    scope.is_spectrum = is_spectrum;
+    if (is_spectrum) scope.view = Scope::View::spectrum;
     scopes_.push_back(std::move(scope));
 }
 
@@ -32,7 +32,10 @@ void Scopes::set_reference(const std::filesystem::path& path) {
 
 std::set<std::string> Scopes::traced() const {
     std::set<std::string> ports;
-    for (const Scope& scope : scopes_) ports.insert(scope.port);
+    for (const Scope& scope : scopes_) {
+        ports.insert(scope.port);
+        ports.insert(scope.others.begin(), scope.others.end());
+    }
     return ports;
 }
 
@@ -54,25 +57,79 @@ double Scopes::rate(const std::string& port) const {
     return 1000.0;
 }
 
+const Trace* Scopes::other(const Scope& scope, std::size_t index, const Feed& feed) const {
+    return index < scope.held_others.size() ? &scope.held_others[index] : feed.trace(scope.others[index]);
+}
+
+void Scopes::refresh_wave(Scope& scope, const Trace& trace, const Feed& feed, double now, int pixels) {
+    const Display shown = display(scope.port);
+    if (scope.trigger) {
+        // A tenth before the crossing, and all of the rest after it.
+        const Trigger raw{scope.trigger->level / shown.factor, scope.trigger->is_rising};
+        const auto at = trigger_time(trace, 0, raw, {now - LiveFeed::kept_s, now - 0.9 * scope.span});
+        if (at) now = *at + 0.9 * scope.span;
+    }
+    scope.plot = time_plot(trace, shown, now, scope.span, pixels);
+    const Level level = level_of(trace, 0, scope.plot.x);
+    scope.reading = level.count == 0
+                        ? ""
+                        : fmt::format("peak {:.1f} dB, rms {:.1f} dB", decibels(level.peak() * shown.factor),
+                                      decibels(level.rms * shown.factor));
+    for (std::size_t i = 0; i < scope.others.size(); ++i) {
+        const Trace* trace_of = other(scope, i, feed);
+        if (!trace_of) continue;
+        Plot over = time_plot(*trace_of, display(scope.others[i]), now, scope.span, pixels);
+        for (Curve& curve : over.curves) {
+            curve.name = scope.others[i] + (curve.name.empty() ? "" : " " + curve.name);
+            curve.ink = tone::curves[scope.plot.curves.size() % std::size(tone::curves)];
+            scope.plot.curves.push_back(std::move(curve));
+        }
+        scope.plot.y = {std::min(scope.plot.y.low, over.y.low), std::max(scope.plot.y.high, over.y.high)};
+    }
+    scope.y = scope.plot.y = fitted(scope.y, scope.plot.y);
+}
+
 void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
     const Trace* live = feed.trace(scope.port);
     if (scope.is_frozen && !scope.held && live) {
         scope.held = *live;
         scope.held_at = live->times.empty() ? feed.now() : live->times.back();
+        scope.held_others.clear();
+        for (const std::string& port : scope.others) {
+            const Trace* trace = feed.trace(port);
+            scope.held_others.push_back(trace ? *trace : Trace{});
+        }
     }
-    if (!scope.is_frozen) scope.held.reset();
+    if (!scope.is_frozen) {
+        scope.held.reset();
+        scope.held_others.clear();
+    }
     const Trace* trace = scope.held ? &*scope.held : live;
     if (!trace) return;
     const double now = scope.held ? scope.held_at : trace->times.empty() ? feed.now() : trace->times.back();
     const Display shown = display(scope.port);
-    if (scope.is_spectrum) {
-        // Spectra are updated every 0.1 s, which looks immediate and saves time.
-        if (std::abs(now - scope.computed_at) < 0.1) return;
-        scope.computed_at = now;
-        scope.plot = spectrum_plot(*trace, shown, rate(scope.port), now, scope.span, reference_);
-    } else {
-        scope.plot = time_plot(*trace, shown, now, scope.span, pixels);
-        scope.y = scope.plot.y = fitted(scope.y, scope.plot.y);
+    // All but waves are updated every 0.1 s, which looks immediate and saves time.
+    const bool is_due = std::abs(now - scope.computed_at) >= 0.1;
+    if (scope.view != Scope::View::wave && !is_due) return;
+    scope.computed_at = now;
+    scope.reading.clear();
+    switch (scope.view) {
+        case Scope::View::wave: refresh_wave(scope, *trace, feed, now, pixels); break;
+        case Scope::View::spectrum:
+            scope.plot = spectrum_plot(*trace, shown, rate(scope.port), now, scope.span, reference_);
+            break;
+        case Scope::View::waterfall:
+            scope.plot = waterfall_plot(*trace, shown, rate(scope.port), now, scope.span);
+            break;
+        case Scope::View::histogram: scope.plot = histogram_plot(*trace, shown, now, scope.span); break;
+        case Scope::View::xy: {
+            // Alone: its second column over its first, as of a pose.
+            const Trace* up = scope.others.empty() ? nullptr : other(scope, 0, feed);
+            scope.plot =
+                up ? xy_plot(*trace, 0, shown, *up, 0, display(scope.others[0]), now, scope.span)
+                   : xy_plot(*trace, 0, shown, *trace, trace->columns.size() > 1 ? 1 : 0, shown, now, scope.span);
+            break;
+        }
     }
     scope.plot.title = scope.port;
 }
@@ -85,8 +142,10 @@ void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::p
     if (path.extension() == ".csv") {
         const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
         if (!trace || trace->times.empty()) throw Error(fmt::format("there are no values of {} yet", scope.port));
+        // Of a wave what is shown, also where a trigger holds it.
         const double now = trace->times.back();
-        write_csv(*trace, {now - scope.span, now}, path);
+        const bool is_wave = scope.view == Scope::View::wave;
+        write_csv(*trace, is_wave ? scope.plot.x : Range{now - scope.span, now}, path);
     } else display::write_png(figure_of(scope.plot).image(), path.string());
     bench_.tell(fmt::format("wrote {}", path.string()));
 }
@@ -100,20 +159,30 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
         for (const Feed::Port& port : ports_) {
             if (port.name.find(search_) == std::string::npos) continue;
             if (!ImGui::Selectable(port.name.c_str(), port.name == scope.port)) continue;
-            const bool is_spectrum = scope.is_spectrum;
+            const Scope::View view = scope.view;
             scope = {};
             scope.port = port.name;
-            scope.is_spectrum = is_spectrum;
+            scope.view = view;
         }
         ImGui::EndCombo();
     }
     ImGui::SameLine();
-    if (ImGui::Button(scope.is_spectrum ? "spectrum" : "wave", ImVec2(5.5f * unit, 0))) {
-        scope.is_spectrum = !scope.is_spectrum;
+    constexpr const char* views[] = {"wave", "spectrum", "waterfall", "histogram", "x-y"};
+    const auto shown = static_cast<std::size_t>(scope.view);
+    if (ImGui::Button(views[shown], ImVec2(5.5f * unit, 0))) {
+        scope.view = static_cast<Scope::View>((shown + 1) % std::size(views));
         scope.computed_at = -1.0;
         scope.cursors.clear();
     }
     mark("kind");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("next: %s; right click: back", views[(shown + 1) % std::size(views)]);
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
+        scope.view = static_cast<Scope::View>((shown + std::size(views) - 1) % std::size(views));
+        scope.computed_at = -1.0;
+        scope.cursors.clear();
+    }
+    ImGui::SameLine();
+    options(scope, index);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(5.0f * unit);
     auto span = static_cast<float>(scope.span);
@@ -148,6 +217,55 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
     mark("close");
 }
 
+/// A menu: signals over this one, and the trigger.
+void Scopes::options(Scope& scope, std::size_t index) {
+    if (ImGui::SmallButton("more")) ImGui::OpenPopup("options");
+    mark_spot(fmt::format("scope {} options", index));
+    if (!ImGui::BeginPopup("options")) return;
+    if (ImGui::BeginMenu("Draw another signal over it")) {
+        for (const Feed::Port& port : ports_)
+            if (ImGui::MenuItem(port.name.c_str())) {
+                scope.others.push_back(port.name);
+                scope.computed_at = -1.0;
+            }
+        ImGui::EndMenu();
+    }
+    for (std::size_t i = 0; i < scope.others.size(); ++i)
+        if (ImGui::MenuItem(fmt::format("Remove {}", scope.others[i]).c_str())) {
+            scope.others.erase(scope.others.begin() + static_cast<std::ptrdiff_t>(i));
+            scope.held_others.clear();
+            scope.held.reset();
+            break;
+        }
+    ImGui::Separator();
+    if (ImGui::MenuItem("No trigger", nullptr, !scope.trigger)) scope.trigger.reset();
+    for (const bool is_rising : {true, false}) {
+        const bool is_chosen = scope.trigger && scope.trigger->is_rising == is_rising;
+        if (ImGui::MenuItem(is_rising ? "Trigger where it rises" : "Trigger where it falls", nullptr, is_chosen))
+            scope.trigger = Trigger{scope.trigger ? scope.trigger->level : 0.0, is_rising};
+    }
+    if (scope.trigger) {
+        auto level = static_cast<float>(scope.trigger->level);
+        const auto speed = static_cast<float>(0.005 * std::max(scope.plot.y.span(), 1e-9));
+        ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+        if (ImGui::DragFloat("level", &level, speed, 0.0f, 0.0f, "%.4g"))
+            scope.trigger->level = static_cast<double>(level);
+    }
+    ImGui::EndPopup();
+}
+
+void Scopes::waterfall(const Scope& scope, const Painter& paint, const Box& inner) const {
+    if (!scope.plot.waterfall || scope.plot.waterfall->rows == 0) return;
+    const Waterfall& all = *scope.plot.waterfall;
+    const double top = top_of(all), wide = inner.width() / all.columns, high = inner.height() / all.rows;
+    for (int row = 0; row < all.rows; ++row)
+        for (int c = 0; c < all.columns; ++c) {
+            const double left = inner.left + c * wide, bottom = inner.bottom - row * high;
+            paint.list()->AddRectFilled(vec({left, bottom - high}), vec({left + wide, bottom}),
+                                        waterfall_ink(all.at(row, c), top));
+        }
+}
+
 void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double height) {
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     const Point corner = point(ImGui::GetCursorScreenPos());
@@ -174,6 +292,9 @@ void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double he
         paint.text_left_of({inner.left - 5.0 * s, y_of(v) - 0.6 * small}, small, tone::dim, tick_label(v, y_step));
     }
     paint.list()->PushClipRect(vec({inner.left, inner.top}), vec({inner.right, inner.bottom}), true);
+    waterfall(scope, paint, inner);
+    if (scope.trigger && scope.view == Scope::View::wave)
+        paint.line({inner.left, y_of(scope.trigger->level)}, {inner.right, y_of(scope.trigger->level)}, tone::dim);
     std::vector<ImVec2> line;
     for (const Curve& curve : plot.curves) {
         line.clear();
@@ -223,6 +344,7 @@ void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double he
         reading = fmt::format("{:.5g} {}: {:.4g} {}", x, plot.x_unit, value_near(x), plot.y_unit);
     }
     paint.text_left_of({inner.right - 4.0 * s, inner.top + 2.0 * s}, small, tone::chosen, reading);
+    paint.text_left_of({inner.right - 4.0 * s, inner.bottom - 1.4 * small}, small, tone::dim, scope.reading);
 }
 
 void Scopes::draw(const Feed* feed, const Fonts& fonts) {

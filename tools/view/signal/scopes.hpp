@@ -7,6 +7,7 @@
 #include "tools/view/signal/plot.hpp"
 #include "tools/view/workbench.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -20,14 +21,21 @@ public:
     explicit Scopes(Workbench& bench) : bench_(bench) {}
 
     struct Scope {
+        enum class View : std::uint8_t { wave, spectrum, waterfall, histogram, xy };
+
         std::string port;
-        bool is_spectrum = false, is_frozen = false;
+        View view = View::wave;
+        bool is_frozen = false;
+        std::vector<std::string> others;  ///< drawn over it; of a curve of pairs, the first one is the height
+        std::optional<Trigger> trigger;   ///< the wave stands still at its crossings; in the shown unit
         double span = 2.0;  ///< s
         std::optional<Trace> held;  ///< the frozen trace
+        std::vector<Trace> held_others;
         double held_at = 0.0;
         Range y{0.0, 0.0};
         std::vector<double> cursors;  ///< at most two, in units of the horizontal axis
         double computed_at = -1.0;    ///< time of the last computed spectrum
+        std::string reading;          ///< levels in dB
         Plot plot;
     };
 
@@ -45,6 +53,10 @@ public:
 
 private:
     void refresh(Scope& scope, const Feed& feed, int pixels);
+    void refresh_wave(Scope& scope, const Trace& trace, const Feed& feed, double now, int pixels);
+    const Trace* other(const Scope& scope, std::size_t index, const Feed& feed) const;
+    void options(Scope& scope, std::size_t index);
+    void waterfall(const Scope& scope, const Painter& paint, const Box& inner) const;
     void head(Scope& scope, std::size_t index, const Feed& feed, bool& closes);
     void body(Scope& scope, std::size_t index, const Fonts& fonts, double height);
     Display display(const std::string& port) const;

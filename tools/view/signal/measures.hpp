@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scopes measure on a trace: crossings of a level, levels in dB, histograms, pairs, spectra over time.
+#pragma once
+
+#include "tools/view/canvas.hpp"
+#include "tools/view/signal/axis.hpp"
+#include "tools/view/signal/feed.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace tactus::view {
+
+/// 20 log10 of an amplitude, dB re 1; -240 for 0 and what is smaller.
+double decibels(double amplitude);
+
+/// When a column of a trace passes a level, upwards or downwards.
+struct Trigger {
+    double level = 0.0;
+    bool is_rising = true;
+};
+/// The latest time in `within` at which it does, between two samples by interpolation; none: it does not.
+std::optional<double> trigger_time(const Trace& trace, std::size_t column, const Trigger& trigger, Range within);
+
+/// Of the values in a time range; all 0 without values. Values that are not finite are left out.
+struct Level {
+    double low = 0.0, high = 0.0, mean = 0.0, rms = 0.0;
+    std::size_t count = 0;
+
+    double peak() const;  ///< largest absolute value
+};
+Level level_of(const Trace& trace, std::size_t column, Range time);
+
+/// How many values lie in each of equal parts of their range. The largest value belongs to the last part.
+struct Histogram {
+    Range values;
+    std::vector<std::size_t> counts;
+    std::size_t total = 0;
+};
+Histogram histogram_of(const Trace& trace, std::size_t column, Range time, int parts);
+
+/// The value of one column over that of another, at each time of `y`; that of `x` is its last one at that time. At most
+/// `most` points, evenly left out.
+std::vector<Point> pairs_of(const Trace& x, std::size_t x_column, const Trace& y, std::size_t y_column, Range time,
+                            std::size_t most);
+
+/// Power densities over time and frequency, dB; rows from the oldest time, columns from the lowest frequency, which
+/// rise by equal ratios. A cell holds the largest bin in it, or the nearest one.
+struct Waterfall {
+    Range time, hz;
+    int rows = 0, columns = 0;
+    std::vector<double> cells;
+
+    double at(int row, int column) const { return cells[static_cast<std::size_t>(row * columns + column)]; }
+};
+/// Rows become fewer where one would have less than 64 samples. `factor` scales the values first.
+Waterfall waterfall_of(const Trace& trace, std::size_t column, double rate, Range time, int rows, int columns,
+                       double factor = 1.0);
+
+}  // namespace tactus::view
