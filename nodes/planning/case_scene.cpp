@@ -5,6 +5,7 @@
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/body_parts.hpp"
 #include "nodes/planning/step_record.hpp"
 
@@ -52,6 +53,8 @@ struct CaseScene {
     Text file{"case.plan.json", "name of the plan file with the steps of the run, in the run folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
                 "a settled body is free again when the hand moves it farther than this from where it settled"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::scene, .value = "scene"}}; }
 
     void prepare(const Setup& setup) {
         if (plan->bones.size() > tactus::coupling::Scene::most_objects)
@@ -337,5 +340,6 @@ private:
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,
             overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose)
+TACTUS_VISUALS(CaseScene)
 
 }  // namespace tactus::nodes

@@ -36,6 +36,7 @@ SceneModel::~SceneModel() {
     for (const auto& [path, bone] : still_bones_)
         if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
     for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
+    for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     renderer_.meshes().remove(notes_mesh_);
 }
@@ -58,6 +59,12 @@ void SceneModel::follow(SceneOutline outline) {
         const bool gone = std::ranges::find(outline_.still_bones, bone.first, &SceneOutline::StillBone::path) ==
                           outline_.still_bones.end();
         if (gone && bone.second.mesh >= 0) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(tasks_, [&](const auto& task) {
+        const bool gone =
+            std::ranges::find(outline_.tasks, task.first, &SceneOutline::Task::path) == outline_.tasks.end();
+        if (gone) remove(task.second);
         return gone;
     });
     std::erase_if(bodies_, [&](const auto& body) {
@@ -134,6 +141,8 @@ display::Picture& SceneModel::update() {
     show_blades();
     show_balls();
     show_gripper();
+    show_guides();
+    show_tasks();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);
     // They rarely change.
@@ -180,7 +189,7 @@ void SceneModel::show_bones() {
 }
 
 void SceneModel::show_still_bones() {
-    for (const auto& [name, path] : outline_.still_bones) {
+    for (const auto& [name, path, at] : outline_.still_bones) {
         auto known = still_bones_.find(path);
         if (known == still_bones_.end()) {
             StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
@@ -204,7 +213,7 @@ void SceneModel::show_still_bones() {
             continue;
         }
         if (!is_part_shown(name, still_colour)) continue;
-        show(known->second.mesh, {}, known->second.bounds);
+        show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }

@@ -84,6 +84,21 @@ private:
     void show_bodies();
     void show_targets();
     bool is_part_shown(const std::string& name, const Vec3& colour);
+    struct TaskMesh {
+        struct Spared {
+            std::string name;
+            display::MeshPool::Mesh mesh = -1;
+            display::Bounds bounds;
+        };
+        display::MeshPool::Mesh cut = -1;
+        display::Bounds cut_bounds;
+        std::vector<Spared> spared;
+        std::string problem;  ///< why it is missing
+    };
+    void show_guides();
+    void show_tasks();
+    TaskMesh make_task(const std::string& path);
+    void remove(const TaskMesh& task);
     void show_blades();
     void show_balls();
     void show_gripper();
@@ -104,6 +119,7 @@ private:
         std::string problem;  ///< why it is missing
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
+    std::map<std::string, TaskMesh> tasks_;  // by path
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
@@ -118,6 +134,7 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_guide_shown_ = true;  // of the node whose guides are being drawn
 };
 
 }  // namespace tactus::picture
