@@ -30,7 +30,7 @@ const std::vector<std::string> commands{
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
     "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
-    "display",   "offset",     "screens", "shut"};
+    "display",   "offset",     "screens", "shut",       "layout"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -249,7 +249,11 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
     else if (is("say")) bench.tell(word(line, 1));
-    else if (is("shut")) window.close();
+    else if (is("layout")) {
+        const auto layout = layout_of_name(word(line, 1));
+        if (!layout) throw Error(fmt::format("no layout '{}'", word(line, 1)));
+        desk.layout = *layout;
+    } else if (is("shut")) window.close();
     else if (is("open")) {
         if (open) open(word(line, 1));
     } else closes_ = true;
