@@ -24,7 +24,9 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
       nodes_(bench),
       scopes_(bench),
       scene_(bench),
-      calibration_(bench, scene_) {
+      calibration_(bench, scene_),
+      plan_(bench, scene_),
+      train_(bench) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
 }
 
@@ -122,6 +124,7 @@ void Desk::draw() {
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
+    plan_.case_run().tend(take_ ? nullptr : bench_.observer());
     arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     for (std::size_t c = 0; c < columns_.size(); ++c) {

@@ -5,11 +5,13 @@
 #include "tools/view/frame/layout.hpp"
 #include "tools/view/patch/node_panel.hpp"
 #include "tools/view/patch/patch_panel.hpp"
+#include "tools/view/plan/plan_panel.hpp"
 #include "tools/view/questions.hpp"
 #include "tools/view/scene/calibration_panel.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/signal/scopes.hpp"
 #include "tools/view/take_bench.hpp"
+#include "tools/view/train/train_panel.hpp"
 #include "tools/view/window.hpp"
 #include "tools/view/workbench.hpp"
 
@@ -57,6 +59,9 @@ private:
     void draw_scopes(double height);
     void draw_scene(double height);
     void draw_node(double height);
+    void draw_tree(double height);
+    void draw_steps(double height);
+    void draw_task(double height);
     void show_messages(double height);
     void ask_farewell();
     void shortcuts();
@@ -72,6 +77,8 @@ private:
     Scopes scopes_;
     ScenePanel scene_;
     CalibrationPanel calibration_;
+    PlanPanel plan_;
+    TrainPanel train_;
     std::set<std::string> looked_at_;
     std::vector<LayoutColumn> columns_;
     std::vector<std::vector<LayoutColumn>> moved_;  ///< columns of other layouts and panels, for when they return

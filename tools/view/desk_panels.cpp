@@ -60,10 +60,10 @@ PanelRoom Desk::room_of(Panel panel) {
         case Panel::node: return PanelRoom::full;
         case Panel::scopes: return scopes_.list().empty() ? PanelRoom::line : PanelRoom::full;
         case Panel::scene: return scene_.is_empty() ? PanelRoom::none : PanelRoom::full;
-        case Panel::tree:
-        case Panel::slices:
-        case Panel::steps:
-        case Panel::task: return PanelRoom::none;
+        case Panel::tree: return scene_.is_empty() ? PanelRoom::none : PanelRoom::full;
+        case Panel::steps: return plan_.case_run().is_there() && !take_ ? PanelRoom::full : PanelRoom::none;
+        case Panel::task: return take_ ? PanelRoom::none : PanelRoom::full;
+        case Panel::slices: return PanelRoom::none;
     }
     return PanelRoom::none;
 }
@@ -111,10 +111,10 @@ void Desk::draw_panel(Panel panel, double height) {
         case Panel::scopes: return draw_scopes(height);
         case Panel::scene: return draw_scene(height);
         case Panel::node: return draw_node(height);
-        case Panel::tree:
-        case Panel::slices:
-        case Panel::steps:
-        case Panel::task: return;
+        case Panel::tree: return draw_tree(height);
+        case Panel::steps: return draw_steps(height);
+        case Panel::task: return draw_task(height);
+        case Panel::slices: return;
     }
 }
 
@@ -137,6 +137,24 @@ void Desk::draw_scene(double height) {
     scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
 }
 
+void Desk::draw_tree(double height) {
+    const double s = fonts_.scale;
+    const PanelFrame frame("tree", height, {8.0 * s, 6.0 * s}, {6.0 * s, 4.0 * s}, true);
+    scene_.draw_tree();
+}
+
+void Desk::draw_steps(double height) {
+    const double s = fonts_.scale;
+    const PanelFrame frame("plan steps", height, {8.0 * s, 6.0 * s}, {6.0 * s, 5.0 * s}, true);
+    plan_.draw(fonts_);
+}
+
+void Desk::draw_task(double height) {
+    const double s = fonts_.scale;
+    const PanelFrame frame("task", height, {10.0 * s, 8.0 * s}, {8.0 * s, 8.0 * s}, true);
+    train_.draw(bench_.observer(), fonts_);
+}
+
 void Desk::draw_node(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("node", height, {8.0 * s, 6.0 * s}, {8.0 * s, 5.0 * s}, true);
@@ -152,6 +170,11 @@ void Desk::draw_node(double height) {
     }
     if (!scene_.is_empty() && tab("Scene", 0)) {
         scene_.draw_tree();
+        ImGui::EndTabItem();
+    }
+    // In the layout 'plan' the steps have a panel of their own.
+    if (plan_.case_run().is_there() && !take_ && !shows(columns_, Panel::steps) && tab("Plan", 0)) {
+        plan_.draw(fonts_);
         ImGui::EndTabItem();
     }
     const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;

@@ -74,6 +74,7 @@ void SceneModel::follow(SceneOutline outline) {
     });
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
+    take_names();
     is_fitting_ = true;
 }
 
@@ -127,6 +128,7 @@ display::Picture& SceneModel::update() {
     picture_.points.clear();
     picture_.bounds = {};
     parts_.clear();
+    part_of_mesh_.clear();
     legend_ = {};
     legend_.title = outline_.title;
     notes_.vertices.clear();
@@ -160,6 +162,20 @@ void SceneModel::show_part(const std::string& name, bool wanted) {
     else hidden_.insert(name);
 }
 
+void SceneModel::choose_part(const std::string& name, bool adds) {
+    const bool was_only = chosen_.size() == 1 && chosen_.front() == name;
+    const auto known = std::ranges::find(chosen_, name);
+    if (adds && known != chosen_.end()) return static_cast<void>(chosen_.erase(known));
+    if (!adds) chosen_.clear();
+    if (!name.empty() && !was_only) chosen_.push_back(name);
+}
+
+std::string SceneModel::part_of(std::size_t index) const {
+    for (const auto& [mesh, name] : part_of_mesh_)
+        if (mesh == index) return name;
+    return {};
+}
+
 bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
     parts_.push_back({name, colour, !hidden_.contains(name)});
     return parts_.back().is_shown;
@@ -183,6 +199,7 @@ void SceneModel::show_bones() {
         }
         bone.update = seen->update;
         if (!is_part_shown(node_of(port), still_colour)) continue;
+        part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
@@ -213,6 +230,7 @@ void SceneModel::show_still_bones() {
             continue;
         }
         if (!is_part_shown(name, still_colour)) continue;
+        part_of_mesh_.emplace_back(picture_.meshes.size(), name);
         show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
@@ -227,8 +245,8 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
         return;
     }
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
-    legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
     // A force of 10 N is drawn half as long as the scene.
+    legend_.entries.push_back({fmt::format("{}: {:.1f} N (10 N: {:.3g} mm)", port, size, 1e3 * reach), force_colour});
     if (size > 0.02) display::add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 

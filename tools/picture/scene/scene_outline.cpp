@@ -79,7 +79,7 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
     switch (v.kind) {
         case VisualKind::bone: outline.bones.push_back({v.value}); break;
         case VisualKind::scene: {
-            SceneOutline::Bodies bodies{v.value, v.slots};
+            SceneOutline::Bodies bodies{v.value, v.slots, path_of(view.plan, view.asset(v.asset))};
             while (!bodies.bodies.empty() && bodies.bodies.back().empty()) bodies.bodies.pop_back();
             outline.scenes.push_back(std::move(bodies));
             break;

@@ -28,6 +28,7 @@ struct SceneOutline {
     struct Bodies {
         std::string port;
         std::vector<std::string> bodies;
+        std::string plan;  ///< file of the plan that names them; empty: none
     };
     /// A held body.
     struct Held {
