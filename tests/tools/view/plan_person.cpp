@@ -57,7 +57,7 @@ struct Eyes {
     }
     /// Of the held body: its middle, and its rotation since the scan.
     std::optional<Pose> held() const {
-        std::ifstream file(folder / "out/fragment.csv", std::ios::ate);
+        std::ifstream file(folder / "out/fragment.csv.part", std::ios::ate);
         const auto size = static_cast<std::streamoff>(file.tellg());
         file.seekg(std::max<std::streamoff>(0, size - 400));
         std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -136,6 +136,7 @@ public:
         const auto seen = camera_.projection(width() / height(), bounds_of(point)).seen(point);
         const double x = scene_.left + 0.5 * (seen->x + 1.0) * width(),
                      y = scene_.top + 0.5 * (1.0 - seen->y) * height();
+        UNSCOPED_INFO("reaches at " << x << ", " << y);
         person_.move(x, y);
         Person::wait(0.3);
         for (int i = 0; i < 2; ++i) {

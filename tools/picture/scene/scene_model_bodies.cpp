@@ -32,10 +32,11 @@ void SceneModel::take_names() {
         std::vector<NamedBody>& named = named_[scene.plan];
         try {
             const cases::CasePlan plan = cases::load_case_plan(scene.plan);
-            // A plan that gives all the same colour says nothing about them.
-            const bool is_coloured = std::ranges::any_of(plan.fragments, [&](const cases::PlanFragment& fragment) {
-                return fragment.colour != plan.fragments.front().colour;
-            });
+            // A plan that gives several the same colour says too little about them.
+            bool is_coloured = true;
+            for (std::size_t a = 0; a < plan.fragments.size(); ++a)
+                for (std::size_t b = 0; b < a; ++b)
+                    is_coloured = is_coloured && plan.fragments[a].colour != plan.fragments[b].colour;
             for (const cases::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
         } catch (const Error&) {
