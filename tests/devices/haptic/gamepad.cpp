@@ -28,9 +28,9 @@ struct Rig {
     std::unique_ptr<HapticDevice> device;
 
     Rig() {
-        char name[] = "/tmp/tactus-pad-XXXXXX";
-        REQUIRE(::mkdtemp(name));
-        folder = name;
+        char made[] = "/tmp/tactus-pad-XXXXXX";
+        REQUIRE(::mkdtemp(made));
+        folder = made;
         const std::string path = (folder / "pad").string();
         REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
         end = ::open(path.c_str(), O_RDWR | O_NONBLOCK);

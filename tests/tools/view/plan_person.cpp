@@ -242,8 +242,10 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
                   300);
     });
     REQUIRE(person.sees_window("Planning", 30.0));
-    Person::wait(4.0);
     const Eyes eyes{folder.path};
+    // Not before the first picture of that layout, and a run that ticks.
+    for (int i = 0; i < 300 && !eyes.spots().contains("grasp"); ++i) Person::wait(0.2);
+    Person::wait(3.0);
     Planner planner(person, eyes);
     planner.put("fragment_07", {0.04, -0.007, 0.0});
     planner.put("fragment_02", {0.0, -0.007, -0.04});
