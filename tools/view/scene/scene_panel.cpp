@@ -292,6 +292,9 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         if (is_clicked && is_siting) move_site(clicked);
         else if (is_clicked && is_measuring) measure(clicked);
         else if (is_clicked) choose(clicked);
+        // A double click takes four pictures, and slow ones must not make two single clicks of it.
+        ImGuiIO& io = ImGui::GetIO();
+        io.MouseDoubleClickTime = std::clamp(6.0f * io.DeltaTime, 0.3f, 2.0f);
         if (hand_.has_mouse() && ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
             lead_hand(clicked);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);
