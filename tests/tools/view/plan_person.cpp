@@ -117,6 +117,12 @@ void interrupt(const fs::path& folder) {
     }
 }
 
+/// Waits until something is to be seen, for half a minute at most.
+template <class Condition>
+void sees(Condition&& is_there) {
+    for (int i = 0; i < 150 && !is_there(); ++i) Person::wait(0.2);
+}
+
 class Planner {
 public:
     Planner(Person& person, Eyes eyes) : person_(person), eyes_(std::move(eyes)), scene_(eyes_.spot("scene picture")) {
@@ -268,7 +274,7 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
     planner.press("part fragment_02");
     person.key("Control_L", false);
     planner.press("group");
-    Person::wait(2.0);
+    sees([&] { return eyes.plan().steps.size() >= placed + 2; });
     const cases::CasePlan grouped = eyes.plan();
     REQUIRE(grouped.steps.size() == placed + 2);
     const cases::PlanState together = cases::state_of(grouped);
@@ -277,13 +283,13 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
 
     planner.press("undo step");
     planner.press("undo step");
-    Person::wait(2.0);
+    sees([&] { return eyes.plan().place().head == static_cast<int>(placed) - 1; });
     const cases::PlanState apart = cases::state_of(eyes.plan());
     CHECK_FALSE(apart.arrangement.move_together(0, 6));
     CHECK_FALSE(apart.arrangement.move_together(0, 1));
     CHECK(eyes.plan().steps.size() == placed + 2);
     planner.press("export");
-    Person::wait(6.0);
+    sees([&] { return fs::exists(folder.path / "out/export-1/fragment_12.plan.mrk.json"); });
     CHECK(fs::exists(folder.path / "out/export-1/fragment_07.plan.mrk.json"));
     interrupt(folder.path);
     done.wait();
