@@ -166,7 +166,7 @@ public:
     }
     /// Carries the held fragment until its middle and its rotation are nearly these.
     void carry(const Vec3& to, const Quat& rotation, double within_m, double within_rad) {
-        for (int i = 0; i < 14; ++i) {
+        for (int i = 0; i < 24; ++i) {
             const auto now = eyes_.held();
             REQUIRE(now);
             const Vec3 turn = rotation_between(now->orientation, rotation), way = to - now->position;
@@ -205,7 +205,7 @@ public:
         INFO(name << " " << reached_);
         carry(belongs.middle + Vec3(0.0, 0.025, 0.0), {1.0, 0.0, 0.0, 0.0}, 8e-3, 0.2);
         carry(place + aside, belongs.pose.orientation, 6e-3, 0.1);
-        carry(place + 0.12 * aside, belongs.pose.orientation, 6e-3, 0.1);
+        carry(place + 0.12 * aside, belongs.pose.orientation, 7e-3, 0.12);
         press("snap");
         Person::wait(3.0);
         press("settle");
@@ -260,7 +260,7 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
     REQUIRE(person.sees_window("Planning", 30.0));
     const Eyes eyes{folder.path};
     // Not before the first picture of that layout, and a run that ticks.
-    for (int i = 0; i < 300 && !eyes.spots().contains("grasp"); ++i) Person::wait(0.2);
+    for (int i = 0; i < 300 && !eyes.spots().contains("trigger (T)"); ++i) Person::wait(0.2);
     Person::wait(3.0);
     Planner planner(person, eyes);
     planner.put("fragment_07", {0.04, -0.007, 0.0});
