@@ -240,7 +240,7 @@ private:
 }  // namespace
 
 TEST_CASE("a person with a mouse puts three fragments together, groups them, undoes two steps and exports",
-          "[display]") {
+          "[display][live]") {
     NEEDS_DISPLAY(display)
     Person person(display);
     if (!person.is_there()) return skip("libXtst is not installed (apt install libxtst6)");
