@@ -6,6 +6,7 @@
 #include "devices/gripper/serial_gripper.hpp"
 #include "devices/gripper/simulated_gripper.hpp"
 #include "devices/haply/inverse3.hpp"
+#include "devices/haptic/gamepad.hpp"
 #include "devices/haptic/mouse.hpp"
 #include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
@@ -34,6 +35,8 @@ std::vector<HapticDriver>& drivers() {
          .summary = "a hand at the window of a run (--view): mouse and keys move it, and it yields to force",
          .open = open_mouse,
          .needs_window = true},
+        {"gamepad", "a hand that the sticks of a gamepad move, and that yields to force", open_gamepad, true,
+         describe_gamepad},
         {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
          gripper::open_walking_gripper},
         {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",

@@ -79,4 +79,11 @@ Path::Place Path::nearest(const Vec3& p) const noexcept {
     return best;
 }
 
+std::vector<Vec3> Path::corners() const {
+    std::vector<Vec3> all;
+    for (const Piece& piece : pieces_) all.push_back(piece.from);
+    if (!pieces_.empty()) all.push_back(pieces_.back().from + pieces_.back().length * pieces_.back().direction);
+    return all;
+}
+
 }  // namespace tactus::guide

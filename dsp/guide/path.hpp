@@ -29,6 +29,8 @@ public:
     Place nearest(const Vec3& p) const noexcept;
 
     double length() const noexcept { return length_; }  ///< m
+    /// The ends of the straight pieces, from the first point to the last.
+    std::vector<Vec3> corners() const;
 
 private:
     struct Piece {

@@ -168,7 +168,8 @@ void ObservedPort::encode(const std::byte* value, std::byte* into) const noexcep
     SeenScene seen;
     seen.count = scene.count;
     for (std::size_t i = 0; i < scene.count; ++i)
-        seen.objects[i] = {scene.objects[i].body.content_hash, scene.objects[i].pose};
+        seen.objects[i] = {scene.objects[i].body.content_hash, scene.objects[i].pose, scene.objects[i].unit,
+                           scene.objects[i].hangs_on, scene.objects[i].stands ? 1 : 0};
     std::memcpy(into, &seen, sizeof seen);
 }
 

@@ -36,6 +36,9 @@ struct SeenScene {
     struct Object {
         std::uint64_t body = 0;  ///< content_hash of the Body
         Pose pose;
+        int unit = -1;  ///< objects of one unit move together; -1: none
+        int hangs_on = -1;  ///< the object that it was fitted to; -1: none
+        std::int64_t stands = 0;  ///< 1: placed: locked, or fitted to another
     };
     std::uint64_t count = 0;
     std::array<Object, coupling::Scene::most_objects> objects;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <cmath>
 
@@ -24,6 +25,13 @@ struct GripperInput {
     Text device{"", "name of an entry of [devices]; empty: the only one"};
     Param stale_after{structural, "25 ms", "0 ms", "10 s",
                       "a sensor without a new sample for this long counts as lost"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::fingers,
+                 .value = "finger_position",
+                 .place = "thumb_position",
+                 .force = "finger_force"}};
+    }
 
     void prepare(const Setup& setup) {
         port_ = &setup.host->device(device.value, DeviceUse::read, device.where);
@@ -69,5 +77,6 @@ private:
 
 TACTUS_NODE(GripperInput, finger_position, finger_force, thumb_position, thumb_force, slips, thumb_slips, limited,
             valid, fault, max_speed, least_speed, device, stale_after)
+TACTUS_VISUALS(GripperInput)
 
 }  // namespace tactus::nodes

@@ -2,6 +2,7 @@
 #include "dsp/simulate/gripper/held_weight.hpp"
 
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,8 @@ struct HeldWeight {
     Param stiffness{internal, "0.6 N/mm", "0 N/mm", "5 N/mm", "of the grip"};
     Param damping{"8 N s/m", "0 N s/m", "50 N s/m", "of the grip"};
     Param threshold{"0.3 N", "0 N", "100 N", "the fingers grip above it"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::weight, .value = "height", .hand = "hand"}}; }
 
     void prepare(const Setup&) {
         wrench = Wrench{};
@@ -67,5 +70,6 @@ private:
 
 TACTUS_NODE(HeldWeight, hand, hand_twist, grip_force, wrench, height, held, slides, mass, friction, stiffness, damping,
             threshold)
+TACTUS_VISUALS(HeldWeight)
 
 }  // namespace tactus::nodes

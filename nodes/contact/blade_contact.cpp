@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/blade.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -22,6 +23,13 @@ struct BladeContact {
     Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
     Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::blade,
+                 .pose = "pose",
+                 .force = "wrench",
+                 .size = {length.value, height.value, thickness.value}}};
+    }
 
     void prepare(const Setup&) { points_.emplace(contact::BladeShape{length, height, thickness}); }
 
@@ -52,5 +60,6 @@ private:
 };
 
 TACTUS_NODE(BladeContact, pose, bone, wrench, load, penetration, in_contact, stiffness, length, height, thickness)
+TACTUS_VISUALS(BladeContact)
 
 }  // namespace tactus::nodes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/burr.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/tool_report.hpp"
 
 #include <algorithm>
@@ -28,6 +29,10 @@ struct Burr {
     Param diameter{structural, "4 mm", "1 mm", "8 mm", "of the ball; also the 'kerf' of carve"};
     Param flutes{structural, "8", "1", "32", "cutting edges; one bears at a time"};
     Param turn_rate{"1000 Hz", "1 Hz", "2000 Hz", "turns per second"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::ball, .pose = "pose", .force = "wrench", .radius = 0.5 * diameter}};
+    }
 
     void prepare(const Setup&) {
         burr_.emplace(saw::BurrShape{0.5 * diameter, flutes}, stiffness);
@@ -63,5 +68,6 @@ private:
 
 TACTUS_NODE(Burr, pose, bone, running, wrench, load, flute_force, feed, penetration, in_contact, front, stiffness,
             diameter, flutes, turn_rate)
+TACTUS_VISUALS(Burr)
 
 }  // namespace tactus::nodes

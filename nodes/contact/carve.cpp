@@ -5,6 +5,7 @@
 #include "dsp/volume/components.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/site_parameters.hpp"
 
 #include <fmt/format.h>
@@ -48,6 +49,8 @@ struct Carve {
     Vector approach{"0, 0, 0", approach_about};
     Param bricks_per_tick{structural, "512", "16", "4096",
                           "maximum number of bricks of 8 x 8 x 8 voxels that one tick may change"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::bone, .value = "bone"}}; }
 
     void prepare(const Setup& setup) {
         bone_ = source.shared();
@@ -180,5 +183,6 @@ private:
 
 TACTUS_NODE(Carve, path, front, load, running, strokes, bone, removed, source, speed, reference_force, reference_rate,
             reference_density, force_exponent, length, kerf, stroke, find_site, site, approach, bricks_per_tick)
+TACTUS_VISUALS(Carve)
 
 }  // namespace tactus::nodes

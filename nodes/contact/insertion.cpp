@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -21,6 +22,14 @@ struct Insertion {
     Param goal{"20 mm", "0 mm", "1 m", "depth that counts as inserted"};
     Param tolerance{"0.1 mm", "0 mm", "10 mm", "accepted shortfall of the depth"};
     Param guided{"2 mm", "0 mm", "1 m", "depth from which the hole guides the peg; errors are measured from there on"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::line,
+                 .force = "wrench",
+                 .frame = "hole",
+                 .direction = {0.0, 0.0, -1.0},
+                 .length = goal}};
+    }
 
     void process(const Tick&) noexcept {
         const Pose tip = hole.connected ? hole.get().inverse() * peg.get() : peg.get();
@@ -50,5 +59,6 @@ private:
 };
 
 TACTUS_NODE(Insertion, peg, hole, wrench, depth, inserted, goal, tolerance, guided)
+TACTUS_VISUALS(Insertion)
 
 }  // namespace tactus::nodes

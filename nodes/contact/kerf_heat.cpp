@@ -4,6 +4,7 @@
 #include "dsp/saw/heat_partition.hpp"
 
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -47,6 +48,10 @@ struct KerfHeat {
     Param transfer{structural, "10 kW/m^2/K", "0 W/m^2/K", "100 kW/m^2/K",
                    "heat transfer of the water that fills the slot between blade and wall"};
     Param kerf{structural, "1 mm", "0 mm", "8 mm", "width of the cut: the bone in it leaves with its heat"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::mark, .value = "rise", .pose = "pose", .radius = 2e-3, .length = limit}};
+    }
 
     void prepare(const Setup&) {
         saw::KerfMaterial material;
@@ -132,5 +137,6 @@ private:
 
 TACTUS_NODE(KerfHeat, pose, load, cutting, teeth, feed, running, strokes, irrigated, rise, peak, hot_time, hot_reach,
             stroke_rate, stroke, thrust_ratio, contact, irrigation, limit, share, coolant, transfer, kerf)
+TACTUS_VISUALS(KerfHeat)
 
 }  // namespace tactus::nodes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/saw_blade.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/tool_report.hpp"
 
 #include <fmt/format.h>
@@ -46,6 +47,13 @@ struct SawBlade {
     Param kerf{structural, "1 mm", "0.1 mm", "5 mm", "width of the cut, that of the set teeth; as in carve"};
     Param stroke{structural, "3 mm", "1.5 mm", "8 mm", "of the teeth, peak to peak"};
     Param tooth_pitch{structural, "1.411 mm", "0.5 mm", "4 mm", "from tooth to tooth: 18 per inch"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::blade,
+                 .pose = "pose",
+                 .force = "wrench",
+                 .size = {length.value, height.value, thickness.value}}};
+    }
 
     void prepare(const Setup& setup) {
         saw::SawShape shape;
@@ -111,5 +119,6 @@ private:
 TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, passing, penetration,
             in_contact, front, stiffness, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke,
             tooth_pitch)
+TACTUS_VISUALS(SawBlade)
 
 }  // namespace tactus::nodes

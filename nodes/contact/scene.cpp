@@ -3,6 +3,7 @@
 
 #include "dsp/coupling/placement.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <cmath>
 
@@ -34,6 +35,10 @@ struct Scene {
     Vector b_turn{"0 deg, 0 deg, 0 deg", "rotation of body b about its own origin: about x first, then y, then z"};
     Vector c_turn{"0 deg, 0 deg, 0 deg", "rotation of body c about its own origin: about x first, then y, then z"};
     Vector d_turn{"0 deg, 0 deg, 0 deg", "rotation of body d about its own origin: about x first, then y, then z"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::scene, .value = "scene", .slots = {"a", "b", "c", "d"}}};
+    }
 
     void process(const Tick&) noexcept {
         tactus::coupling::Scene now;
@@ -82,5 +87,6 @@ private:
 
 TACTUS_NODE(Scene, a, b, c, d, a_pose, b_pose, c_pose, d_pose, moved, which, scene, middle, a_at, b_at, c_at, d_at,
             a_turn, b_turn, c_turn, d_turn)
+TACTUS_VISUALS(Scene)
 
 }  // namespace tactus::nodes

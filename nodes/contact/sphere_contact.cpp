@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <algorithm>
 
@@ -18,6 +19,11 @@ struct SphereContact {
     Param tool_radius{"5 mm", "0 mm", "1 m", "of the ball on the tool"};
     Param stiffness{"0.8 N/mm", "0 N/mm", "20 N/mm", "force per depth"};
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::still_ball, .at = centre, .radius = radius},
+                {.kind = VisualKind::ball, .pose = "pose", .force = "wrench", .radius = tool_radius}};
+    }
+
     void process(const Tick&) noexcept {
         const Vec3 from_centre = pose->position - centre.value;
         const double distance = glm::length(from_centre);
@@ -31,5 +37,6 @@ struct SphereContact {
 };
 
 TACTUS_NODE(SphereContact, pose, wrench, penetration, in_contact, centre, radius, tool_radius, stiffness)
+TACTUS_VISUALS(SphereContact)
 
 }  // namespace tactus::nodes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/held_contact.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 
 #include <algorithm>
@@ -23,6 +24,15 @@ struct VoxmapContact {
     Param held{discrete, "0", "-1", "15", "place of the body in the scene"};
     ContactParameters contact;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::held,
+                 .scene = "scene",
+                 .place = "held",
+                 .pose = "pose",
+                 .force = "wrench",
+                 .held = held}};
+    }
+
     void prepare(const Setup&) { contact_.emplace(contact.make()); }
 
     void process(const Tick&) noexcept {
@@ -44,5 +54,6 @@ private:
 };
 
 TACTUS_NODE(VoxmapContact, pose, scene, wrench, stiffness, penetration, in_contact, held, contact)
+TACTUS_VISUALS(VoxmapContact)
 
 }  // namespace tactus::nodes

@@ -3,6 +3,7 @@
 
 #include "dsp/core/rotation.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 
@@ -44,6 +45,18 @@ struct DynamicCoupling {
                "voxel of the "
                "finest field that is touched"};
     ContactParameters contact;
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::held,
+                 .scene = "scene",
+                 .place = "held",
+                 .pose = "pose",
+                 .hand = "device",
+                 .grip = "grip",
+                 .force = "wrench",
+                 .at = grip_at,
+                 .held = held}};
+    }
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());
@@ -111,5 +124,6 @@ private:
 TACTUS_NODE(DynamicCoupling, device, scene, device_twist, grip, holding, strength, wrench, pose, place, penetration,
             in_contact, held, grip_at, mass, inertia, stiffness, damping, angular_stiffness, angular_damping, max_force,
             max_torque, step, contact)
+TACTUS_VISUALS(DynamicCoupling)
 
 }  // namespace tactus::nodes

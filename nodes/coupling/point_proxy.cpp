@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/coupling/proxy_parameters.hpp"
 
 namespace tactus::nodes {
@@ -16,6 +17,10 @@ struct PointProxy {
     Out<bool> in_contact{"the proxy touches a body"};
     ProxyParameters parameters;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::ball, .pose = "proxy", .hand = "device", .force = "wrench", .radius = 0.5e-3}};
+    }
+
     void process(const Tick&) noexcept {
         const coupling::ProxyState& now = parameters.update(solver_, 0.0, device, scene);
         wrench = {now.force, Vec3(0.0)};
@@ -28,5 +33,6 @@ private:
 };
 
 TACTUS_NODE(PointProxy, device, scene, wrench, proxy, in_contact, parameters)
+TACTUS_VISUALS(PointProxy)
 
 }  // namespace tactus::nodes

@@ -3,6 +3,7 @@
 #include "dsp/coupling/guidance.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 #include "nodes/coupling/lead.hpp"
@@ -47,6 +48,19 @@ struct QuasiStaticCoupling {
     LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::held,
+                 .scene = "scene",
+                 .place = "held",
+                 .pose = "pose",
+                 .hand = "device",
+                 .grip = "grip",
+                 .force = "wrench",
+                 .at = grip_at,
+                 .held = held},
+                {.kind = VisualKind::led, .pose = "pose", .target = "target", .when = "guided"}};
+    }
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());
@@ -143,5 +157,6 @@ private:
 TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, target_of, settle,
             wrench, pose, place, penetration, residual, in_contact, held, grip_at, guide_stiffness,
             guide_angular_stiffness, guide_force, guide_torque, led, solver, contact)
+TACTUS_VISUALS(QuasiStaticCoupling)
 
 }  // namespace tactus::nodes

@@ -5,6 +5,7 @@
 #include "dsp/fit/held_fit.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 #include "nodes/coupling/lead.hpp"
@@ -49,6 +50,17 @@ struct SnapToFit {
     LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::held,
+                 .scene = "scene",
+                 .place = "held",
+                 .pose = "pose",
+                 .hand = "device",
+                 .grip = "grip",
+                 .force = "wrench",
+                 .held = held}};
+    }
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());
@@ -186,5 +198,6 @@ private:
 
 TACTUS_NODE(SnapToFit, device, scene, grip, holding, strength, engaged, settle, wrench, pose, place, score, pull,
             penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, led, solver, contact)
+TACTUS_VISUALS(SnapToFit)
 
 }  // namespace tactus::nodes

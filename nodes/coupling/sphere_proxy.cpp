@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/coupling/proxy_parameters.hpp"
 
 namespace tactus::nodes {
@@ -17,6 +18,10 @@ struct SphereProxy {
     Param radius{"2 mm", "0.01 mm", "100 mm", "of the ball"};
     ProxyParameters parameters;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::ball, .pose = "proxy", .hand = "device", .force = "wrench", .radius = radius}};
+    }
+
     void process(const Tick&) noexcept {
         const coupling::ProxyState& now = parameters.update(solver_, radius, device, scene);
         wrench = {now.force, Vec3(0.0)};
@@ -29,5 +34,6 @@ private:
 };
 
 TACTUS_NODE(SphereProxy, device, scene, wrench, proxy, in_contact, radius, parameters)
+TACTUS_VISUALS(SphereProxy)
 
 }  // namespace tactus::nodes

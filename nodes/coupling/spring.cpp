@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/rotation.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 namespace tactus::nodes {
 
@@ -19,6 +20,10 @@ struct Spring {
     Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle between device and object"};
     Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per relative angular velocity"};
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::spring, .pose = "object", .hand = "device", .force = "wrench"}};
+    }
+
     void process(const Tick&) noexcept {
         const Vec3 velocity = object_twist->linear - device_twist->linear;
         const Vec3 spin = object_twist->angular - device_twist->angular;
@@ -30,5 +35,6 @@ struct Spring {
 
 TACTUS_NODE(Spring, device, object, device_twist, object_twist, wrench, stiffness, damping, angular_stiffness,
             angular_damping)
+TACTUS_VISUALS(Spring)
 
 }  // namespace tactus::nodes

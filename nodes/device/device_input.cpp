@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 namespace tactus::nodes {
 
@@ -15,6 +16,8 @@ struct DeviceInput {
     Out<bool> fourth{"the fourth button is held"};
     Out<bool> valid{"the sample of this tick is valid"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::handle, .pose = "pose"}}; }
 
     void prepare(const Setup& setup) {
         port_ = &setup.host->device(device.value, DeviceUse::read, device.where);
@@ -43,5 +46,6 @@ private:
 };
 
 TACTUS_NODE(DeviceInput, pose, twist, trigger, second, third, fourth, valid, device)
+TACTUS_VISUALS(DeviceInput)
 
 }  // namespace tactus::nodes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/display/camera.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -17,6 +18,8 @@ struct SimulatedHead {
     Vector look_at{"0 mm, 0 mm, 0 mm", "target of the eyes, in the viewer's world"};
     Vector sway{"100 mm, 30 mm, 40 mm", "amplitude along x, y and z"};
     Param frequency{"0.2 Hz", "0 Hz", "5 Hz", "of the sway along x; 1.3 times as fast along y, 0.7 times along z"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::handle, .pose = "pose"}}; }
 
     void prepare(const Setup&) {
         turns_ = 0.0;
@@ -41,5 +44,6 @@ private:
 };
 
 TACTUS_NODE(SimulatedHead, pose, position, look_at, sway, frequency)
+TACTUS_VISUALS(SimulatedHead)
 
 }  // namespace tactus::nodes

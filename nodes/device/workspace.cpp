@@ -2,6 +2,7 @@
 #include "dsp/coupling/placement.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/site_parameters.hpp"
 
 #include <glm/geometric.hpp>
@@ -38,6 +39,11 @@ struct Workspace {
     Vector site{"0 mm, 0 mm, 0 mm", site_about};
     Vector approach{"0, 0, 0", approach_about};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::workspace, .value = "force_scale", .hand = "device", .frame = "frame"},
+                {.kind = VisualKind::handle, .pose = "pose"}};
+    }
 
     void prepare(const Setup& setup) {
         placement_ = {{origin, coupling::rotation_xyz(rotation)}, scale, {grip, coupling::rotation_xyz(grip_rotation)}};
@@ -113,5 +119,6 @@ private:
 
 TACTUS_NODE(Workspace, device, clutch, turn, pose, frame, force_scale, bone, origin, rotation, scale, grip,
             grip_rotation, find_site, site, approach, clearance)
+TACTUS_VISUALS(Workspace)
 
 }  // namespace tactus::nodes

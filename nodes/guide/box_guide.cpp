@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/guide/box.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 namespace tactus::nodes {
@@ -19,6 +20,11 @@ struct BoxGuide {
     Vector size{"100 mm, 100 mm, 100 mm", "along the axes of the frame"};
     Choice keep{{"inside", "outside"}, "where the hand may be"};
     GuideParameters guide;
+
+    std::vector<Visual> visuals() const {
+        return {
+            {.kind = VisualKind::box, .hand = "pose", .force = "wrench", .frame = "frame", .at = centre, .size = size}};
+    }
 
     void prepare(const Setup& setup) {
         if (!(size.value.x > 0.0 && size.value.y > 0.0 && size.value.z > 0.0))
@@ -45,5 +51,6 @@ struct BoxGuide {
 };
 
 TACTUS_NODE(BoxGuide, pose, twist, frame, wrench, distance, centre, size, keep, guide)
+TACTUS_VISUALS(BoxGuide)
 
 }  // namespace tactus::nodes

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 #include <algorithm>
@@ -22,6 +23,18 @@ struct Detents {
     Param spacing{"6 mm", "0.1 mm", "1 m", "from notch to notch"};
     GuideParameters guide;
 
+    std::vector<Visual> visuals() const {
+        std::vector<Visual> all{{.kind = VisualKind::line,
+                                 .hand = "pose",
+                                 .force = "wrench",
+                                 .frame = "frame",
+                                 .at = first.value * unit_of(axis),
+                                 .direction = unit_of(axis)}};
+        for (int n = -5; n <= 5; ++n)
+            all.push_back({.kind = VisualKind::point, .frame = "frame", .at = (first.value + n * spacing.value) * unit_of(axis)});
+        return all;
+    }
+
     void prepare(const Setup& setup) { axis_ = direction_of(setup, axis, "axis"); }
 
     void process(const Tick&) noexcept {
@@ -43,5 +56,6 @@ private:
 };
 
 TACTUS_NODE(Detents, pose, twist, frame, wrench, notch, axis, first, spacing, guide)
+TACTUS_VISUALS(Detents)
 
 }  // namespace tactus::nodes

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/guide/twist_angle.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 #include <algorithm>
@@ -25,6 +26,15 @@ struct Dial {
     Param damping{"1e-3 N m s/rad", "0 N m s/rad", "1 N m s/rad",
                   "torque per angular velocity, where 'twist' is wired"};
     Param max_torque{"0.1 N m", "0 N m", "5 N m", "largest torque of the knob"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::line,
+                 .hand = "pose",
+                 .force = "wrench",
+                 .frame = "frame",
+                 .direction = unit_of(axis),
+                 .length = 50e-3}};
+    }
 
     void prepare(const Setup& setup) { axis_ = direction_of(setup, axis, "axis"); }
 
@@ -53,5 +63,6 @@ private:
 };
 
 TACTUS_NODE(Dial, pose, twist, frame, wrench, angle, notch, axis, notches, stiffness, damping, max_torque)
+TACTUS_VISUALS(Dial)
 
 }  // namespace tactus::nodes

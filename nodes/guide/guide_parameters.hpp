@@ -4,6 +4,7 @@
 
 #include "dsp/guide/guide_law.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <cmath>
 
@@ -52,6 +53,12 @@ inline Vec3 direction_of(const Setup& setup, const Vec3& v, const char* name) {
     if (!(length > 0.0) || !std::isfinite(length))
         setup.fail(std::string("'") + name + "' needs a length other than 0");
     return v / length;
+}
+
+/// The same for what is drawn; z without a length.
+inline Vec3 unit_of(const Vec3& v) noexcept {
+    const double length = std::hypot(v.x, v.y, v.z);
+    return length > 0.0 && std::isfinite(length) ? v / length : Vec3(0.0, 0.0, 1.0);
 }
 
 }  // namespace tactus::nodes

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 namespace tactus::nodes {
@@ -19,6 +20,16 @@ struct LineGuide {
                 "distance at which the pull has faded to nothing, as of a magnet; 0: it never ends"};
     GuideParameters guide;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::line,
+                 .hand = "pose",
+                 .force = "wrench",
+                 .frame = "frame",
+                 .at = point,
+                 .direction = unit_of(direction),
+                 .length = length}};
+    }
+
     void prepare(const Setup& setup) { direction_ = direction_of(setup, direction, "direction"); }
 
     void process(const Tick&) noexcept {
@@ -38,5 +49,6 @@ private:
 };
 
 TACTUS_NODE(LineGuide, pose, twist, frame, wrench, distance, along, point, direction, length, reach, guide)
+TACTUS_VISUALS(LineGuide)
 
 }  // namespace tactus::nodes

@@ -4,6 +4,7 @@
 
 #include "dsp/core/number_list.hpp"
 #include "dsp/core/units.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 namespace tactus::nodes {
@@ -28,18 +29,20 @@ struct PathGuide {
                 "distance at which the pull has faded to nothing, as of a magnet; 0: it never ends"};
     GuideParameters guide;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::path,
+                 .hand = "pose",
+                 .force = "wrench",
+                 .frame = "frame",
+                 .points = path_of().corners()}};
+    }
+
     void prepare(const Setup& setup) {
-        path_ = {};
         pull_.reset();
-        const auto [text, factor] = without_unit(setup);
-        std::vector<Vec3> all;
-        for (const std::vector<double>& row : rows_of_numbers(text, points.where)) {
-            if (row.size() != 3) setup.fail("a point of a path has three coordinates, as in \"0 0 0, 10 0 5 mm\"");
-            all.push_back(factor * Vec3(row[0], row[1], row[2]));
-        }
         try {
-            path_ = guide::Path(all, shape.is("smooth"), closed);
+            path_ = path_of();
         } catch (const Error& error) {
+            if (error.where().line > 0) throw;
             setup.fail(error.message());
         }
     }
@@ -57,19 +60,25 @@ struct PathGuide {
     }
 
 private:
-    /// The text without the unit at its end, and the unit's factor.
-    std::pair<std::string, double> without_unit(const Setup& setup) const {
+    /// The path that the text describes. Throws Error.
+    guide::Path path_of() const {
+        const auto [text, factor] = without_unit();
+        std::vector<Vec3> all;
+        for (const std::vector<double>& row : rows_of_numbers(text, points.where)) {
+            if (row.size() != 3) throw Error("a point of a path has three coordinates, as in \"0 0 0, 10 0 5 mm\"");
+            all.push_back(factor * Vec3(row[0], row[1], row[2]));
+        }
+        return guide::Path(all, shape.is("smooth"), closed);
+    }
+    /// The text without the unit at its end, and the unit's factor. Throws Error.
+    std::pair<std::string, double> without_unit() const {
         const std::string& text = points.value;
         const std::size_t last = text.find_last_of("0123456789.");
-        if (last == std::string::npos) setup.fail("a path needs points, as in \"0 0 0, 10 0 5 mm\"");
-        try {
-            const Unit unit = parse_unit(text.substr(last + 1));
-            if (!(unit.dimension == parse_unit("m").dimension))
-                setup.fail("the points of a path need a length as unit, as in \"0 0 0, 10 0 5 mm\"");
-            return {text.substr(0, last + 1), unit.factor};
-        } catch (const Error& error) {
-            setup.fail(error.message());
-        }
+        if (last == std::string::npos) throw Error("a path needs points, as in \"0 0 0, 10 0 5 mm\"");
+        const Unit unit = parse_unit(text.substr(last + 1));
+        if (!(unit.dimension == parse_unit("m").dimension))
+            throw Error("the points of a path need a length as unit, as in \"0 0 0, 10 0 5 mm\"");
+        return {text.substr(0, last + 1), unit.factor};
     }
 
     guide::Path path_;
@@ -77,5 +86,6 @@ private:
 };
 
 TACTUS_NODE(PathGuide, pose, twist, frame, wrench, distance, along, points, shape, closed, reach, guide)
+TACTUS_VISUALS(PathGuide)
 
 }  // namespace tactus::nodes

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 namespace tactus::nodes {
@@ -19,6 +20,15 @@ struct PlaneGuide {
                 "of kind 'both': distance at which the pull has faded to nothing; 0: it never ends"};
     GuideParameters guide;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::plane,
+                 .hand = "pose",
+                 .force = "wrench",
+                 .frame = "frame",
+                 .at = point,
+                 .direction = unit_of(normal)}};
+    }
+
     void prepare(const Setup& setup) { normal_ = direction_of(setup, normal, "normal"); }
 
     void process(const Tick&) noexcept {
@@ -38,5 +48,6 @@ private:
 };
 
 TACTUS_NODE(PlaneGuide, pose, twist, frame, wrench, distance, point, normal, kind, reach, guide)
+TACTUS_VISUALS(PlaneGuide)
 
 }  // namespace tactus::nodes

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "graph/node/visual.hpp"
 #include "nodes/guide/guide_parameters.hpp"
 
 namespace tactus::nodes {
@@ -16,6 +17,10 @@ struct PointGuide {
                 "distance at which the pull has faded to nothing, as of a magnet; 0: it never ends"};
     GuideParameters guide;
 
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::point, .hand = "pose", .force = "wrench", .frame = "frame", .at = point}};
+    }
+
     void process(const Tick&) noexcept {
         const GuidedHand hand(pose, twist, frame);
         wrench = Wrench{};
@@ -27,5 +32,6 @@ struct PointGuide {
 };
 
 TACTUS_NODE(PointGuide, pose, twist, frame, wrench, distance, point, reach, guide)
+TACTUS_VISUALS(PointGuide)
 
 }  // namespace tactus::nodes

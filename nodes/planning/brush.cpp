@@ -3,6 +3,7 @@
 #include "dsp/fit/surface_brush.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 
 #include <memory>
 #include <string>
@@ -26,6 +27,11 @@ struct Brush {
     Asset<bone::Bone> bone{"the fragment"};
     Param radius{"1.5 mm", "0.1 mm", "50 mm", "of the brush"};
     Flag start_clean{false, "remove the paint of the file at the start"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::asset_bone, .pose = "body", .asset = "bone"},
+                {.kind = VisualKind::ball, .pose = "tool", .radius = radius}};
+    }
 
     void prepare(const Setup& setup) {
         name_ = setup.name;
@@ -68,5 +74,6 @@ private:
 };
 
 TACTUS_NODE(Brush, tool, paint, erase, body, painted, area, distance, bone, radius, start_clean)
+TACTUS_VISUALS(Brush)
 
 }  // namespace tactus::nodes

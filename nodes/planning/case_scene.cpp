@@ -5,6 +5,7 @@
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/body_parts.hpp"
 #include "nodes/planning/step_record.hpp"
 
@@ -52,6 +53,13 @@ struct CaseScene {
     Text file{"case.plan.json", "name of the plan file with the steps of the run, in the run folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
                 "a settled body is free again when the hand moves it farther than this from where it settled"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::scene, .value = "scene", .asset = "plan"}}; }
+
+    Param choose{discrete, "-1", "-1", "15",
+                 "place of the body that join, split, lock and hide mean; -1: the one that was held last"};
+    Param with{discrete, "-1", "-1", "15",
+               "place of the body that join puts together with it; -1: the partner of the fit"};
 
     void prepare(const Setup& setup) {
         if (plan->bones.size() > tactus::coupling::Scene::most_objects)
@@ -142,25 +150,27 @@ private:
             let_at_ = middle_at(file_pose(last_, {moved->position, glm::normalize(moved->orientation)}));
             placed(tick, 1.0);
         }
-        if (edge(join, 1) && last_ >= 0) {
-            const int other = partner_place();
-            const int both[] = {last_, other};
+        const int meant = place_of(choose, last_);
+        if (edge(join, 1) && meant >= 0) {
+            const int other = place_of(with, partner_place());
+            const int both[] = {meant, other};
             keep_held(tick);
-            if (other >= 0 && now_->join(both) != fit::Arrangement::none) arranged(tick, cases::StepKind::group, other);
+            if (other >= 0 && now_->join(both) != fit::Arrangement::none)
+                arranged(tick, cases::StepKind::group, meant, other);
         }
-        if (edge(split, 2) && last_ >= 0) {
+        if (edge(split, 2) && meant >= 0) {
             keep_held(tick);
-            if (now_->remove(last_)) arranged(tick, cases::StepKind::remove, -1);
+            if (now_->remove(meant)) arranged(tick, cases::StepKind::remove, meant, -1);
         }
-        if (edge(lock, 3) && last_ >= 0) {
+        if (edge(lock, 3) && meant >= 0) {
             keep_held(tick);
-            now_->lock(last_, !now_->is_locked(last_));
-            arranged(tick, now_->is_locked(last_) ? cases::StepKind::lock : cases::StepKind::unlock, -1);
+            now_->lock(meant, !now_->is_locked(meant));
+            arranged(tick, now_->is_locked(meant) ? cases::StepKind::lock : cases::StepKind::unlock, meant, -1);
         }
-        if (edge(hide, 6) && last_ >= 0 && !now_->is_hidden(last_)) {
+        if (edge(hide, 6) && meant >= 0 && !now_->is_hidden(meant)) {
             keep_held(tick);
-            now_->hide(last_, true);
-            arranged(tick, cases::StepKind::hide, -1);
+            now_->hide(meant, true);
+            arranged(tick, cases::StepKind::hide, meant, -1);
         }
         if (edge(show, 7)) show_all(tick);
         const bool back = edge(undo, 4), on = edge(redo, 5);
@@ -191,6 +201,11 @@ private:
     int partner_place() const noexcept {
         const double place = partner.connected ? partner.get() : -1.0;
         return place >= 0.0 && place < static_cast<double>(parts_.size()) ? static_cast<int>(place) : -1;
+    }
+
+    /// The place that a parameter gives, or another one.
+    int place_of(const Param& given, int otherwise) const noexcept {
+        return given >= 0.0 && given < static_cast<double>(parts_.size()) ? static_cast<int>(given) : otherwise;
     }
 
     bool edge(const In<bool>& button, std::size_t n) noexcept {
@@ -236,9 +251,9 @@ private:
         show_unit(last_);
     }
 
-    void arranged(const Tick& tick, cases::StepKind kind, int other) noexcept {
+    void arranged(const Tick& tick, cases::StepKind kind, int fragment, int other) noexcept {
         cases::StepRow row = next(static_cast<double>(kind));
-        row.fragment = last_;
+        row.fragment = fragment;
         row.other = other;
         write(tick, row);
         done();
@@ -336,6 +351,8 @@ private:
 };
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,
-            overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose)
+            overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose,
+            choose, with)
+TACTUS_VISUALS(CaseScene)
 
 }  // namespace tactus::nodes

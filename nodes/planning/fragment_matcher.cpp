@@ -7,6 +7,7 @@
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
+#include "graph/node/visual.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -45,6 +46,10 @@ struct FragmentMatcher {
                  "near: search from the present pose; anywhere: also each face on each other face in turn"};
     Param least_score{"0", "0", "1", "minimum score of a match, where it is more than the 0.3 that every fit needs"};
     Param points{structural, "700", "100", "20000", "number of points per face"};
+
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::target, .scene = "scene", .place = "fragment", .pose = "target", .when = "fits"}};
+    }
 
     void prepare(const Setup& setup) {
         std::vector<fit::FragmentSurface> surfaces;
@@ -208,5 +213,6 @@ private:
 
 TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, gap,
             penetration, overlap, faces, plan, partners, reach, least_score, points)
+TACTUS_VISUALS(FragmentMatcher)
 
 }  // namespace tactus::nodes

@@ -2,6 +2,7 @@
 #include "dsp/training/attempt_row.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/task_asset.hpp"
+#include "graph/node/visual.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -64,6 +65,8 @@ struct Task {
     Out<double> cue{"0: well within all tolerances and limits, rising to 1 where one of them is reached"};
     Asset<training::Task> task{"the task"};
     Text file{"task.csv", "record of the attempt, in the run's folder; empty: none"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::task, .asset = "task"}}; }
 
     void prepare(const Setup& setup) {
         task_ = task.shared();
@@ -167,5 +170,6 @@ private:
 
 TACTUS_NODE(Task, pose, force, contact, removed, heat, distance, angle, depth_left, clearance, elapsed, off_plan,
             too_deep, too_near, over_force, over_time, over_heat, cue, task, file)
+TACTUS_VISUALS(Task)
 
 }  // namespace tactus::nodes

@@ -6,6 +6,7 @@
 #include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -23,7 +24,9 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
       nodes_(bench),
       scopes_(bench),
       scene_(bench),
-      calibration_(bench, scene_) {
+      calibration_(bench, scene_),
+      plan_(bench, scene_),
+      train_(bench) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
 }
 
@@ -52,27 +55,6 @@ void Desk::follow_run() {
     std::set<std::string> traced = scopes_.traced();
     calibration_.add_traced(traced);
     live_->follow(looked_at_, traced);
-}
-
-void Desk::panel(const char* id, double width, double height) {
-    ImGui::BeginChild(
-        id, vec({width, height}), false,
-        ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_AlwaysUseWindowPadding);
-}
-
-void Desk::splitter(const char* id, bool upright, double height, double& share, double whole) {
-    const double thick = 6.0 * fonts_.scale;
-    if (upright) ImGui::SameLine(0.0f, 0.0f);
-    const Point size =
-        upright ? Point{thick, height} : Point{static_cast<double>(ImGui::GetContentRegionAvail().x), thick};
-    ImGui::InvisibleButton(id, vec({std::max(size.x, 1.0), std::max(size.y, 1.0)}));
-    if (ImGui::IsItemHovered() || ImGui::IsItemActive())
-        ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-    if (ImGui::IsItemActive()) {
-        const ImVec2 by = ImGui::GetIO().MouseDelta;
-        share = std::clamp(share + static_cast<double>(upright ? by.x : by.y) / std::max(whole, 1.0), 0.15, 0.85);
-    }
-    if (upright) ImGui::SameLine(0.0f, 0.0f);
 }
 
 void Desk::show_messages(double height) {
@@ -122,17 +104,6 @@ void Desk::ask_farewell() {
     ImGui::EndPopup();
 }
 
-void Desk::draw_scene(double height) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    panel("scene", 0.0, scene_height_ * height);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({6.0 * fonts_.scale, 4.0 * fonts_.scale}));
-    scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
-    splitter("between scene and node", false, 0.0, scene_height_, height);
-}
-
 void Desk::draw() {
     follow_run();
     scene_.hand().begin_picture();
@@ -153,65 +124,19 @@ void Desk::draw() {
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
-    const double left = left_ * width;
-
+    plan_.case_run().tend(take_ ? nullptr : bench_.observer());
+    arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
-    ImGui::BeginChild("left", vec({left, height}));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
-    // Without scopes the patch panel uses their space.
-    const double bar = 64.0 * fonts_.scale;
-    panel("patch", 0.0, scopes_.list().empty() ? std::max(height - bar, 0.5 * height) : patch_height_ * height);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    patch_.draw(feed(), fonts_, looked_at_);
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
-    splitter("between patch and scopes", false, 0.0, patch_height_, height);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    ImGui::BeginChild("scopes", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({6.0 * fonts_.scale, 4.0 * fonts_.scale}));
-    if (!patch_.wants_scope.empty()) scopes_.add(std::exchange(patch_.wants_scope, {}));
-    scopes_.draw(feed(), fonts_);
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    scene_.hand().beat();
-    splitter("between left and right", true, height, left_, width);
-    ImGui::BeginChild("right", vec({0.0, height}));
-    // Without a scene the node panel uses its space.
-    if (scene_.is_empty()) scene_.rest();
-    else draw_scene(height);
-    scene_.hand().beat();
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));
-    if (ImGui::BeginTabBar("tabs")) {
-        const auto tab = [](const char* label, ImGuiTabItemFlags flags) {
-            const bool is_open = ImGui::BeginTabItem(label, nullptr, flags);
-            mark_spot(label);
-            return is_open;
-        };
-        if (tab("Node", 0)) {
-            nodes_.draw_parameters(patch_.selected, fonts_);
-            ImGui::EndTabItem();
-        }
-        if (!scene_.is_empty() && tab("Scene", 0)) {
-            scene_.draw_tree();
-            ImGui::EndTabItem();
-        }
-        const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;
-        nodes_.wants_catalogue = false;
-        if (tab("Add a node", front)) {
-            nodes_.draw_catalogue(patch_.selected, fonts_);
-            ImGui::EndTabItem();
-        }
-        ImGui::EndTabBar();
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const bool is_last = c + 1 == columns_.size();
+        ImGui::BeginChild(fmt::format("column {}", c).c_str(),
+                          vec({is_last ? 0.0 : columns_[c].share * width, height}));
+        draw_column(c, height);
+        ImGui::EndChild();
+        if (is_last) break;
+        if (const double by = splitter(fmt::format("behind column {}", c), true, height); by != 0.0)
+            move_border(columns_, c, by / std::max(width, 1.0));
     }
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
@@ -220,6 +145,7 @@ void Desk::draw() {
     if (farewell != Farewell::asks) questions.draw();
     ImGui::End();
     if (!take_) state_banner(bench_, below_bar, fonts_);
+    if (!shows(columns_, Panel::scene)) scene_.rest();
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
     calibration_.draw(live_.get());
     ImGui::PopFont();

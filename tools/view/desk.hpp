@@ -2,19 +2,23 @@
 // The layout of the window: all panels.
 #pragma once
 
+#include "tools/view/frame/layout.hpp"
 #include "tools/view/patch/node_panel.hpp"
 #include "tools/view/patch/patch_panel.hpp"
+#include "tools/view/plan/plan_panel.hpp"
 #include "tools/view/questions.hpp"
 #include "tools/view/scene/calibration_panel.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/signal/scopes.hpp"
 #include "tools/view/take_bench.hpp"
+#include "tools/view/train/train_panel.hpp"
 #include "tools/view/window.hpp"
 #include "tools/view/workbench.hpp"
 
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace tactus::view {
 
@@ -34,6 +38,8 @@ public:
     ScenePanel& scene() { return scene_; }
     const Feed* feed() const;
 
+    Layout layout = Layout::patch;
+
     /// Dialog when the window closes: end or continue the run?
     enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
     /// Dialogs for unsaved edits: before closing, and when the window opens.
@@ -41,10 +47,21 @@ public:
 
 private:
     void follow_run();
-    /// `height`: of a vertical splitter; a horizontal one fills the width.
-    void splitter(const char* id, bool upright, double height, double& share, double whole);
-    void panel(const char* id, double width, double height);
+    /// `height`: of a vertical splitter; a horizontal one fills the width. Returns how far it is moved, pixels.
+    double splitter(const std::string& id, bool upright, double height);
+    /// Whether a panel has something to show.
+    PanelRoom room_of(Panel panel);
+    /// Columns for the panels there are, with the borders where a person has put them.
+    void arrange(double width);
+    void draw_column(std::size_t index, double height);
+    void draw_panel(Panel panel, double height);
+    void draw_patch(double height);
+    void draw_scopes(double height);
     void draw_scene(double height);
+    void draw_node(double height);
+    void draw_tree(double height);
+    void draw_steps(double height);
+    void draw_task(double height);
     void show_messages(double height);
     void ask_farewell();
     void shortcuts();
@@ -60,8 +77,11 @@ private:
     Scopes scopes_;
     ScenePanel scene_;
     CalibrationPanel calibration_;
+    PlanPanel plan_;
+    TrainPanel train_;
     std::set<std::string> looked_at_;
-    double left_ = 0.64, patch_height_ = 0.58, scene_height_ = 0.55;
+    std::vector<LayoutColumn> columns_;
+    std::vector<std::vector<LayoutColumn>> moved_;  ///< columns of other layouts and panels, for when they return
 };
 
 }  // namespace tactus::view

@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/terminal.hpp"
 #include "tools/view/desk.hpp"
+#include "tools/view/spot_list.hpp"
 #include "tools/view/spots.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ const std::vector<std::string> commands{
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
     "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
-    "display",   "offset",     "screens", "shut"};
+    "display",   "offset",     "screens", "shut",       "layout", "spots"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -248,8 +249,13 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
+    else if (is("spots")) file::write_whole_file(word(line, 1), spot_list());
     else if (is("say")) bench.tell(word(line, 1));
-    else if (is("shut")) window.close();
+    else if (is("layout")) {
+        const auto layout = layout_of_name(word(line, 1));
+        if (!layout) throw Error(fmt::format("no layout '{}'", word(line, 1)));
+        desk.layout = *layout;
+    } else if (is("shut")) window.close();
     else if (is("open")) {
         if (open) open(word(line, 1));
     } else closes_ = true;

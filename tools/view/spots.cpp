@@ -2,7 +2,11 @@
 #include "tools/view/spots.hpp"
 
 #include "tools/view/painter.hpp"
+#include "tools/view/spot_list.hpp"
 
+#include <fmt/format.h>
+
+#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -36,6 +40,13 @@ std::optional<Box> spot(const std::string& name) {
 void forget_spots() {
     std::swap(spots().first, spots().second);
     spots().first.clear();
+}
+
+std::string spot_list() {
+    std::string text;
+    for (const auto& [name, box] : std::map(spots().second.begin(), spots().second.end()))
+        text += fmt::format("{}\t{:.0f}\t{:.0f}\t{:.0f}\t{:.0f}\n", name, box.left, box.top, box.right, box.bottom);
+    return text;
 }
 
 }  // namespace tactus::view

@@ -109,6 +109,7 @@ private:
     void set_up() {
         desk_ = std::make_unique<Desk>(window_, *bench_, take_.get());
         window_.set_title(fmt::format("{} - Tactus", bench_->title()));
+        desk_->layout = layout_of_name(view_.layout).value_or(Layout::patch);
         desk_->scene().use(view_.sight);
         if (view_.reference.empty()) return;
         desk_->scopes().set_reference(view_.reference);

@@ -6,6 +6,7 @@
 #include "tools/session/run_choice.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace tactus::view {
 
@@ -15,6 +16,7 @@ struct ViewChoice {
     bool keep_running = false;                ///< closing the window does not end the run
     std::filesystem::path script;             ///< file of window commands
     std::filesystem::path reference;          ///< sound file whose spectrum is drawn behind those of the signals
+    std::string layout;                       ///< "patch", "plan" or "train"; empty: as the patch was seen last
     double scale = 0.0;                       ///< scale of the content, 0: that of the screen
     picture::SightChoice sight;
 };

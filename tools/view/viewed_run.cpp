@@ -97,6 +97,7 @@ void ViewedRun::look_at(RunSession& session) {
     constexpr RunStatus::State states[] = {RunStatus::State::runs, RunStatus::State::fades, RunStatus::State::stands};
     status.state = states[static_cast<std::size_t>(engine.pausing())];
     status.time = engine.progress_seconds();
+    status.folder = session.folder();
     status.edits = engine.edits();
     status.is_recording = engine.is_recording();
     for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
@@ -158,6 +159,13 @@ void ViewedRun::recover(const std::string& node) {
         // Any number that is not the one before.
         const auto number = 1 + static_cast<std::int64_t>(session.engine().progress_seconds() * 1e3);
         session.engine().set(node, "recover", std::to_string(number));
+    });
+}
+
+void ViewedRun::press(const std::string& node) {
+    ask([node](RunSession& session) {
+        if (!session.control()) throw Error("this run does not accept buttons (--no-edits)");
+        session.control()->trigger(node);
     });
 }
 

@@ -46,6 +46,7 @@ struct RunStatus {
     std::vector<session::FaultOnRecord> faults;
     std::int64_t edits = 0;
     bool is_recording = false;
+    std::filesystem::path folder;  ///< of its results; empty while it loads
     std::string failure;  ///< why it ended early; empty: it did not
 };
 
@@ -69,6 +70,8 @@ public:
     void pause(bool wanted);
     /// Lets forces return that stay off until a person asks for them; `node`: HandForces::node.
     void recover(const std::string& node);
+    /// Presses a button that is a node of the patch.
+    void press(const std::string& node);
     /// Starts recording; the first call sets the folder.
     void record(const std::filesystem::path& folder);
     void stop_recording();

@@ -239,6 +239,10 @@ void Workbench::stop() {
     if (run_) run_->stop();
 }
 
+void Workbench::press(const std::string& node) {
+    if (run_) run_->press(node);
+}
+
 void Workbench::pause(bool wanted) {
     if (run_) run_->pause(wanted);
 }

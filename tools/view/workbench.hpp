@@ -108,6 +108,8 @@ public:
     void run();
     void stop();
     void pause(bool wanted);
+    /// Presses a button of the run that is a node of the patch.
+    void press(const std::string& node);
     /// Starts or stops recording without disturbing the run; starts a run when none is active.
     void record(bool wanted);
     bool is_recording() const { return status()->is_recording; }

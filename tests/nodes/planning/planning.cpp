@@ -252,3 +252,19 @@ TEST_CASE("undo while a fragment is held does nothing and says why, and so does 
     REQUIRE(nothing.size() == 1);
     CHECK(nothing[0].find("no step to redo") != std::string::npos);
 }
+
+TEST_CASE("buttons mean the fragments that are chosen, and without a choice the one held last") {
+    Session session;
+    session.release = 100;
+    session.join = 300;
+    session.split = 600;
+    session.node.set("choose", "2").set("with", "0");
+    session.run(500);
+    const coupling::Scene joined = session.scene();
+    CHECK(joined.objects[2].unit >= 0);
+    CHECK(joined.objects[2].unit == joined.objects[0].unit);
+    CHECK(joined.objects[1].unit == -1);
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{2, 0});
+    session.node.run(500);
+    CHECK(session.scene().objects[2].unit == -1);
+}

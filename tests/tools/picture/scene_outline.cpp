@@ -64,3 +64,70 @@ TEST_CASE("every patch of the library has something to see, or has no place in s
     CHECK(std::ranges::find(ports, "") == ports.end());
     CHECK(std::ranges::is_sorted(ports));
 }
+
+TEST_CASE("a guide is seen where its parameters and its frame say, and with its force on the hand") {
+    patch::Problems problems;
+    const auto plan = compile::compile(patch::read_patch(R"(
+wires = ["hand.pose -> wall.pose", "hand.pose -> wall.frame", "hand.pose -> way.pose"]
+[devices.d]
+driver = "simulated"
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+device = "d"
+[nodes.wall]
+type = "plane_guide"
+rate = "1 kHz"
+point = "0 mm, 0 mm, 10 mm"
+normal = "0, 0, 2"
+[nodes.way]
+type = "path_guide"
+rate = "1 kHz"
+points = "0 0 0, 10 0 0 mm"
+shape = "straight"
+)",
+                                                         "guides.toml", problems),
+                                       nodes::catalogue(), problems);
+    REQUIRE(plan);
+    const SceneOutline outline = outline_of(*plan);
+    REQUIRE(outline.guides.size() == 2);
+    const Visual& wall = outline.guides[0].visual;
+    CHECK(wall.kind == VisualKind::plane);
+    CHECK(wall.at.z == Approx(0.01));
+    CHECK(wall.direction.z == Approx(1.0));
+    CHECK(wall.frame == "hand.pose");
+    CHECK(wall.hand == "hand.pose");
+    CHECK(wall.force == "wall.wrench");
+    const Visual& way = outline.guides[1].visual;
+    CHECK(way.frame.empty());
+    REQUIRE(way.points.size() == 2);
+    CHECK(way.points[1].x == Approx(0.01));
+    // What is seen beside the device's pose is drawn in its place.
+    CHECK(outline.handles.empty());
+}
+
+TEST_CASE("a task shows its planned cut, a plan its fragments by name, and a burr its ball") {
+    const SceneOutline task = outline_in_library("saw-task");
+    REQUIRE(task.tasks.size() == 1);
+    CHECK(task.tasks[0].path.ends_with(".toml"));
+    const SceneOutline plan = outline_in_library("planning-trauma");
+    REQUIRE(plan.scenes.size() == 1);
+    CHECK(plan.scenes[0].plan.ends_with("case.plan.json"));
+    REQUIRE(plan.targets.size() == 1);
+    REQUIRE(plan.leads.size() == 1);
+    CHECK(plan.leads[0].target == "matcher.target");
+    CHECK(plan.leads[0].when == "hand.second");
+    const SceneOutline burr = outline_in_library("burr-training");
+    REQUIRE(burr.balls.size() == 1);
+    CHECK(burr.balls[0].radius > 1e-3);
+}
+
+TEST_CASE("a node that declares nothing shows nothing, whatever its ports are called") {
+    CHECK(visuals_of(NodeType{}, nullptr).empty());
+    for (const NodeType* type : nodes::catalogue())
+        if (type->name == "join_pose" || type->name == "voxmap_contact") {
+            void* const node = type->create();
+            CHECK(visuals_of(*type, node).empty() == (type->name == "join_pose"));
+            type->destroy(node);
+        }
+}

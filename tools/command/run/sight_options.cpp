@@ -25,6 +25,8 @@ void add_view_options(VerbOptions& verb, view::ViewChoice& choice) {
     verb.add("--view-script", choice.script, "run the commands in this file in the window");
     verb.add("--reference", choice.reference, "sound file whose spectrum is drawn below those of the signals");
     add_sight_options(verb, choice.sight, nullptr);
+    verb.add("--layout", choice.layout, "panels of the window (default: as the patch was seen last)")
+        .one_of({"patch", "plan", "train"});
     verb.add("--view-scale", choice.scale, "scale of text and controls (default: that of the screen)").range(0.5, 4.0);
 }
 

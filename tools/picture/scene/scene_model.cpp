@@ -36,6 +36,7 @@ SceneModel::~SceneModel() {
     for (const auto& [path, bone] : still_bones_)
         if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
     for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
+    for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     renderer_.meshes().remove(notes_mesh_);
 }
@@ -60,6 +61,12 @@ void SceneModel::follow(SceneOutline outline) {
         if (gone && bone.second.mesh >= 0) meshes.remove(bone.second.mesh);
         return gone;
     });
+    std::erase_if(tasks_, [&](const auto& task) {
+        const bool gone =
+            std::ranges::find(outline_.tasks, task.first, &SceneOutline::Task::path) == outline_.tasks.end();
+        if (gone) remove(task.second);
+        return gone;
+    });
     std::erase_if(bodies_, [&](const auto& body) {
         const bool gone = !shown_.contains(body.first);
         if (gone) meshes.remove(body.second.mesh);
@@ -67,6 +74,7 @@ void SceneModel::follow(SceneOutline outline) {
     });
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
+    take_names();
     is_fitting_ = true;
 }
 
@@ -120,6 +128,7 @@ display::Picture& SceneModel::update() {
     picture_.points.clear();
     picture_.bounds = {};
     parts_.clear();
+    part_of_mesh_.clear();
     legend_ = {};
     legend_.title = outline_.title;
     notes_.vertices.clear();
@@ -134,6 +143,8 @@ display::Picture& SceneModel::update() {
     show_blades();
     show_balls();
     show_gripper();
+    show_guides();
+    show_tasks();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);
     // They rarely change.
@@ -149,6 +160,20 @@ display::Picture& SceneModel::update() {
 void SceneModel::show_part(const std::string& name, bool wanted) {
     if (wanted) hidden_.erase(name);
     else hidden_.insert(name);
+}
+
+void SceneModel::choose_part(const std::string& name, bool adds) {
+    const bool was_only = chosen_.size() == 1 && chosen_.front() == name;
+    const auto known = std::ranges::find(chosen_, name);
+    if (adds && known != chosen_.end()) return static_cast<void>(chosen_.erase(known));
+    if (!adds) chosen_.clear();
+    if (!name.empty() && !was_only) chosen_.push_back(name);
+}
+
+std::string SceneModel::part_of(std::size_t index) const {
+    for (const auto& [mesh, name] : part_of_mesh_)
+        if (mesh == index) return name;
+    return {};
 }
 
 bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
@@ -174,13 +199,14 @@ void SceneModel::show_bones() {
         }
         bone.update = seen->update;
         if (!is_part_shown(node_of(port), still_colour)) continue;
+        part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
 
 void SceneModel::show_still_bones() {
-    for (const auto& [name, path] : outline_.still_bones) {
+    for (const auto& [name, path, at] : outline_.still_bones) {
         auto known = still_bones_.find(path);
         if (known == still_bones_.end()) {
             StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
@@ -204,7 +230,8 @@ void SceneModel::show_still_bones() {
             continue;
         }
         if (!is_part_shown(name, still_colour)) continue;
-        show(known->second.mesh, {}, known->second.bounds);
+        part_of_mesh_.emplace_back(picture_.meshes.size(), name);
+        show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
@@ -218,8 +245,8 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
         return;
     }
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
-    legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
     // A force of 10 N is drawn half as long as the scene.
+    legend_.entries.push_back({fmt::format("{}: {:.1f} N (10 N: {:.3g} mm)", port, size, 1e3 * reach), force_colour});
     if (size > 0.02) display::add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 

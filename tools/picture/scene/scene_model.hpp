@@ -39,13 +39,22 @@ public:
         std::string name;
         Vec3 colour{0.0};
         bool is_shown = true;
+        int place = -1;  ///< of a body in its scene; -1: it is none
+        bool is_locked = false, is_held = false;
+        int unit = -1;  ///< bodies of one unit move together; -1: none
+        int fits = -1;  ///< place of the body that it was fitted to; -1: none
     };
     const std::vector<Part>& parts() const { return parts_; }
     /// Hides a part by name, or shows it, from the next picture on.
     void show_part(const std::string& name, bool wanted);
-    /// Draws a part in the colour of chosen things; empty: none.
-    void choose_part(const std::string& name) { chosen_ = name; }
-    const std::string& chosen_part() const { return chosen_; }
+    /// Gives a body a colour of its own, sRGB, from the next picture on.
+    void colour_part(const std::string& name, const Vec3& colour);
+    /// Parts that are marked, in the order in which they were chosen.
+    const std::vector<std::string>& chosen_parts() const { return chosen_; }
+    /// Marks a part, or no longer if it was the only one; `adds`: the others stay as they are. Empty: none.
+    void choose_part(const std::string& name, bool adds = false);
+    /// The part that mesh `index` of the last picture belongs to; empty: none.
+    std::string part_of(std::size_t index) const;
 
     /// The colours, the current forces and depths, and what could not be drawn.
     const display::Legend& legend() const { return legend_; }
@@ -67,6 +76,7 @@ private:
         display::Bounds bounds;
     };
     struct BodyMesh {
+        Vec3 colour{0.0};
         display::MeshPool::Mesh mesh = -1;
         display::Bounds bounds;
         std::shared_ptr<const observe::SeenBody> body;
@@ -84,13 +94,31 @@ private:
     void show_bodies();
     void show_targets();
     bool is_part_shown(const std::string& name, const Vec3& colour);
+    void take_names();
+    std::string name_of_body(const SceneOutline::Bodies& scene, std::size_t place) const;
+    Vec3 colour_of_body(const std::string& name, const SceneOutline::Bodies& scene, std::size_t place) const;
+    struct TaskMesh {
+        struct Spared {
+            std::string name;
+            display::MeshPool::Mesh mesh = -1;
+            display::Bounds bounds;
+        };
+        display::MeshPool::Mesh cut = -1;
+        display::Bounds cut_bounds;
+        std::vector<Spared> spared;
+        std::string problem;  ///< why it is missing
+    };
+    void show_guides();
+    void show_tasks();
+    TaskMesh make_task(const std::string& path);
+    void remove(const TaskMesh& task);
     void show_blades();
     void show_balls();
     void show_gripper();
     void show_force(const std::string& wrench, const Vec3& at);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     void mark(const BodyMesh& mesh, const Pose& pose);
-    BodyMesh* mesh_of(std::uint64_t content, std::size_t place);
+    BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
     SceneOutline outline_;
     observe::Observer& observer_;
@@ -104,13 +132,21 @@ private:
         std::string problem;  ///< why it is missing
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
+    std::map<std::string, TaskMesh> tasks_;  // by path
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;
     std::vector<Part> parts_;
     std::unordered_set<std::string> hidden_;
-    std::string chosen_;
+    std::vector<std::string> chosen_;
+    std::map<std::string, Vec3> given_colours_;  // by part
+    struct NamedBody {
+        std::string name;
+        std::optional<Vec3> colour;
+    };
+    std::map<std::string, std::vector<NamedBody>> named_;  // by the plan's file
+    std::vector<std::pair<std::size_t, std::string>> part_of_mesh_;  // index in picture_.meshes
     display::Picture picture_;
     display::Legend legend_;
     display::Bounds bounds_;
@@ -118,6 +154,7 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_guide_shown_ = true;  // of the node whose guides are being drawn
 };
 
 }  // namespace tactus::picture

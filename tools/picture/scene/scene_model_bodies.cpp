@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies of a scene: free, held, chosen, and where they would fit.
+#include "assets/cases/plan_file.hpp"
 #include "devices/display/shapes.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/picture/scene/body_surface.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
@@ -24,15 +26,58 @@ std::string node_of(const std::string& port) { return port.substr(0, port.find('
 
 }  // namespace
 
-SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t place) {
-    if (const auto known = bodies_.find(content); known != bodies_.end()) return &known->second;
+void SceneModel::take_names() {
+    for (const SceneOutline::Bodies& scene : outline_.scenes) {
+        if (scene.plan.empty() || named_.contains(scene.plan)) continue;
+        std::vector<NamedBody>& named = named_[scene.plan];
+        try {
+            const cases::CasePlan plan = cases::load_case_plan(scene.plan);
+            // A plan that gives several the same colour says too little about them.
+            bool is_coloured = true;
+            for (std::size_t a = 0; a < plan.fragments.size(); ++a)
+                for (std::size_t b = 0; b < a; ++b)
+                    is_coloured = is_coloured && plan.fragments[a].colour != plan.fragments[b].colour;
+            for (const cases::PlanFragment& fragment : plan.fragments)
+                named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
+        } catch (const Error&) {
+            named.clear();  // the run says what is wrong
+        }
+    }
+}
+
+std::string SceneModel::name_of_body(const SceneOutline::Bodies& scene, std::size_t place) const {
+    if (const auto named = named_.find(scene.plan); named != named_.end() && place < named->second.size())
+        return named->second[place].name;
+    return place < scene.bodies.size() ? node_of(scene.bodies[place]) : fmt::format("fragment {}", place + 1);
+}
+
+Vec3 SceneModel::colour_of_body(const std::string& name, const SceneOutline::Bodies& scene, std::size_t place) const {
+    if (const auto given = given_colours_.find(name); given != given_colours_.end()) return given->second;
+    const auto named = named_.find(scene.plan);
+    if (named != named_.end() && place < named->second.size() && named->second[place].colour)
+        return *named->second[place].colour;
+    return group_colours[place % group_colours.size()];
+}
+
+void SceneModel::colour_part(const std::string& name, const Vec3& colour) { given_colours_[name] = colour; }
+
+SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& colour) {
+    if (const auto known = bodies_.find(content); known != bodies_.end()) {
+        BodyMesh& mesh = known->second;
+        if (mesh.colour != colour && mesh.body) {
+            mesh.colour = colour;
+            renderer_.meshes().set_part(mesh.mesh, 0,
+                                        make_body_surface(*mesh.body, mesh.field, colour, paint_colour).patch);
+        }
+        return &mesh;
+    }
     for (const auto& body : observer_.bodies()) {
         if (body->content_hash != content || body->distance.values.empty()) continue;
         BodyMesh& mesh = bodies_[content];
         mesh.body = body;
+        mesh.colour = colour;
         mesh.field = contact::make_voxmap(body->distance);
-        BodySurface surface =
-            make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
+        BodySurface surface = make_body_surface(*body, mesh.field, colour, paint_colour);
         mesh.has_paint = surface.has_paint;
         mesh.bounds = surface.bounds;
         mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
@@ -55,7 +100,9 @@ void SceneModel::show_bodies() {
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
             if (object.body == 0 || !shown_.insert(object.body).second) continue;
-            BodyMesh* mesh = mesh_of(object.body, i);
+            const std::string name = name_of_body(*scene, i);
+            const Vec3 colour = colour_of_body(name, *scene, i);
+            BodyMesh* mesh = mesh_of(object.body, colour);
             if (!mesh) continue;
             Pose pose = object.pose;
             const SceneOutline::Held* held = nullptr;
@@ -67,18 +114,24 @@ void SceneModel::show_bodies() {
             const auto hand = held ? pose_of(held->hand) : std::nullopt;
             if (held)
                 if (const auto now = pose_of(held->pose)) pose = *now;
-            const std::string name =
-                i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("fragment {}", i + 1);
-            if (!is_part_shown(name, group_colours[i % group_colours.size()])) continue;
+            const bool is_shown = is_part_shown(name, colour);
+            Part& part = parts_.back();
+            part.place = static_cast<int>(i);
+            part.unit = object.unit;
+            part.fits = object.hangs_on;
+            part.is_locked = object.stands == 1 && object.hangs_on < 0 && !scene->plan.empty();
+            part.is_held = held != nullptr;
+            if (!is_shown) continue;
             // A long legend would cover the scene.
             if (held || seen->value.count <= most_in_legend)
-                legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
+                legend_.entries.push_back({name + (held ? ", held" : ""), colour});
             if (!is_valid(pose)) {
                 legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
                 continue;
             }
+            part_of_mesh_.emplace_back(picture_.meshes.size(), name);
             show(mesh->mesh, pose, mesh->bounds);
-            if (name == chosen_) mark(*mesh, pose);
+            if (std::ranges::find(chosen_, name) != chosen_.end()) mark(*mesh, pose);
             has_paint = has_paint || mesh->has_paint;
             if (!held) continue;
             if (hand) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the parts of a patch that can be drawn, by port types and parameter names, so that new node types are drawn
-// without changes here.
+// Gathers what the nodes of a patch show in space: their visuals, with the outputs that give them values.
 #pragma once
 
 #include "dsp/contact/blade.hpp"
 #include "dsp/core/types.hpp"
 #include "graph/compile/plan.hpp"
+#include "graph/node/visual.hpp"
 
 #include <optional>
 #include <string>
@@ -22,13 +22,15 @@ struct SceneOutline {
     /// A constant bone: a file of nodes that neither carve nor move it.
     struct StillBone {
         std::string name, path;
+        std::string pose;  ///< of its frame; empty: that of the scene
     };
-    /// A scene output; `bodies`: the outputs wired to its slots.
+    /// A scene output; `bodies`: the outputs that are wired to its slots.
     struct Bodies {
         std::string port;
         std::vector<std::string> bodies;
+        std::string plan;  ///< file of the plan that names them; empty: none
     };
-    /// A held body: a node with a scene and a parameter `held`.
+    /// A held body.
     struct Held {
         std::string scene;
         std::string pose;  ///< pose of the body (the proxy)
@@ -39,11 +41,11 @@ struct SceneOutline {
         double held = 0.0;
         std::string wrench;
     };
-    /// Where a body of a scene would fit: a node with a scene and the outputs `target`, `fits` and `fragment`.
+    /// Where a body of a scene would go.
     struct Target {
         std::string scene, pose, fits, place;
     };
-    /// A saw blade: a node with a pose, a bone, and the size of a blade.
+    /// A saw blade.
     struct Blade {
         std::string node, pose, wrench;
         contact::BladeShape shape;
@@ -69,6 +71,24 @@ struct SceneOutline {
         std::string pose;
     };
 
+    /// A held body is pulled to a pose.
+    struct Lead {
+        std::string pose, target, when;
+    };
+    /// A number at a place, shown while it is above a limit.
+    struct Reading {
+        std::string value, unit, pose;
+        double radius = 0.0, limit = 0.0;
+    };
+    /// A guide or a spring; its names are outputs.
+    struct Guide {
+        std::string node;
+        Visual visual;
+    };
+    /// A planned cut, from a task file.
+    struct Task {
+        std::string node, path;
+    };
     /// The workspace mapping of a device: its handle, the same pose in the scene, and the scale.
     struct Place {
         std::string device, frame, scale;
@@ -86,6 +106,10 @@ struct SceneOutline {
     std::vector<Fingers> fingers;
     std::vector<Weight> weights;
     std::vector<Handle> handles;
+    std::vector<Lead> leads;
+    std::vector<Reading> readings;
+    std::vector<Guide> guides;
+    std::vector<Task> tasks;
     std::vector<Place> places;  ///< not drawn
 
     bool empty() const;

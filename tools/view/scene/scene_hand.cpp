@@ -118,6 +118,17 @@ void SceneHand::tools() {
     }
 }
 
+void SceneHand::hold(std::size_t button, bool wanted) {
+    if (wanted) latched_ |= 1u << button;
+    else latched_ &= ~(1u << button);
+}
+
+void SceneHand::go_to(const Vec3& in_scene) {
+    if (!is_there_) return;
+    const HandPlace place = this->place();
+    cursor_.move(in_scene - cursor_.in_scene(felt_.pose, place), place);
+}
+
 void SceneHand::press_keys() {
     keys_ = 0;
     const ImGuiIO& io = ImGui::GetIO();

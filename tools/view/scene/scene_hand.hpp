@@ -34,6 +34,12 @@ public:
     void forget();
     /// The buttons above the scene.
     void tools();
+    /// The four buttons of the hand, 0 to 3: trigger, second, third, fourth.
+    bool is_held(std::size_t button) const { return ((keys_ | latched_) >> button & 1u) != 0; }
+    /// Holds one until it is let go, as a click on its button above the scene.
+    void hold(std::size_t button, bool wanted);
+    /// The hand goes to a point of the scene, as fast as the driver lets it.
+    void go_to(const Vec3& in_scene);
     /// Mouse and keys over the scene, whose picture is so high, pixels. True when the mouse is the hand's.
     bool steer(const display::OrbitCamera& camera, int height);
     /// Cursor, spring and the bar of the force. `seen`: where a point of the scene is on the screen.

@@ -2,12 +2,15 @@
 #include "tools/view/scene/scene_panel.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -49,7 +52,33 @@ void ScenePanel::reset() {
     marks_.clear();
 }
 
+std::span<const SceneModel::Part> ScenePanel::parts() const {
+    return model_ ? std::span(model_->parts()) : std::span<const SceneModel::Part>();
+}
+
+std::vector<int> ScenePanel::chosen_places() const {
+    std::vector<int> places;
+    if (!model_) return places;
+    for (const std::string& name : model_->chosen_parts())
+        for (const SceneModel::Part& part : model_->parts())
+            if (part.name == name && part.place >= 0) places.push_back(part.place);
+    return places;
+}
+
 void ScenePanel::clip(int axis, double share) {
+    if (axis == 3 && clip_axis_ != 3) clip_normal_ = camera.orientation * Vec3(0.0, 0.0, 1.0);
+    if (axis == 4 && clip_axis_ != 4) {
+        const Vec3 normal = marks_.size() == 3 ? glm::cross(marks_[1] - marks_[0], marks_[2] - marks_[0]) : Vec3(0.0);
+        if (!(glm::length(normal) > 0.0)) {
+            bench_.tell("to clip along a plane of your own, measure three points that are not in a line", true);
+            return;
+        }
+        clip_normal_ = glm::normalize(normal);
+    }
+    if (axis >= 0 && axis < 3) {
+        clip_normal_ = Vec3(0.0);
+        clip_normal_[axis] = 1.0;
+    }
     clip_axis_ = axis;
     clip_share_ = share;
     needs_picture_ = true;
@@ -165,13 +194,7 @@ void ScenePanel::render(int width, int height) {
         camera.fit(model_->bounds(), aspect);
         is_aimed_ = true;
     }
-    picture.clip.reset();
-    if (clip_axis_ >= 0 && !model_->bounds().empty()) {
-        const display::Bounds& box = model_->bounds();
-        Vec3 normal(0.0);
-        normal[clip_axis_] = 1.0;
-        picture.clip = display::Plane{box.low + clip_share_ * (box.high - box.low), normal};
-    }
+    picture.clip = clip_plane();
     const auto views = screens_.aim(sight_, camera, picture.bounds);
     const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
     // In the panel it is an overlay, in separate windows a part of the picture.
@@ -185,6 +208,18 @@ void ScenePanel::render(int width, int height) {
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     screens_.show();
+}
+
+std::optional<display::Plane> ScenePanel::clip_plane() const {
+    if (clip_axis_ < 0 || model_->bounds().empty()) return std::nullopt;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& corner : model_->bounds().corners()) {
+        low = std::min(low, glm::dot(corner, clip_normal_));
+        high = std::max(high, glm::dot(corner, clip_normal_));
+    }
+    const Vec3 middle = 0.5 * (model_->bounds().low + model_->bounds().high);
+    const double at = low + clip_share_ * (high - low);
+    return display::Plane{middle + clip_normal_ * (at - glm::dot(middle, clip_normal_)), clip_normal_};
 }
 
 /// Ports for head and device; the model observes the scene's own ports.
@@ -247,6 +282,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         ImGui::InvisibleButton(
             "space", vec(size),
             ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
+        mark_spot("scene picture");
         steer(static_cast<int>(size.x), static_cast<int>(size.y));
         tend_screens();
         render(width, height);
@@ -255,6 +291,12 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         const Point clicked = (point(ImGui::GetIO().MousePos) - corner) * dense;
         if (is_clicked && is_siting) move_site(clicked);
         else if (is_clicked && is_measuring) measure(clicked);
+        else if (is_clicked) choose(clicked);
+        // A double click takes four pictures, and slow ones must not make two single clicks of it.
+        ImGuiIO& io = ImGui::GetIO();
+        io.MouseDoubleClickTime = std::clamp(6.0f * io.DeltaTime, 0.3f, 2.0f);
+        if (hand_.has_mouse() && ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+            lead_hand(clicked);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);
         if (sight_.display_file())
             paint.box({corner.x, corner.y, corner.x + size.x, corner.y + size.y}, colour(0x0b0e13), 6.0);

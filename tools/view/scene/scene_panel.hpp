@@ -5,6 +5,7 @@
 
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observe/observer.hpp"
+#include "tools/picture/scene/markups.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
 #include "tools/view/painter.hpp"
@@ -14,6 +15,7 @@
 #include "tools/view/workbench.hpp"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +49,13 @@ public:
     void fit() { is_aimed_ = false; }
     /// Resets the view: iso, all visible, no clipping, no measurement.
     void reset();
-    /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping.
+    /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping; 3: along the line of sight as
+    /// it is now; 4: along the normal of the plane through three measured points.
     void clip(int axis, double share);
+    /// The parts of the last picture.
+    std::span<const SceneModel::Part> parts() const;
+    /// Places in their scene of the chosen bodies, in the order in which they were chosen.
+    std::vector<int> chosen_places() const;
     bool is_measuring = false;
     bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool wants_calibration = false;  ///< requests the calibration panel
@@ -75,6 +82,12 @@ private:
     display::Legend legend() const;
     void measure(Point pixel);
     void move_site(Point pixel);
+    void choose(Point pixel);
+    void lead_hand(Point pixel);
+    void keep_measurement();
+    void save_measurements();
+    void draw_measurements();
+    std::optional<display::Plane> clip_plane() const;
     std::optional<display::Picked> pick(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_hand(const Painter& paint, Point corner, Point size, double pixel);
@@ -97,10 +110,12 @@ private:
     bool was_drawn_ = false;
     double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: time per picture, including the window
     int width_ = 0, height_ = 0;  ///< size of the last picture, pixels
-    int clip_axis_ = -1;
+    int clip_axis_ = -1;  ///< 3: across the view as it was; 4: through the measured points
+    Vec3 clip_normal_{0.0, 0.0, 1.0};
     double clip_share_ = 0.5;
     std::string display_file_, offset_ = "as the display file says";
     std::vector<Vec3> marks_;
+    std::vector<picture::Measurement> measurements_;
     std::string problem_, note_;  ///< note: why a screen is not shown as requested
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlays of the scene: measured points and the legend.
-#include "dsp/display/ruler.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/theme.hpp"
 
@@ -8,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <numbers>
 
 namespace tactus::view {
 
@@ -48,15 +46,21 @@ void ScenePanel::move_site(Point pixel) {
     is_siting = !bench_.cut_at(picked->position);
 }
 
+/// The part under the pointer; with Ctrl it is added to the chosen ones.
+void ScenePanel::choose(Point pixel) {
+    const auto picked = pick(pixel);
+    model_->choose_part(picked ? model_->part_of(picked->mesh) : std::string(), ImGui::GetIO().KeyCtrl);
+    needs_picture_ = true;
+}
+
+/// The hand goes to the surface under the pointer.
+void ScenePanel::lead_hand(Point pixel) {
+    if (const auto picked = pick(pixel)) hand_.go_to(picked->position);
+}
+
 void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
     if (marks_.empty()) return;
-    std::string text;
-    if (marks_.size() >= 2) text = fmt::format("{:.2f} mm", 1e3 * display::path_length(std::span(marks_).first(2)));
-    if (marks_.size() == 3) {
-        text += fmt::format(", {:.2f} mm", 1e3 * display::path_length(std::span(marks_).last(2)));
-        if (const auto angle = display::angle_at(marks_[1], marks_[0], marks_[2]))
-            text += fmt::format(", {:.1f}°", *angle * 180.0 / std::numbers::pi);
-    }
+    const std::string text = picture::measurement_words({{}, marks_});
     const double size = static_cast<double>(ImGui::GetFontSize());
     for (const SceneScreens::Tile& tile : screens_.tiles())
         for (const display::DrawnView& view : tile.views) {

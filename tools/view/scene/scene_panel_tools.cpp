@@ -38,10 +38,12 @@ void ScenePanel::tools() {
     sight_tools();
     const float unit = ImGui::GetFontSize();
     stay_on_line(6.0f * unit);
-    static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z"};
+    static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z", "clip view", "clip plane"};
     int axis = clip_axis_ + 1;
     ImGui::SetNextItemWidth(6.0f * unit);
-    if (ImGui::Combo("##axis", &axis, axes, 4)) clip(axis - 1, clip_share_);
+    if (ImGui::Combo("##axis", &axis, axes, 6)) clip(axis - 1, clip_share_);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("view: across the line of sight as it is now; plane: that of three measured points");
     if (clip_axis_ >= 0) {
         ImGui::SameLine();
         ImGui::SetNextItemWidth(-1.0f);

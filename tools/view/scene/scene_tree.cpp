@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bones and bodies of the scene as a list: show, hide, choose.
+#include "assets/file/whole_file.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace tactus::view {
 
@@ -24,7 +29,9 @@ void ScenePanel::draw_tree() {
             ImGui::SetTooltip("the next click on the bone moves the saw there; it can be undone");
         mark_spot("cut here");
     }
-    for (const SceneModel::Part& part : model_->parts()) {
+    // What is drawn may change the list.
+    const std::vector<SceneModel::Part> parts = model_->parts();
+    for (const SceneModel::Part& part : parts) {
         ImGui::PushID(part.name.c_str());
         bool is_shown = part.is_shown;
         if (ImGui::Checkbox("##shown", &is_shown)) {
@@ -34,18 +41,72 @@ void ScenePanel::draw_tree() {
         mark_spot("show " + part.name);
         ImGui::SameLine();
         const auto part_of = [](double x) { return static_cast<float>(x); };
-        ImGui::ColorButton("##colour",
-                           ImVec4(part_of(part.colour.x), part_of(part.colour.y), part_of(part.colour.z), 1.0f),
-                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop);
+        float colour[3] = {part_of(part.colour.x), part_of(part.colour.y), part_of(part.colour.z)};
+        const ImGuiColorEditFlags quiet = ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel |
+                                          ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop;
+        // Bones are coloured by their density.
+        ImGui::BeginDisabled(part.place < 0);
+        if (ImGui::ColorEdit3("##colour", colour, quiet)) {
+            model_->colour_part(part.name, Vec3(colour[0], colour[1], colour[2]));
+            needs_picture_ = true;
+        }
+        ImGui::EndDisabled();
         ImGui::SameLine();
-        const bool is_chosen = model_->chosen_part() == part.name;
-        if (ImGui::Selectable(part.name.c_str(), is_chosen)) {
-            model_->choose_part(is_chosen ? "" : part.name);
+        const auto& chosen = model_->chosen_parts();
+        std::string label = part.name;
+        if (part.is_held) label += ", held";
+        if (part.is_locked) label += ", locked";
+        if (part.unit >= 0) label += fmt::format(", group {}", part.unit + 1);
+        if (part.fits >= 0)
+            for (const SceneModel::Part& other : parts)
+                if (other.place == part.fits) label += ", fits " + other.name;
+        label += "###name";
+        if (ImGui::Selectable(label.c_str(), std::ranges::find(chosen, part.name) != chosen.end())) {
+            model_->choose_part(part.name, ImGui::GetIO().KeyCtrl);
             needs_picture_ = true;
         }
         mark_spot("part " + part.name);
         ImGui::PopID();
     }
+    draw_measurements();
+}
+
+void ScenePanel::keep_measurement() {
+    if (marks_.size() < 2) return;
+    measurements_.push_back({fmt::format("measurement {}", measurements_.size() + 1), marks_});
+}
+
+void ScenePanel::save_measurements() {
+    const std::filesystem::path folder = bench_.status()->folder;
+    std::filesystem::path file;
+    for (int i = 1; file.empty() || std::filesystem::exists(file); ++i)
+        file = folder / fmt::format("measurements-{}.mrk.json", i);
+    attempt([&] {
+        file::write_whole_file(file, picture::markups_text(measurements_));
+        bench_.tell(fmt::format("{} measurements written to {}", measurements_.size(), file.string()));
+    });
+}
+
+/// Below the parts: what was measured, and kept.
+void ScenePanel::draw_measurements() {
+    if (marks_.size() < 2 && measurements_.empty()) return;
+    ImGui::Separator();
+    if (marks_.size() >= 2 && ImGui::SmallButton("keep measurement")) keep_measurement();
+    if (marks_.size() >= 2) mark_spot("keep measurement");
+    std::size_t dropped = measurements_.size();
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::SmallButton("x")) dropped = i;
+        ImGui::SameLine();
+        ImGui::Text("%s: %s", measurements_[i].name.c_str(), picture::measurement_words(measurements_[i]).c_str());
+        ImGui::PopID();
+    }
+    if (dropped < measurements_.size())
+        measurements_.erase(measurements_.begin() + static_cast<std::ptrdiff_t>(dropped));
+    if (measurements_.empty()) return;
+    if (ImGui::SmallButton("save for Slicer")) save_measurements();
+    mark_spot("save for Slicer");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("as .mrk.json in the folder of the run");
 }
 
 }  // namespace tactus::view

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/haptic/gamepad.hpp"
+
+#include "devices/haptic/operated.hpp"
+#include "devices/hosted/seqlock.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/input.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace tactus::haptic {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double dead_zone = 0.1;
+constexpr double longest_spring_m = 0.03;  // between the hand and where the sticks want it, under force
+constexpr int poll_ms = 50;
+
+/// Axes in the order of PadState.
+constexpr std::array<std::uint16_t, 8> axis_codes{ABS_X, ABS_Y, ABS_RX, ABS_RY, ABS_Z, ABS_RZ, ABS_HAT0X, ABS_HAT0Y};
+
+/// A, B, X, Y: trigger, second, third and fourth. Bit 1 of DeviceSample::buttons marks gaps of recordings.
+constexpr std::pair<std::uint16_t, std::int64_t> button_codes[] = {
+    {BTN_SOUTH, 1}, {BTN_EAST, 4}, {BTN_WEST, 8}, {BTN_NORTH, 16}};
+constexpr std::pair<std::uint16_t, std::int64_t> roll_codes[] = {{BTN_TL, 1}, {BTN_TR, 2}};
+
+bool is_trigger(std::size_t axis) { return axis == 4 || axis == 5; }
+
+double beyond_dead_zone(double x) noexcept {
+    if (!(std::abs(x) > dead_zone)) return 0.0;
+    return std::copysign((std::min(std::abs(x), 1.0) - dead_zone) / (1.0 - dead_zone), x);
+}
+
+/// An open event device. Reads on its own thread until it is destroyed or the gamepad is lost.
+class PadReader {
+public:
+    explicit PadReader(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+        if (file_ < 0) throw Error(fmt::format("cannot open {}: {}", path, std::strerror(errno)));
+        for (std::size_t i = 0; i < axis_codes.size(); ++i) {
+            input_absinfo info{};
+            const bool is_told = ::ioctl(file_, EVIOCGABS(axis_codes[i]), &info) >= 0 && info.maximum > info.minimum;
+            // As most gamepads have it, and what a recording of one holds.
+            least_[i] = is_told ? info.minimum : is_trigger(i) ? 0 : i < 6 ? -32768 : -1;
+            most_[i] = is_told ? info.maximum : is_trigger(i) ? 255 : i < 6 ? 32767 : 1;
+            if (is_told) state_.axes[i] = value_of(i, info.value);
+        }
+        state.write(state_);
+        thread_ = std::thread([this] { read_all(); });
+    }
+    ~PadReader() {
+        is_over_.store(true, std::memory_order_relaxed);
+        thread_.join();
+        ::close(file_);
+    }
+    PadReader(const PadReader&) = delete;
+    PadReader& operator=(const PadReader&) = delete;
+
+    hosted::Seqlock<PadState> state;
+
+private:
+    double value_of(std::size_t axis, int raw) const {
+        const double share = (static_cast<double>(raw) - least_[axis]) / (most_[axis] - least_[axis]);
+        return std::clamp(is_trigger(axis) ? share : 2.0 * share - 1.0, -1.0, 1.0);
+    }
+
+    void read_all() {
+        while (!is_over_.load(std::memory_order_relaxed)) {
+            pollfd waits{file_, POLLIN, 0};
+            if (::poll(&waits, 1, poll_ms) <= 0) continue;
+            input_event events[64];
+            const ssize_t got = ::read(file_, events, sizeof events);
+            if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+            if (got < static_cast<ssize_t>(sizeof(input_event))) break;  // unplugged
+            for (std::size_t n = 0; n < static_cast<std::size_t>(got) / sizeof(input_event); ++n) take(events[n]);
+        }
+        if (is_over_.load(std::memory_order_relaxed)) return;
+        state_ = {};
+        state_.is_lost = 1;
+        state.write(state_);
+    }
+
+    void take(const input_event& event) {
+        if (event.type == EV_ABS) {
+            const auto axis = std::ranges::find(axis_codes, event.code);
+            if (axis == axis_codes.end()) return;
+            const auto i = static_cast<std::size_t>(axis - axis_codes.begin());
+            state_.axes[i] = value_of(i, event.value);
+        } else if (event.type == EV_KEY) {
+            const auto set = [&](std::int64_t& bits, std::int64_t bit) {
+                bits = event.value != 0 ? bits | bit : bits & ~bit;
+            };
+            for (const auto& [code, bit] : button_codes)
+                if (code == event.code) set(state_.buttons, bit);
+            for (const auto& [code, bit] : roll_codes)
+                if (code == event.code) set(state_.rolls, bit);
+        } else if (event.type != EV_SYN || event.code != SYN_REPORT) return;
+        // Events of one report come together; states in between do no harm.
+        state.write(state_);
+    }
+
+    int file_;
+    std::array<double, 8> least_{}, most_{};
+    PadState state_;
+    std::atomic<bool> is_over_{false};
+    std::thread thread_;
+};
+
+/// Where the sticks want the hand: they give its speed.
+struct Steered {
+    const hosted::Seqlock<PadState>* from = nullptr;
+    double speed = 0.1, turn = 1.5;
+    PadState state;
+    Pose wanted;
+
+    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
+        std::uint64_t number = 0;
+        from->read(state, number);
+        const Twist moves = twist_of(state, speed, turn);
+        wanted.position += h * moves.linear;
+        wanted.orientation = glm::normalize(rotation_by(h * moves.angular) * wanted.orientation);
+        const Vec3 away = wanted.position - hand.position;
+        const double far = glm::length(away);
+        if (glm::length(force.force) > 0.5 && far > longest_spring_m)
+            wanted.position = hand.position + away * (longest_spring_m / far);
+        return {wanted, moves};
+    }
+};
+
+class Gamepad final : public HapticDevice {
+public:
+    Gamepad(DeviceInfo info, const simulate::HandDynamics& dynamics, const std::string& path, double speed, double turn)
+        : info_(std::move(info)), reader_(path) {
+        hand_.dynamics = dynamics;
+        steered_.from = &reader_.state;
+        steered_.speed = speed;
+        steered_.turn = turn;
+    }
+
+    const DeviceInfo& info() const override { return info_; }
+
+    void prepare(double) override {
+        hand_.pose = {};
+        hand_.twist = {};
+        steered_.wanted = {};
+        force_.set({});
+        counter_ = 0;
+    }
+
+    DeviceSample acquire(double elapsed_s) noexcept override {
+        simulate::advance(hand_, steered_, force_.get(), elapsed_s);
+        // A lost gamepad is a fault of the device: no sample is valid any more, which fades the force.
+        const bool is_here = steered_.state.is_lost == 0;
+        return {hand_.pose, hand_.twist, static_cast<std::uint32_t>(steered_.state.buttons), ++counter_,
+                is_here && is_valid(hand_.pose)};
+    }
+
+    void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }
+
+private:
+    DeviceInfo info_;
+    PadReader reader_;
+    simulate::Hand hand_;
+    Steered steered_;
+    SharedWrench force_;
+    std::int64_t counter_ = 0;
+};
+
+/// The first event device with the buttons of a gamepad; empty: none.
+std::string first_gamepad() {
+    std::vector<fs::path> all;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator("/dev/input", none))
+        if (entry.path().filename().string().starts_with("event")) all.push_back(entry.path());
+    std::ranges::sort(all);
+    for (const fs::path& path : all) {
+        const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+        if (file < 0) continue;
+        std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
+        const bool is_told = ::ioctl(file, EVIOCGBIT(EV_KEY, keys.size()), keys.data()) >= 0;
+        ::close(file);
+        if (is_told && (keys[BTN_SOUTH / 8] >> (BTN_SOUTH % 8) & 1) != 0) return path.string();
+    }
+    return {};
+}
+
+struct Settings {
+    simulate::HandDynamics hand;
+    DeviceInfo info;
+    double speed, turn;
+    std::string file;
+};
+
+Settings read_settings(Options& options) {
+    const bool is_given = options.has("grip") || options.has("stiffness");
+    simulate::HandDynamics hand = read_hand(options);
+    if (!is_given) hand.stiffness = 2000.0;
+    if (!is_given && !options.has("damping")) hand.damping = 30.0;
+    Settings settings{hand, read_device_info(options, hand, "gamepad"),
+                      options.quantity("speed", "100 mm/s", "1 mm/s", "500 mm/s"),
+                      options.quantity("turn", "1.5 rad/s", "0.01 rad/s", "10 rad/s"), options.text("file", "")};
+    options.finish();
+    return settings;
+}
+
+}  // namespace
+
+Twist twist_of(const PadState& state, double speed, double turn) noexcept {
+    const auto axis = [&](std::size_t n) { return beyond_dead_zone(state.axes[n]); };
+    const double roll = static_cast<double>(state.rolls >> 1 & 1) - static_cast<double>(state.rolls & 1);
+    // Sticks count downwards.
+    return {speed * Vec3(axis(0), axis(5) - axis(4), -axis(1)), turn * Vec3(-axis(3), roll, axis(2))};
+}
+
+std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver&) {
+    Settings settings = read_settings(options);
+    const std::string path = settings.file.empty() ? first_gamepad() : settings.file;
+    if (path.empty())
+        throw Error(options.where(),
+                    fmt::format("{}: there is no gamepad in /dev/input that you may read; plug one in, "
+                                "or give its event device as 'file'",
+                                options.owner()));
+    try {
+        return std::make_unique<Gamepad>(std::move(settings.info), settings.hand, path, settings.speed, settings.turn);
+    } catch (const Error& error) {
+        throw Error(options.where("file"), fmt::format("{}: {}", options.owner(), error.message()));
+    }
+}
+
+HardwareOutline describe_gamepad(Options& options, const PathResolver&) {
+    const Settings settings = read_settings(options);
+    std::error_code ignored;
+    const bool is_here = settings.file.empty() ? !first_gamepad().empty() : fs::exists(settings.file, ignored);
+    return {settings.info, is_here                 ? ""
+                           : settings.file.empty() ? "there is no gamepad in /dev/input"
+                                                   : fmt::format("there is no {}", settings.file)};
+}
+
+}  // namespace tactus::haptic

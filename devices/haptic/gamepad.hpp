@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Driver "gamepad": a hand that the sticks of a gamepad move, held by a spring that yields to force. Linux evdev, read on a
+// thread of its own, so that neither a tick nor a picture waits for it.
+#pragma once
+
+#include "devices/haptic/catalogue.hpp"
+#include "devices/haptic/replay.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+namespace tactus::haptic {
+
+/// What a gamepad says: sticks and triggers, −1 to 1, and buttons.
+struct PadState {
+    /// Left stick x, y; right stick x, y; left and right trigger (0 to 1); cross x, y.
+    std::array<double, 8> axes{};
+    std::int64_t buttons = 0;  ///< bits of DeviceSample::buttons
+    std::int64_t rolls = 0;  ///< bit 0: left shoulder, bit 1: right shoulder
+    std::int64_t is_lost = 0;
+};
+
+/// Speed of the hand that a state asks for, in the axes of the device: the left stick moves it along x and z, the
+/// triggers along y (away: right), the right stick turns it about z and x, the shoulders about y. Sticks rest within a
+/// tenth of their way.
+Twist twist_of(const PadState& state, double speed_m_s, double turn_rad_s) noexcept;
+
+/// Options: file (an event device; without one the first gamepad in /dev/input), speed (100 mm/s), turn (1.5 rad/s), and
+/// those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. Throws Error when there is no gamepad.
+std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver& resolve);
+
+/// The hand without its gamepad, for which no file is opened.
+HardwareOutline describe_gamepad(Options& options, const PathResolver& resolve);
+
+}  // namespace tactus::haptic

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// A gamepad whose events come through a pipe.
+#include "devices/haptic/gamepad.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <fcntl.h>
+#include <linux/input.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <glm/geometric.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+using namespace tactus;
+
+namespace {
+
+/// The gamepad and who holds it. A pipe has no axes to ask for, so the usual ranges hold.
+struct Rig {
+    std::filesystem::path folder;
+    int end = -1;
+    std::unique_ptr<HapticDevice> device;
+
+    Rig() {
+        char made[] = "/tmp/tactus-pad-XXXXXX";
+        REQUIRE(::mkdtemp(made));
+        folder = made;
+        const std::string path = (folder / "pad").string();
+        REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+        end = ::open(path.c_str(), O_RDWR | O_NONBLOCK);
+        REQUIRE(end >= 0);
+        Options options("device 'pad'", {{"file", path, {}}});
+        device = haptic::open_gamepad(options, [](const std::string& name) { return std::filesystem::path(name); });
+        device->prepare(1e-3);
+    }
+    ~Rig() {
+        if (end >= 0) ::close(end);
+        device.reset();
+        std::filesystem::remove_all(folder);
+    }
+    void say(std::uint16_t type, std::uint16_t code, int value) const {
+        input_event events[2]{};
+        events[0].type = type;
+        events[0].code = code;
+        events[0].value = value;
+        events[1].type = EV_SYN;
+        REQUIRE(::write(end, events, sizeof events) == sizeof events);
+    }
+    /// Ticks until it holds; the thread that reads needs its moment.
+    template <class Condition>
+    bool ticks_until(Condition&& holds) {
+        for (int n = 0; n < 5000; ++n) {
+            if (holds(device->acquire(1e-3))) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a gamepad that rests is a valid hand with fresh samples") {
+    Rig rig;
+    for (int n = 0; n < 1000; ++n) {
+        const DeviceSample sample = rig.device->acquire(1e-3);
+        REQUIRE(sample.valid);
+        REQUIRE(sample.counter == n + 1);
+        REQUIRE(glm::length(sample.pose.position) < 1e-12);
+    }
+}
+
+TEST_CASE("sticks and triggers give the speed of the hand, and rest within a tenth of their way") {
+    haptic::PadState state;
+    state.axes[0] = 0.09;
+    state.axes[3] = -0.1;
+    CHECK(glm::length(haptic::twist_of(state, 0.1, 1.0).linear) == 0.0);
+    CHECK(glm::length(haptic::twist_of(state, 0.1, 1.0).angular) == 0.0);
+    state.axes = {1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+    state.rolls = 2;
+    const Twist fast = haptic::twist_of(state, 0.1, 1.0);
+    CHECK(glm::length(fast.linear - Vec3(0.1)) < 1e-12);
+    CHECK(fast.angular.y == 1.0);
+    state.axes[0] = std::nan("");
+    CHECK(haptic::twist_of(state, 0.1, 1.0).linear.x == 0.0);
+}
+
+TEST_CASE("a stick moves the hand no faster than its speed, and a button is its trigger") {
+    Rig rig;
+    rig.say(EV_ABS, ABS_X, 32767);
+    rig.say(EV_KEY, BTN_SOUTH, 1);
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return s.pose.position.x > 0.005 && s.buttons == 1u; }));
+    const double from = rig.device->acquire(1e-3).pose.position.x;
+    DeviceSample sample;
+    for (int n = 0; n < 100; ++n) sample = rig.device->acquire(1e-3);
+    CHECK(sample.pose.position.x - from == Approx(0.01).epsilon(0.02));
+    CHECK(std::abs(sample.pose.position.y) < 1e-9);
+}
+
+TEST_CASE("a gamepad that is unplugged gives no valid sample any more, and its buttons are let go") {
+    Rig rig;
+    rig.say(EV_KEY, BTN_SOUTH, 1);
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return s.buttons == 1u; }));
+    ::close(rig.end);
+    rig.end = -1;
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return !s.valid; }));
+    for (int n = 0; n < 100; ++n) {
+        const DeviceSample sample = rig.device->acquire(1e-3);
+        REQUIRE_FALSE(sample.valid);
+        REQUIRE(sample.buttons == 0u);
+    }
+}
+
+TEST_CASE("without a gamepad the driver says what to do") {
+    Options options("device 'pad'", {{"file", "/nowhere/event7", {}}});
+    CHECK_THROWS_WITH(
+        haptic::open_gamepad(options, [](const std::string& name) { return std::filesystem::path(name); }),
+        Catch::Matchers::ContainsSubstring("cannot open /nowhere/event7"));
+}

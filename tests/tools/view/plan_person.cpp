@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person with a mouse and a keyboard puts fragments of a jaw together.
+#include "assets/bone/bone.hpp"
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/rotation.hpp"
+#include "dsp/display/camera.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
+#include "tests/tools/view/person.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <future>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+using namespace tactus;
+using namespace tactus::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path case_folder() { return tactus::test::library_folder() / "cases/mandible-twelve"; }
+
+struct Spot {
+    double left, top, right, bottom;
+};
+
+/// What the person sees: where the controls are, and how the held fragment lies.
+struct Eyes {
+    fs::path folder;
+
+    std::map<std::string, Spot> spots() const {
+        std::map<std::string, Spot> all;
+        std::ifstream file(folder / "spots.txt");
+        for (std::string line; std::getline(file, line);) {
+            std::istringstream words(line.substr(line.find('\t') + 1));
+            Spot spot{};
+            words >> spot.left >> spot.top >> spot.right >> spot.bottom;
+            all[line.substr(0, line.find('\t'))] = spot;
+        }
+        return all;
+    }
+    Spot spot(const std::string& name) const {
+        for (int i = 0; i < 100; ++i) {
+            const auto all = spots();
+            if (const auto found = all.find(name); found != all.end()) return found->second;
+            Person::wait(0.1);
+        }
+        FAIL("no control '" << name << "'");
+        return {};
+    }
+    /// Of the held body: its middle, and its rotation since the scan.
+    std::optional<Pose> held() const {
+        std::ifstream file(folder / "out/fragment.csv.part", std::ios::ate);
+        const auto size = static_cast<std::streamoff>(file.tellg());
+        file.seekg(std::max<std::streamoff>(0, size - 400));
+        std::string text((std::istreambuf_iterator<char>(file)), {});
+        const std::size_t end = text.rfind('\n'), begin = end == std::string::npos ? end : text.rfind('\n', end - 1);
+        if (begin == std::string::npos) return std::nullopt;
+        std::string line = text.substr(begin + 1, end - begin - 1);
+        std::ranges::replace(line, ',', ' ');
+        std::istringstream words(line);
+        double t = 0.0;
+        Pose pose;
+        words >> t >> pose.position.x >> pose.position.y >> pose.position.z >> pose.orientation.w >>
+            pose.orientation.x >> pose.orientation.y >> pose.orientation.z;
+        return words.fail() ? std::nullopt : std::optional(pose);
+    }
+    cases::CasePlan plan() const { return cases::load_case_plan(folder / "out/case.plan.json"); }
+};
+
+struct Belongs {
+    Pose pose;  ///< p_bone = R p_file + t
+    Vec3 middle;  ///< in its file
+};
+std::map<std::string, Belongs> truth() {
+    std::map<std::string, Belongs> all;
+    std::ifstream file(case_folder() / "truth.txt");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) continue;
+        std::istringstream words(line);
+        std::string name;
+        Vec3 t, middle;
+        Quat q;
+        words >> name >> t.x >> t.y >> t.z >> q.w >> q.x >> q.y >> q.z >> middle.x >> middle.y >> middle.z;
+        all[name] = {{t * 1e-3, q}, middle * 1e-3};
+    }
+    return all;
+}
+
+/// The front view, as it is fitted to all fragments at their scanned places.
+display::OrbitCamera front_view(double aspect) {
+    display::Bounds all;
+    for (const auto& fragment : cases::load_case_plan(case_folder() / "case.plan.json").fragments)
+        for (const contact::SurfacePoint& p : bone::load_bone((case_folder() / fragment.file).string()).points)
+            all.add(p.position);
+    display::OrbitCamera camera;
+    camera.look_from(display::NamedView::front);
+    camera.fit(all, aspect);
+    return camera;
+}
+
+/// Ends the command that works in the folder, as Ctrl-C does.
+void interrupt(const fs::path& folder) {
+    std::error_code none;
+    for (const auto& process : fs::directory_iterator("/proc", none)) {
+        std::ifstream name(process.path() / "comm");
+        std::string comm;
+        if (!(name >> comm) || comm != "tactus" || fs::read_symlink(process.path() / "cwd", none) != folder) continue;
+        ::kill(std::stoi(process.path().filename()), SIGINT);
+    }
+}
+
+/// Waits until something is to be seen, for half a minute at most.
+template <class Condition>
+void sees(Condition&& is_there) {
+    for (int i = 0; i < 150 && !is_there(); ++i) Person::wait(0.2);
+}
+
+class Planner {
+public:
+    Planner(Person& person, Eyes eyes) : person_(person), eyes_(std::move(eyes)), scene_(eyes_.spot("scene picture")) {
+        camera_ = front_view(width() / height());
+        right_ = camera_.orientation * Vec3(1.0, 0.0, 0.0);
+        up_ = camera_.orientation * Vec3(0.0, 1.0, 0.0);
+        forward_ = camera_.orientation * Vec3(0.0, 0.0, -1.0);
+    }
+
+    void press(const std::string& control) {
+        const Spot at = eyes_.spot(control);
+        person_.click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
+        Person::wait(0.3);
+    }
+    /// The hand goes to what is seen there.
+    void reach(const Vec3& point) {
+        const auto seen = camera_.projection(width() / height(), bounds_of(point)).seen(point);
+        const double x = scene_.left + 0.5 * (seen->x + 1.0) * width(),
+                     y = scene_.top + 0.5 * (1.0 - seen->y) * height();
+        reached_ = fmt::format("reached at {:.0f}, {:.0f} of a scene from {:.0f}, {:.0f} to {:.0f}, {:.0f}", x, y,
+                               scene_.left, scene_.top, scene_.right, scene_.bottom);
+        person_.move(x, y);
+        Person::wait(0.3);
+        for (int i = 0; i < 2; ++i) {
+            person_.button(1, true);
+            person_.button(1, false);
+            Person::wait(0.05);
+        }
+        Person::wait(1.5);
+    }
+    /// Tries again until something is held, as a person does.
+    void grasp(const Vec3& point) {
+        for (int i = 0; i < 4; ++i) {
+            reach(point);
+            press("grasp");
+            Person::wait(1.0);
+            if (const auto held = eyes_.held(); held && glm::length(held->position - point) < 0.02) return;
+            press("grasp");
+        }
+        FAIL("nothing is held; " << reached_);
+    }
+    /// Carries the held fragment until its middle and its rotation are nearly these.
+    void carry(const Vec3& to, const Quat& rotation, double within_m, double within_rad) {
+        for (int i = 0; i < 24; ++i) {
+            const auto now = eyes_.held();
+            REQUIRE(now);
+            const Vec3 turn = rotation_between(now->orientation, rotation), way = to - now->position;
+            UNSCOPED_INFO("off by " << 1e3 * glm::length(way) << " mm, " << glm::length(turn) * 57.3 << " deg");
+            if (glm::length(way) < within_m && glm::length(turn) < within_rad) return;
+            constexpr double per_pixel_rad = 0.006;
+            if (glm::length(turn) > 0.5 * within_rad) {
+                drag(glm::dot(turn, forward_) / per_pixel_rad, 0.0, 3, true);
+                drag(glm::dot(turn, up_) / per_pixel_rad, glm::dot(turn, right_) / per_pixel_rad, 3, false);
+            }
+            const double depth = glm::dot(now->position - camera_.eye(), forward_);
+            const double per_pixel = 2.0 * depth * std::tan(0.5 * camera_.vertical_field_of_view_rad) / height();
+            drag(0.0, -glm::dot(way, forward_) / per_pixel, 1, true);
+            drag(glm::dot(way, right_) / per_pixel, -glm::dot(way, up_) / per_pixel, 1, false);
+            Person::wait(0.8);
+        }
+        FAIL("the fragment does not get there");
+    }
+    void drag(double x, double y, int button, bool shifts) {
+        if (std::abs(x) < 0.5 && std::abs(y) < 0.5) return;
+        const double at_x = 0.5 * (scene_.left + scene_.right) - 0.5 * x,
+                     at_y = 0.5 * (scene_.top + scene_.bottom) - 0.5 * y;
+        if (shifts) person_.key("Shift_L", true);
+        Person::wait(0.2);
+        person_.drag(at_x, at_y, at_x + x, at_y + y, 0.8, button);
+        Person::wait(0.2);
+        if (shifts) person_.key("Shift_L", false);
+        Person::wait(0.2);
+    }
+    /// Grasps a fragment, carries it past a place beside its own, asks for a fit, settles it and lets it go.
+    void put(const std::string& name, const Vec3& aside) {
+        const Belongs belongs = truth().at(name);
+        const Vec3 place = belongs.pose.apply(belongs.middle);
+        const std::size_t before = eyes_.plan().steps.size();
+        grasp(belongs.middle);
+        INFO(name << " " << reached_);
+        carry(belongs.middle + Vec3(0.0, 0.025, 0.0), {1.0, 0.0, 0.0, 0.0}, 8e-3, 0.2);
+        carry(place + aside, belongs.pose.orientation, 6e-3, 0.1);
+        carry(place + 0.12 * aside, belongs.pose.orientation, 7e-3, 0.12);
+        press("snap");
+        Person::wait(3.0);
+        press("settle");
+        Person::wait(1.5);
+        press("grasp");
+        press("settle");
+        press("snap");
+        Person::wait(1.0);
+        const cases::CasePlan plan = eyes_.plan();
+        REQUIRE(plan.steps.size() > before);
+        CHECK(plan.steps.back().by == "settle");
+    }
+
+private:
+    double width() const { return scene_.right - scene_.left; }
+    double height() const { return scene_.bottom - scene_.top; }
+    static display::Bounds bounds_of(const Vec3& point) {
+        display::Bounds box;
+        box.add(point - Vec3(0.2));
+        box.add(point + Vec3(0.2));
+        return box;
+    }
+
+    Person& person_;
+    Eyes eyes_;
+    Spot scene_;
+    std::string reached_;
+    display::OrbitCamera camera_;
+    Vec3 right_, up_, forward_;
+};
+
+}  // namespace
+
+TEST_CASE("a person with a mouse puts three fragments together, groups them, undoes two steps and exports",
+          "[display][live]") {
+    NEEDS_DISPLAY(display)
+    Person person(display);
+    if (!person.is_there()) return skip("libXtst is not installed (apt install libxtst6)");
+    const Folder folder;
+    std::string script = "size 1600 1000\nlayout plan\nfrom front\n";
+    for (int i = 0; i < 1500; ++i) {
+        script += "wait 0.2\nspots spots.txt\n";
+        if (i % 25 == 24) script += fmt::format("screenshot shot-{:03}.png\n", i / 25);
+    }
+    folder.write("script", script + "close\n");
+    auto done = std::async(std::launch::async, [&] {
+        return on(display, folder,
+                  "run planning-trauma --view --view-script script --set hand.device=mouse --audio none --out out "
+                  "--seconds 260 --json",
+                  300);
+    });
+    REQUIRE(person.sees_window("Planning", 30.0));
+    const Eyes eyes{folder.path};
+    // Not before the first picture of that layout, and a run that ticks.
+    for (int i = 0; i < 300 && !eyes.spots().contains("trigger (T)"); ++i) Person::wait(0.2);
+    Person::wait(3.0);
+    Planner planner(person, eyes);
+    planner.put("fragment_07", {0.04, -0.007, 0.0});
+    planner.put("fragment_02", {0.0, -0.007, -0.04});
+    const std::size_t placed = eyes.plan().steps.size();
+
+    // One group of three, by the list.
+    planner.press("part fragment_01");
+    person.key("Control_L", true);
+    planner.press("part fragment_07");
+    planner.press("part fragment_02");
+    person.key("Control_L", false);
+    planner.press("group");
+    sees([&] { return eyes.plan().steps.size() >= placed + 2; });
+    const cases::CasePlan grouped = eyes.plan();
+    REQUIRE(grouped.steps.size() == placed + 2);
+    const cases::PlanState together = cases::state_of(grouped);
+    CHECK(together.arrangement.move_together(0, 6));
+    CHECK(together.arrangement.move_together(0, 1));
+
+    planner.press("undo step");
+    planner.press("undo step");
+    sees([&] { return eyes.plan().place().head == static_cast<int>(placed) - 1; });
+    const cases::PlanState apart = cases::state_of(eyes.plan());
+    CHECK_FALSE(apart.arrangement.move_together(0, 6));
+    CHECK_FALSE(apart.arrangement.move_together(0, 1));
+    CHECK(eyes.plan().steps.size() == placed + 2);
+    planner.press("export");
+    sees([&] { return fs::exists(folder.path / "out/export-1/fragment_12.plan.mrk.json"); });
+    CHECK(fs::exists(folder.path / "out/export-1/fragment_07.plan.mrk.json"));
+    interrupt(folder.path);
+    done.wait();
+}

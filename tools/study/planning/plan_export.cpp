@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/planning/plan_export.hpp"
+
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/study/bones/surface_file.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+
+namespace tactus::study {
+
+namespace {
+
+using file::Json;
+
+/// ITK stores the transform from the parent, which is the inverse of the motion; LPS, mm. Rows of the matrix, then the
+/// translation.
+std::string tfm_of(const Pose& placed) {
+    const Pose back = placed.inverse();
+    const Mat3 m = glm::mat3_cast(back.orientation);
+    std::string text = "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\nParameters:";
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) text += fmt::format(" {}", m[column][row]);
+    for (int axis = 0; axis < 3; ++axis) text += fmt::format(" {}", back.position[axis] * 1e3);
+    return text + "\nFixedParameters: 0 0 0\n";
+}
+
+struct Landmark {
+    std::string label;
+    Vec3 position;  ///< m
+};
+
+/// Landmarks: the centroid of a surface and its extreme points along six directions.
+std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& points) {
+    Vec3 middle(0.0);
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    std::vector<Landmark> marks{{"middle", middle}};
+    constexpr const char* names[] = {"left", "right", "posterior", "anterior", "superior", "inferior"};
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0}) {
+            const auto farthest = std::ranges::max_element(
+                points, {}, [&](const contact::SurfacePoint& p) { return sign * p.position[axis]; });
+            marks.push_back({names[2 * axis + (sign < 0.0 ? 1 : 0)], farthest->position});
+        }
+    return marks;
+}
+
+/// Control points of a Slicer markup, transformed by `pose`.
+std::string markup_of(const std::string& fragment, const std::vector<Landmark>& marks, const Pose& pose) {
+    const Mat3 m = glm::mat3_cast(pose.orientation);
+    Json orientation = Json::array(), points = Json::array();
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) orientation.push_back(m[column][row]);
+    for (std::size_t n = 0; n < marks.size(); ++n) {
+        const Vec3 p = pose.apply(marks[n].position) * 1e3;
+        points.push_back({{"id", fmt::format("{}", n + 1)},
+                          {"label", fmt::format("{} {}", fragment, marks[n].label)},
+                          {"description", ""},
+                          {"associatedNodeID", ""},
+                          {"position", {p.x, p.y, p.z}},
+                          {"orientation", orientation},
+                          {"selected", true},
+                          {"locked", true},
+                          {"visibility", true},
+                          {"positionStatus", "defined"}});
+    }
+    const Json json{{"@schema",
+                     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+                     "markups-schema-v1.0.3.json#"},
+                    {"markups", Json::array({{{"type", "Fiducial"},
+                                              {"coordinateSystem", "LPS"},
+                                              {"coordinateUnits", "mm"},
+                                              {"locked", true},
+                                              {"fixedNumberOfControlPoints", false},
+                                              {"labelFormat", "%N-%d"},
+                                              {"lastUsedControlPointNumber", marks.size()},
+                                              {"controlPoints", points}}})}};
+    return json.dump(2) + "\n";
+}
+
+/// Replaces characters of a fragment's name that a file name must not contain.
+std::string file_name_of(const std::string& fragment) {
+    std::string name = fragment;
+    for (char& c : name)
+        if (c == '/' || c == '\\' || c == ':') c = '_';
+    if (name.starts_with('.')) name[0] = '_';
+    return name;
+}
+
+}  // namespace
+
+std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                                          const std::filesystem::path& out, const std::string& format) {
+    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
+    const cases::PlanState state = cases::state_of(plan);
+    std::vector<std::string> names;
+    for (const cases::PlanFragment& fragment : plan.fragments) {
+        names.push_back(file_name_of(fragment.name));
+        if (std::ranges::count(names, names.back()) > 1)
+            throw Error(
+                fmt::format("fragments '{}' and another would both be written to '{}'", fragment.name, names.back()));
+    }
+    session::make_output_folder(out);
+    std::vector<ExportedFragment> written;
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+        const cases::PlanFragment& fragment = plan.fragments[n];
+        const Pose& pose = state.arrangement.pose(static_cast<int>(n));
+        mesh::ColouredSurface surface{surface_of_file(cases::file_of(fragment.file, folder), loaded[n].bone),
+                                      fragment.colour};
+        for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
+        const std::vector<std::string> files{names[n] + "." + format, names[n] + ".tfm", names[n] + ".scan.mrk.json",
+                                             names[n] + ".plan.mrk.json"};
+        mesh::write_mesh({&surface, 1}, out / files[0]);
+        file::write_whole_file(out / files[1], tfm_of(pose));
+        const auto marks = landmarks_of(loaded[n].bone.points);
+        file::write_whole_file(out / files[2], markup_of(fragment.name, marks, {}));
+        file::write_whole_file(out / files[3], markup_of(fragment.name, marks, pose));
+        written.push_back({fragment.name, pose, files});
+    }
+    return written;
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a plan for other programs: placed meshes, ITK transforms, landmarks for 3D Slicer.
+#pragma once
+
+#include "assets/cases/case_plan.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+struct ExportedFragment {
+    std::string name;
+    Pose pose;
+    std::vector<std::string> files;  ///< in the folder
+};
+
+/// `folder`: of the plan; `out`: is made; `format`: "stl" or "ply". Throws Error.
+std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                                          const std::filesystem::path& out, const std::string& format);
+
+}  // namespace tactus::study

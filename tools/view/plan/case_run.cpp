@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/plan/case_run.hpp"
+
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/fit/history.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A button is pressed for 20 ms of the run; the next press must come after that.
+constexpr auto between_commands = std::chrono::milliseconds(100), between_looks = std::chrono::milliseconds(300);
+
+const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
+
+/// The node, and its output, that is wired to an input.
+struct Source {
+    const compile::PlanNode* node = nullptr;
+    std::string output;
+};
+Source source_of(const compile::Plan& plan, const compile::PlanNode& node, const std::string& input) {
+    for (const compile::PlanWire& wire : plan.wires) {
+        if (wire.from_node < 0 || wire.to_input < 0) continue;
+        if (&plan.nodes[static_cast<std::size_t>(wire.to_node)] != &node) continue;
+        if (node.inputs[static_cast<std::size_t>(wire.to_input)].name != input) continue;
+        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        return {&from, from.outputs[static_cast<std::size_t>(wire.from_output)].name};
+    }
+    return {};
+}
+
+std::string name_in(const cases::CasePlan& plan, int fragment) {
+    return fragment >= 0 && fragment < static_cast<int>(plan.fragments.size())
+               ? plan.fragments[static_cast<std::size_t>(fragment)].name
+               : std::string();
+}
+
+std::string words_of(const cases::CasePlan& plan, const cases::PlanStep& step) {
+    std::string names;
+    for (const int fragment : step.fragments) names += (names.empty() ? "" : ", ") + name_in(plan, fragment);
+    if (step.fit)
+        return fmt::format("{} fits {}: {:.2f} mm rms, score {:.2f}", name_in(plan, step.fragments.front()),
+                           step.fit->partner, step.fit->rms * 1e3, step.fit->score);
+    if (!step.group.empty()) names += fmt::format(" ({})", step.group);
+    return fmt::format("{} {}", cases::name_of(step.kind), names);
+}
+
+}  // namespace
+
+std::vector<StepLine> step_lines(const cases::CasePlan& plan) {
+    std::vector<StepLine> lines;
+    const std::vector<int> before = plan.before();
+    const fit::HistoryPlace place = plan.place();
+    for (const int n : fit::steps_to(before, place.tip))
+        lines.push_back(
+            {n, words_of(plan, plan.steps[static_cast<std::size_t>(n)]), fit::is_on_way(before, n, place.head)});
+    return lines;
+}
+
+CaseRun::~CaseRun() {
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+}
+
+void CaseRun::follow_patch() {
+    plan_version_ = bench_.plan_version();
+    node_.clear();
+    matcher_.clear();
+    buttons_.clear();
+    hand_buttons_.clear();
+    if (!bench_.plan()) return;
+    const compile::Plan& plan = *bench_.plan();
+    const auto take_hand = [&](const compile::PlanNode& node, const char* input, const char* what) {
+        const Source from = source_of(plan, node, input);
+        if (!from.node || from.node->type->role != NodeRole::hand_source) return;
+        const auto& outputs = from.node->outputs;
+        // The buttons follow each other: trigger, second, third, fourth.
+        const auto first = std::ranges::find(outputs, "trigger", &compile::PlanOutput::name),
+                   found = std::ranges::find(outputs, from.output, &compile::PlanOutput::name);
+        if (first != outputs.end() && found >= first && found - first < 4)
+            hand_buttons_[what] = static_cast<std::size_t>(found - first);
+    };
+    for (const compile::PlanNode& node : plan.nodes) {
+        if (node.type->name == "case_scene") {
+            node_ = node.name;
+            for (const char* input : {"undo", "redo", "join", "split", "lock", "hide", "show", "settle"}) {
+                const Source from = source_of(plan, node, input);
+                if (from.node && from.node->type->name == "button") buttons_[input] = from.node->name;
+            }
+            take_hand(node, "settle", "settle");
+            struct : MemberVisitor {
+                std::string file;
+                void text(std::string_view name, Text& text) override {
+                    if (name == "file") file = text.value;
+                }
+            } texts;
+            node.type->visit(node.instance.get(), texts);
+            file_name_ = texts.file;
+        } else if (node.type->name == "fragment_matcher") {
+            matcher_ = node.name;
+            take_hand(node, "engaged", "snap");
+        } else if (node.type->name == "grasp") take_hand(node, "trigger", "grasp");
+    }
+}
+
+void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
+    if (plan_version_ != bench_.plan_version()) {
+        follow_patch();
+        observer_.reset();
+        watched_.clear();
+    }
+    if (observer != observer_) {
+        if (observer_)
+            for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+        watched_.clear();
+        observer_ = observer;
+        commands_.clear();
+        plan_.reset();
+        steps_.clear();
+        written_ = {};
+        if (observer_ && !matcher_.empty())
+            for (const char* figure : figures) {
+                watched_.push_back(matcher_ + "." + figure);
+                observer_->watch(watched_.back(), observe::Watch::latest, this);
+            }
+    }
+    if (!is_there()) return;
+    const auto now = Clock::now();
+    if (now - looked_ > between_looks) {
+        looked_ = now;
+        read_plan();
+    }
+    if (study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        try {
+            found_ = study_.get();
+        } catch (const std::exception& error) {
+            found_ = error.what();
+            bench_.tell(found_, true);
+        }
+    }
+    if (commands_.empty() || now - sent_ < between_commands) return;
+    const Command command = commands_.front();
+    commands_.pop_front();
+    sent_ = now;
+    if (command.param.empty()) bench_.press(command.node);
+    else bench_.turn(command.node, command.param, command.value);
+}
+
+void CaseRun::read_plan() {
+    const fs::path folder = bench_.status()->folder;
+    if (folder.empty() || file_name_.empty()) return;
+    file_ = folder / file_name_;
+    std::error_code none;
+    const fs::file_time_type written = fs::last_write_time(file_, none);
+    if (none || (plan_ && written == written_)) return;
+    try {
+        plan_ = cases::load_case_plan(file_);
+        steps_ = step_lines(*plan_);
+        written_ = written;
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+        written_ = written;
+    }
+}
+
+bool CaseRun::can_press(const std::string& input) const {
+    return buttons_.contains(input) && bench_.status()->state != RunStatus::State::over;
+}
+
+void CaseRun::press(const std::string& input, int fragment, int other) {
+    const auto button = buttons_.find(input);
+    if (button == buttons_.end()) return;
+    if (input != "undo" && input != "redo" && input != "show") {
+        commands_.push_back({node_, "choose", std::to_string(fragment)});
+        commands_.push_back({node_, "with", std::to_string(other)});
+    }
+    commands_.push_back({button->second, {}, {}});
+}
+
+void CaseRun::join(const std::vector<int>& fragments) {
+    for (std::size_t i = 1; i < fragments.size(); ++i) press("join", fragments.front(), fragments[i]);
+}
+
+std::optional<std::size_t> CaseRun::hand_button(const std::string& what) const {
+    const auto found = hand_buttons_.find(what);
+    return found == hand_buttons_.end() ? std::nullopt : std::optional(found->second);
+}
+
+double CaseRun::number(const std::string& port, double otherwise) const {
+    const auto seen = observer_ ? observer_->latest<double>(port) : std::nullopt;
+    return seen && std::isfinite(seen->value) ? seen->value : otherwise;
+}
+
+bool CaseRun::flag(const std::string& port) const {
+    const auto seen = observer_ ? observer_->latest<bool>(port) : std::nullopt;
+    return seen && seen->value;
+}
+
+std::optional<CaseRun::Fit> CaseRun::fit() const {
+    if (matcher_.empty() || !observer_) return std::nullopt;
+    const auto of = [&](const char* figure) { return matcher_ + "." + figure; };
+    const auto place = [&](const char* figure) { return static_cast<int>(std::lround(number(of(figure), -1.0))); };
+    return Fit{
+        place("fragment"),        place("partner"),       place("verdict"),       flag(of("fits")),
+        number(of("score"), 0.0), number(of("rms"), 0.0), number(of("gap"), 0.0), number(of("penetration"), 0.0)};
+}
+
+}  // namespace tactus::view

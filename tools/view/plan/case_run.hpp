@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plan that a running patch changes: its steps, the buttons that are wired to its case_scene node, the fit of the held
+// fragment, and studies of it. No user interface.
+#pragma once
+
+#include "assets/cases/case_plan.hpp"
+#include "engine/observe/observer.hpp"
+#include "tools/view/workbench.hpp"
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+/// A step of a plan as it is listed.
+struct StepLine {
+    int number = 0;
+    std::string text;
+    bool is_done = true;  ///< false: undone, and can be redone
+};
+/// The steps on the way to the tip of the current alternative, the first step first.
+std::vector<StepLine> step_lines(const cases::CasePlan& plan);
+
+class CaseRun {
+public:
+    explicit CaseRun(Workbench& bench) : bench_(bench) {}
+    ~CaseRun();
+    CaseRun(const CaseRun&) = delete;
+    CaseRun& operator=(const CaseRun&) = delete;
+
+    /// Once per picture: follows the patch and the plan's file, and sends commands.
+    void tend(const std::shared_ptr<observe::Observer>& observer);
+    /// The patch has a plan.
+    bool is_there() const { return !node_.empty(); }
+
+    /// As the run last wrote it; null until then.
+    const cases::CasePlan* plan() const { return plan_ ? &*plan_ : nullptr; }
+    const std::filesystem::path& file() const { return file_; }
+    const std::vector<StepLine>& steps() const { return steps_; }
+
+    /// Presses the button node that is wired to an input of the plan: "undo", "redo", "join", "split", "lock", "hide",
+    /// "show". `fragment`, `other`: places that it means; −1: the fragment held last, and its partner.
+    void press(const std::string& input, int fragment = -1, int other = -1);
+    /// A button node is wired to that input, and the patch runs.
+    bool can_press(const std::string& input) const;
+    /// Puts fragments into one group, one after another.
+    void join(const std::vector<int>& fragments);
+    /// The button of the hand, 0 to 3, that grasps, asks for a fit ("snap") or settles; none: the hand does not.
+    std::optional<std::size_t> hand_button(const std::string& what) const;
+
+    /// What the matcher says of the held fragment; none: there is no matcher.
+    struct Fit {
+        int fragment = -1, partner = -1, verdict = -1;
+        bool fits = false;
+        double score = 0.0, rms = 0.0, gap = 0.0, penetration = 0.0;  ///< 0 to 1; m
+    };
+    std::optional<Fit> fit() const;
+
+    /// A study of the plan's file, on a thread of its own; one at a time.
+    enum class Study { gaps, healthy, report, files };
+    void begin(Study study);
+    bool is_busy() const { return study_.valid(); }
+    /// What the last study said.
+    const std::string& found() const { return found_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    struct Command {
+        std::string node;  ///< a button, or of `param`
+        std::string param, value;  ///< empty: the button is pressed
+    };
+    void follow_patch();
+    void read_plan();
+    double number(const std::string& port, double otherwise) const;
+    bool flag(const std::string& port) const;
+
+    Workbench& bench_;
+    std::shared_ptr<observe::Observer> observer_;
+    std::int64_t plan_version_ = -1;
+    std::string node_, matcher_;
+    std::string file_name_;
+    std::map<std::string, std::string> buttons_;  // node, by input
+    std::map<std::string, std::size_t> hand_buttons_;
+    std::vector<std::string> watched_;
+    std::deque<Command> commands_;
+    Clock::time_point sent_{}, looked_{};
+    std::filesystem::path file_;
+    std::filesystem::file_time_type written_{};
+    std::optional<cases::CasePlan> plan_;
+    std::vector<StepLine> steps_;
+    std::future<std::string> study_;
+    std::string found_;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/plan/plan_panel.hpp"
+
+#include "dsp/fit/fit.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tactus::view {
+
+namespace {
+
+/// On the same line if it fits. A button that cannot be pressed is dim.
+bool button(const char* label, bool can, const char* tip, bool is_first = false) {
+    const float end = ImGui::GetItemRectMax().x + 2.0f * ImGui::GetStyle().ItemSpacing.x +
+                      ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x;
+    if (!is_first && end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    ImGui::BeginDisabled(!can);
+    const bool pressed = ImGui::Button(label);
+    ImGui::EndDisabled();
+    mark_spot(label);
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
+    return pressed;
+}
+
+}  // namespace
+
+/// Grasp, snap and settle are buttons of the hand; each stays held until it is pressed again.
+void PlanPanel::hand_buttons() {
+    if (!scene_.hand().is_there()) return;
+    struct Named {
+        const char *what, *label, *tip;
+    };
+    constexpr Named all[] = {
+        {"grasp", "grasp", "hold the fragment at the hand; again: let it go"},
+        {"snap", "snap", "look for a fit of the held fragment, and pull it there; again: no longer"},
+        {"settle", "settle", "put the held fragment where it fits; a step of the plan"}};
+    bool is_first = true;
+    for (const Named& named : all) {
+        const auto number = case_.hand_button(named.what);
+        if (!number) continue;
+        const bool is_held = scene_.hand().is_held(*number);
+        if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
+        const bool pressed = button(named.label, true, named.tip, is_first);
+        if (is_held) ImGui::PopStyleColor();
+        if (pressed) scene_.hand().hold(*number, !is_held);
+        is_first = false;
+    }
+}
+
+void PlanPanel::fit_line() const {
+    const auto fit = case_.fit();
+    if (!fit) return;
+    if (fit->fragment < 0) return ImGui::TextDisabled("no fragment is being fitted");
+    const auto name = [&](int place) {
+        for (const SceneModel::Part& part : scene_.parts())
+            if (part.place == place) return part.name;
+        return fmt::format("fragment {}", place + 1);
+    };
+    const bool is_known = fit->verdict >= 0 && fit->verdict <= static_cast<int>(fit::FitVerdict::blocked);
+    const std::string verdict = is_known ? std::string(fit::name_of(static_cast<fit::FitVerdict>(fit->verdict))) : "?";
+    std::string text = fmt::format("{}: {}", name(fit->fragment), verdict);
+    if (fit->partner >= 0) text += fmt::format(", to {}", name(fit->partner));
+    text += fmt::format("; score {:.2f}, {:.2f} mm rms, gap {:.2f} mm, overlap {:.2f} mm deep", fit->score,
+                        fit->rms * 1e3, fit->gap * 1e3, fit->penetration * 1e3);
+    ImGui::PushStyleColor(ImGuiCol_Text, fit->fits ? tone::good : tone::warm);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// On the fragments that are chosen in the scene, or the one held last.
+void PlanPanel::fragment_buttons() {
+    const std::vector<int> chosen = scene_.chosen_places();
+    const int first = chosen.empty() ? -1 : chosen.front();
+    const bool is_some = !chosen.empty();
+    if (button("group", case_.can_press("join") && chosen.size() != 1,
+               "the chosen fragments move together from now on (Ctrl and click chooses several); with none chosen: the "
+               "one held last and its partner",
+               true)) {
+        if (is_some) case_.join(chosen);
+        else case_.press("join");
+    }
+    const auto each = [&](const char* label, const char* input, const char* tip) {
+        if (!button(label, case_.can_press(input), tip)) return;
+        if (is_some)
+            for (const int place : chosen) case_.press(input, place);
+        else case_.press(input, first);
+    };
+    each("split", "split", "the chosen fragments, or the one held last, leave their groups");
+    each("lock", "lock", "lock or unlock the chosen fragments, or the one held last");
+    each("hide in plan", "hide", "out of pictures and fits: a step of the plan");
+    if (button("show hidden", case_.can_press("show"), "all that the plan hides")) case_.press("show");
+}
+
+void PlanPanel::studies() {
+    const bool can = case_.plan() && !case_.is_busy();
+    if (button("gaps", can, "between the fragments of the plan as it is now", true)) case_.begin(CaseRun::Study::gaps);
+    if (button("mirror", can, "distance of each fragment from the mirrored healthy side"))
+        case_.begin(CaseRun::Study::healthy);
+    if (button("report", can, "a page with pictures, gaps, fits and steps, in the run's folder"))
+        case_.begin(CaseRun::Study::report);
+    if (button("export", can, "placed meshes, transforms and landmarks for 3D Slicer, in the run's folder"))
+        case_.begin(CaseRun::Study::files);
+    if (!case_.found().empty()) ImGui::TextWrapped("%s", case_.found().c_str());
+}
+
+void PlanPanel::step_list() {
+    if (button("undo step", case_.can_press("undo"), "of the plan; let the fragment go first", true))
+        case_.press("undo");
+    if (button("redo step", case_.can_press("redo"), "of the plan")) case_.press("redo");
+    if (!case_.plan()) return ImGui::TextDisabled("the run has written no plan yet");
+    const cases::CasePlan& plan = *case_.plan();
+    std::string ways;
+    for (std::size_t n = 0; n < plan.alternatives.size(); ++n)
+        ways += fmt::format("{}{}", n > 0 ? ", " : "", plan.alternatives[n].name);
+    ImGui::TextDisabled("alternative %s of: %s", plan.alternatives[static_cast<std::size_t>(plan.current)].name.c_str(),
+                        ways.c_str());
+    ImGui::BeginChild("steps", ImVec2(0.0f, 0.0f));
+    const auto& steps = case_.steps();
+    if (steps.empty()) ImGui::TextDisabled("no steps yet");
+    for (const StepLine& step : steps) {
+        ImGui::PushStyleColor(ImGuiCol_Text, step.is_done ? tone::text : tone::dim);
+        ImGui::TextWrapped("%d  %s%s", step.number + 1, step.text.c_str(), step.is_done ? "" : "  (undone)");
+        ImGui::PopStyleColor();
+    }
+    if (listed_ != steps.size()) ImGui::SetScrollHereY(1.0f);
+    listed_ = steps.size();
+    ImGui::EndChild();
+}
+
+void PlanPanel::draw(const Fonts&) {
+    hand_buttons();
+    fit_line();
+    fragment_buttons();
+    studies();
+    ImGui::Separator();
+    step_list();
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The steps of a plan that the patch changes, with undo and redo, and what can be done to the held or chosen fragments.
+#pragma once
+
+#include "tools/view/painter.hpp"
+#include "tools/view/plan/case_run.hpp"
+#include "tools/view/scene/scene_panel.hpp"
+
+namespace tactus::view {
+
+class PlanPanel {
+public:
+    PlanPanel(Workbench& bench, ScenePanel& scene) : case_(bench), scene_(scene) {}
+
+    CaseRun& case_run() { return case_; }
+    void draw(const Fonts& fonts);
+
+private:
+    void hand_buttons();
+    void fit_line() const;
+    void fragment_buttons();
+    void studies();
+    void step_list();
+
+    CaseRun case_;
+    ScenePanel& scene_;
+    std::size_t listed_ = 0;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/train/train_panel.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/study/training/score.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus::view {
+
+namespace {
+
+const char* const numbers[] = {"distance", "angle", "depth_left", "clearance", "elapsed"};
+struct Warning {
+    const char *port, *text;
+};
+constexpr Warning warnings[] = {{"off_plan", "beside the plan"}, {"too_deep", "too deep"},
+                                {"too_near", "too near"},        {"over_force", "too much force"},
+                                {"over_time", "over time"},      {"over_heat", "too hot for too long"}};
+
+/// What a trainee reads after an attempt.
+std::string score_words(const study::ScoredRun& run) {
+    const study::Score& s = run.score;
+    std::string text = fmt::format("removed {:.0f} mm³ in {:.1f} s; force {:.1f} N mean, {:.1f} N at most\n",
+                                   run.removed_mm3, s.seconds, s.mean_N, run.max_N);
+    if (s.rms_mm && s.max_mm)
+        text += fmt::format("cut {:.2f} mm rms from the plan, {:.2f} mm at most\n", *s.rms_mm, *s.max_mm);
+    text += fmt::format("cut too much: {:.1f} mm³; too little: {:.1f} mm³\n", s.over_mm3, s.under_mm3);
+    for (const study::SparedScore& spared : s.spared)
+        text += spared.injured_mm3 > 0.0
+                    ? fmt::format("{}: injured, {:.1f} mm³\n", spared.name, spared.injured_mm3)
+                    : fmt::format("{}: spared, nearest {:.1f} mm\n", spared.name, spared.closest_mm);
+    if (s.over_limit_Ns > 0.0) text += fmt::format("above the limit of force: {:.2f} N s\n", s.over_limit_Ns);
+    return text + "the scores are not validated";
+}
+
+}  // namespace
+
+TrainPanel::~TrainPanel() {
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+}
+
+void TrainPanel::follow(const std::shared_ptr<observe::Observer>& observer) {
+    if (observer == observer_ && plan_version_ == bench_.plan_version()) return;
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+    watched_.clear();
+    if (observer != observer_) peak_N_ = 0.0;
+    observer_ = observer;
+    plan_version_ = bench_.plan_version();
+    node_.clear();
+    depth_.clear();
+    task_.reset();
+    limit_N_ = 0.0;
+    if (!bench_.plan() || !observer_) return;
+    for (const compile::PlanNode& node : bench_.plan()->nodes) {
+        if (const auto most = node.params.find("max_force");
+            most != node.params.end() && node.type->role == NodeRole::hand_sink)
+            most_N_ = most->second->value;
+        for (const compile::PlanOutput& out : node.outputs)
+            if (out.name == "penetration" && depth_.empty()) depth_ = node.name + "." + out.name;
+        if (node.type->name != "task") continue;
+        node_ = node.name;
+        for (const AssetParam* asset : node.assets)
+            for (const patch::PatchAsset& entry : bench_.plan()->patch.assets)
+                if (entry.name == asset->name) try {
+                        task_ = training::load_task_file(entry.path);
+                        limit_N_ = task_->limits.force.value_or(0.0);
+                    } catch (const Error&) {
+                        task_.reset();  // the run says what is wrong
+                    }
+    }
+    const auto watch = [&](std::string port) {
+        observer_->watch(port, observe::Watch::latest, this);
+        watched_.push_back(std::move(port));
+    };
+    if (!depth_.empty()) watch(depth_);
+    if (node_.empty()) return;
+    for (const char* name : numbers) watch(node_ + "." + name);
+    for (const Warning& warning : warnings) watch(node_ + "." + warning.port);
+}
+
+double TrainPanel::number(const std::string& port) const {
+    const auto seen = observer_ ? observer_->latest<double>(port) : std::nullopt;
+    return seen ? seen->value : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool TrainPanel::flag(const std::string& port) const {
+    const auto seen = observer_ ? observer_->latest<bool>(port) : std::nullopt;
+    return seen && seen->value;
+}
+
+void TrainPanel::meter(const Fonts& fonts, double force) const {
+    const Point at = point(ImGui::GetCursorScreenPos());
+    const double wide = static_cast<double>(ImGui::GetContentRegionAvail().x), high = 44.0 * fonts.scale;
+    ImGui::Dummy(vec({wide, high}));
+    const Painter paint(ImGui::GetWindowDrawList(), fonts);
+    const Box bar{at.x, at.y, at.x + wide, at.y + high};
+    const double most = std::max(most_N_, 0.1), share = std::clamp(force / most, 0.0, 1.0);
+    const bool is_over = limit_N_ > 0.0 && force > limit_N_;
+    paint.box(bar, tone::lane, 4.0);
+    paint.box({bar.left, bar.top, bar.left + share * wide, bar.bottom},
+              is_over                                    ? tone::bad
+              : limit_N_ > 0.0 && force > 0.8 * limit_N_ ? tone::warm
+                                                         : tone::good,
+              4.0);
+    if (limit_N_ > 0.0 && limit_N_ < most) {
+        const double x = bar.left + limit_N_ / most * wide;
+        paint.line({x, bar.top}, {x, bar.bottom}, tone::text, 3.0);
+        // Not by colour alone.
+        paint.text({x + 4.0, bar.top + 2.0}, 12.0 * fonts.scale, tone::text, fmt::format("limit {:.0f} N", limit_N_));
+    }
+    const double peak = bar.left + std::clamp(peak_N_ / most, 0.0, 1.0) * wide;
+    paint.line({peak, bar.top}, {peak, bar.bottom}, tone::dim, 1.0);
+    paint.frame(bar, tone::node_edge, 4.0);
+    paint.text({bar.left + 8.0 * fonts.scale, bar.top + 8.0 * fonts.scale}, 24.0 * fonts.scale, tone::text,
+               fmt::format("{:.1f} N{}", force, is_over ? " !" : ""));
+    paint.text_left_of({bar.right - 6.0, bar.bottom - 16.0 * fonts.scale}, 12.0 * fonts.scale, tone::text,
+                       fmt::format("{:.0f} N", most));
+}
+
+void TrainPanel::figures(const Fonts& fonts) {
+    ImGui::PushFont(fonts.large);
+    const std::shared_ptr<const RunStatus> status = bench_.status();
+    const double elapsed = number(node_ + ".elapsed");
+    ImGui::Text("time  %.1f s", std::isfinite(elapsed) ? elapsed : status->time);
+    if (!node_.empty()) {
+        ImGui::Text("depth left  %.1f mm", 1e3 * number(node_ + ".depth_left"));
+        ImGui::Text("beside the plan  %.1f mm, %.0f°", 1e3 * std::abs(number(node_ + ".distance")),
+                    57.29577951 * number(node_ + ".angle"));
+        const double clearance = number(node_ + ".clearance");
+        if (clearance < 0.9) ImGui::Text("to what is spared  %.1f mm", 1e3 * clearance);
+    } else if (!depth_.empty()) ImGui::Text("depth  %.2f mm", 1e3 * number(depth_));
+    for (const Warning& warning : warnings) {
+        if (node_.empty() || !flag(node_ + "." + warning.port)) continue;
+        ImGui::PushStyleColor(ImGuiCol_Text, tone::bad);
+        ImGui::Text("! %s", warning.text);
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopFont();
+}
+
+/// After the run: the score of an attempt at a task, or what the command would say.
+void TrainPanel::result() {
+    ViewedRun* const run = bench_.running();
+    if (!run || !run->is_over()) return;
+    if (scored_run_ != bench_.runs()) {
+        scored_run_ = bench_.runs();
+        score_ = "...";
+        if (node_.empty()) score_ = run->summary_text();
+        else
+            scoring_ = std::async(std::launch::async, [folder = bench_.status()->folder] {
+                try {
+                    return score_words(study::score_run(folder));
+                } catch (const Error& error) {
+                    return std::string("no score: ") + error.what();
+                }
+            });
+    }
+    if (scoring_.valid() && scoring_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        score_ = scoring_.get();
+    ImGui::Separator();
+    ImGui::TextWrapped("%s", score_.c_str());
+    mark_spot("score");
+}
+
+void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts) {
+    follow(observer);
+    const std::shared_ptr<const RunStatus> status = bench_.status();
+    const bool is_over = status->state == RunStatus::State::over;
+    const double force = is_over ? 0.0 : status->force;
+    peak_N_ = std::max(peak_N_, force);
+    ImGui::PushFont(fonts.bold);
+    ImGui::TextWrapped("%s", task_ ? task_->title.c_str() : bench_.title().c_str());
+    ImGui::PopFont();
+    if (task_ && !task_->about.empty()) ImGui::TextWrapped("%s", task_->about.c_str());
+    meter(fonts, force);
+    figures(fonts);
+    if (ImGui::Button(is_over ? "again" : "end")) {
+        if (is_over) bench_.run();
+        else bench_.stop();
+    }
+    mark_spot(is_over ? "again" : "end");
+    result();
+}
+
+}  // namespace tactus::view
