@@ -157,7 +157,7 @@ void Desk::draw_node(double height) {
     const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;
     nodes_.wants_catalogue = false;
     if (tab("Add a node", front)) {
-        nodes_.draw_catalogue(patch_.selected, fonts_);
+        nodes_.draw_catalogue(patch_.selected);
         ImGui::EndTabItem();
     }
     ImGui::EndTabBar();
