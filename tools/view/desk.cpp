@@ -140,8 +140,8 @@ void Desk::draw() {
     show_messages(messages);
     ask_farewell();
     // One dialog at a time.
-    if (farewell != Farewell::asks) questions.draw();
     draw_dialogs();
+    if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();
     ImGui::End();
     if (!take_) state_banner(bench_, below_bar, fonts_);
     if (!shows(columns_, Panel::scene)) scene_.rest();

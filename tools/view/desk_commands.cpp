@@ -308,8 +308,8 @@ void Desk::draw_start() {
     const bool leaves =
         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && !dialog_.is_open() && !list_.is_open();
     if (leaves) start_page_.is_open = false;
-    questions.draw();
     draw_dialogs();
+    if (!dialog_.is_open()) questions.draw();
     ImGui::End();
     ImGui::PopFont();
 }

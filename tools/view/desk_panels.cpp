@@ -21,12 +21,13 @@ public:
         const ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar;
         ImGui::BeginChild(id, vec({0.0, height}), false,
                           ImGuiWindowFlags_AlwaysUseWindowPadding | (scrolls ? ImGuiWindowFlags_None : still));
+        // Of the panel, not of what pops up from it.
+        ImGui::PopStyleVar();
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec(spacing));
     }
     ~PanelFrame() {
         ImGui::PopStyleVar();
         ImGui::EndChild();
-        ImGui::PopStyleVar();
     }
     PanelFrame(const PanelFrame&) = delete;
     PanelFrame& operator=(const PanelFrame&) = delete;

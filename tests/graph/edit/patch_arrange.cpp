@@ -51,7 +51,7 @@ TEST_CASE("places, colours and comments are kept in the patch, and no other byte
     std::string text = with_places(ball, {{"ball", {240.4, 59.6}}});
     CHECK(text == ball + "\n[window.places]\nball = [240, 60]\n");
     text = with_places(text, {{"ball", {10.0, -5.0}}, {"out", {1.0, 2.0}}});
-    CHECK(text == ball + "\n[window.places]\nball = [10, -5]\nout = [1, 2]\n");
+    CHECK(text == ball + "\n[window.places]\nball = [10, -5]\nout  = [1, 2]\n");
     const std::vector<std::string> two{"ball", "out"};
     std::string coloured = with_colours(text, two, "amber");
     CHECK(patch::window_of(coloured).colours.at("out") == "amber");
@@ -139,7 +139,7 @@ TEST_CASE("chosen nodes become a patch of their own, and wires across its border
 
 TEST_CASE("files and devices are named without touching what stands around them") {
     CHECK(has(with_asset(ball, "bone", "/other.vdb"), "bone = \"/other.vdb\""));
-    CHECK(has(with_asset(ball, "saw", "/saw.toml"), "bone = \"parts/bone.vdb\"\nsaw = \"/saw.toml\"\n"));
+    CHECK(has(with_asset(ball, "saw", "/saw.toml"), "bone = \"parts/bone.vdb\"\nsaw  = \"/saw.toml\"\n"));
     const std::string device = with_device(ball, "simulated", "simulated");
     CHECK(device == ball + "\n[devices.simulated]\ndriver = \"simulated\"\n");
     const std::string set = with_device_setting(device, "simulated", "start_z", "60 mm");

@@ -146,7 +146,7 @@ TEST_CASE("a file that is dropped goes to the node that takes it, as one edit") 
     choice.patch =
         folder
             .write("p.toml",
-                   "wires = [\"go.value -> drum.trigger\"]\n[nodes.go]\ntype = \"compare\"\nrate = \"48 kHz\"\n"
+                   "wires = [\"go.out -> drum.trigger\"]\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
                    "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\n")
             .string();
     Workbench bench(choice);

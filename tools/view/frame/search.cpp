@@ -77,7 +77,7 @@ double place_of(std::string_view word, std::string_view name, std::string_view a
 double place_of_meaning(std::string_view word, std::string_view name, std::string_view about) {
     double best = place_of(word, name, about);
     // A beginning of two letters means too much.
-    if (best >= 1.0 || word.size() < 3) return best;
+    if (best >= 2.0 || word.size() < 3) return best;
     for (const std::string_view line : synonyms) {
         const auto same = words_of(line);
         if (std::ranges::none_of(same, [&](std::string_view known) { return known.starts_with(word); })) continue;

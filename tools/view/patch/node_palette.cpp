@@ -78,7 +78,10 @@ std::string NodePalette::draw(const Fonts& fonts) {
                                      std::clamp(at_.y, 0.0, std::max(0.0, all.y - size.y))}));
         ImGui::SetNextWindowSize(vec({std::min(size.x, all.x), std::min(size.y, all.y)}));
     }
-    if (!ImGui::BeginPopup(popup, ImGuiWindowFlags_NoMove)) return {};
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts.scale, 8.0 * fonts.scale}));
+    const bool is_open = ImGui::BeginPopup(popup, ImGuiWindowFlags_NoMove);
+    ImGui::PopStyleVar();
+    if (!is_open) return {};
     std::string made;
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);

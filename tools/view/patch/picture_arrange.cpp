@@ -113,9 +113,39 @@ private:
             right_ = std::max(right_, node.box.right);
         }
         if (bottom == 0.0) return bottom;
+        bottom = std::max(bottom, make_way(order));
         // The nodes are no stacks any more.
         picture_.stacks.resize(first_stack);
         for (const int index : order) picture_.stacks.push_back(picture_.nodes[static_cast<std::size_t>(index)].box);
+        return bottom;
+    }
+
+    /// Moves nodes that nobody has put anywhere below those that are in their way. Returns the bottom of the lowest.
+    double make_way(const std::vector<int>& order) {
+        std::vector<Box> taken;
+        for (const int index : order)
+            if (const PictureNode& node = picture_.nodes[static_cast<std::size_t>(index)];
+                window_->places.contains(node.name))
+                taken.push_back(node.box);
+        double bottom = 0.0;
+        for (const int index : order) {
+            PictureNode& node = picture_.nodes[static_cast<std::size_t>(index)];
+            if (window_->places.contains(node.name)) continue;
+            bool is_moved = false;
+            for (auto other = taken.begin(); other != taken.end();) {
+                if (!other->meets(node.box)) {
+                    ++other;
+                    continue;
+                }
+                node.box = {node.box.left, other->bottom + row_gap, node.box.right,
+                            other->bottom + row_gap + node.box.height()};
+                is_moved = true;
+                other = taken.begin();
+            }
+            if (!is_moved) continue;
+            taken.push_back(node.box);
+            bottom = std::max(bottom, node.box.bottom);
+        }
         return bottom;
     }
 
