@@ -9,6 +9,7 @@
 
 #include <sndfile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <future>
@@ -113,8 +114,11 @@ TEST_CASE("a newcomer builds the ball patch on an empty canvas, hears it and sav
     const Outcome outcome = done.get();
     INFO(outcome.err);
     CHECK(outcome.code == 0);
-    const std::string text = slurp(folder.path / "elsewhere/ball.toml");
+    std::string text = slurp(folder.path / "elsewhere/ball.toml");
     INFO(text);
+    // Arrows stand below each other.
+    const auto last = std::unique(text.begin(), text.end(), [](char a, char b) { return a == ' ' && b == ' '; });
+    text.erase(last, text.end());
     for (const char* wire :
          {"device_input.pose -> sphere_contact.pose", "sphere_contact.wrench -> device_output.wrench",
           "sine.signal -> audio_output.signal", "sphere_contact.penetration -> sine.amplitude"})
@@ -139,8 +143,7 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
     const auto peak = tactus::view::TakeFeed(take).largest("hand_out.applied");
     REQUIRE(peak);
     CHECK(peak->value > 0.5);
-    for (const auto& [size, click] : {std::pair(std::string("800 600"), std::pair(60.0, 190.0)),
-                                      std::pair(std::string("1600 1000"), std::pair(60.0, 190.0))}) {
+    for (const std::string size : {"800 600", "1600 1000"}) {
         folder.write("script", fmt::format("size {}\ninstant {:.4f}\nframes 20\nscreenshot found.png\nclose\n", size,
                                            peak->when));
         auto done = begin(display, folder, "view --view-scale 1 --view-script script");

@@ -173,8 +173,7 @@ void PatchPanel::draw_lanes(const Painter& paint) {
 void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom;
-    const auto large = letters(text_size, lane_head_height - 10.0),
-               small = letters(small_size, lane_head_height - 12.0);
+    const auto large = letters(text_size, lane_head_height - 3.0), small = letters(small_size, lane_head_height - 3.0);
     if (!large || !small) return;
     struct Words {
         std::string text;
@@ -220,7 +219,7 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     const bool is_chosen = chosen.contains(node.name);
     const ImU32 edge = is_chosen ? tone::chosen : node.lacks.empty() ? tone::node_edge : tone::warm;
     if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
-    const auto large = letters(text_size, 22.0), small = letters(small_size, 16.0);
+    const auto large = letters(text_size, title_height - 6.0), small = letters(small_size, 16.0);
     const ImU32 head_ink = node.colour.empty() ? tone::node_head : colour_named(node.colour);
     if (!large) {
         // Many boxes, too small for visible round corners.
@@ -244,7 +243,9 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
         Box bar{box.left, head.bottom - 2.0 * z, box.left + share * box.width(), head.bottom};
         paint.box(bar, share > 0.7 ? tone::bad : share > 0.4 ? tone::warm : tone::good);
     }
-    paint.text({box.left + 8.0 * z, box.top + 3.0 * z}, *large, tone::text,
+    // Without room for the type the name stands in the middle.
+    const double title_top = small ? box.top + 3.0 * z : box.top + 0.45 * ((title_height - 6.0) * z - *large);
+    paint.text({box.left + 8.0 * z, title_top}, *large, tone::text,
                paint.shortened(node.name, *large, room, true), true);
     if (small)
         paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, *small, node.lacks.empty() ? tone::dim : tone::warm,
