@@ -143,12 +143,11 @@ TEST_CASE("the window remembers files and layouts, and survives a damaged memory
 TEST_CASE("a file that is dropped goes to the node that takes it, as one edit") {
     const Folder folder;
     session::RunChoice choice;
-    choice.patch =
-        folder
-            .write("p.toml",
-                   "wires = [\"go.out -> drum.trigger\"]\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
-                   "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\n")
-            .string();
+    choice.patch = folder
+                       .write("p.toml",
+                              "wires = [\"go.out -> drum.trigger\"]\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
+                              "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\n")
+                       .string();
     Workbench bench(choice);
     const std::string before = bench.editor().text();
     REQUIRE(bench.unfinished().find("drum"));

@@ -245,8 +245,8 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     }
     // Without room for the type the name stands in the middle.
     const double title_top = small ? box.top + 3.0 * z : box.top + 0.45 * ((title_height - 6.0) * z - *large);
-    paint.text({box.left + 8.0 * z, title_top}, *large, tone::text,
-               paint.shortened(node.name, *large, room, true), true);
+    paint.text({box.left + 8.0 * z, title_top}, *large, tone::text, paint.shortened(node.name, *large, room, true),
+               true);
     if (small)
         paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, *small, node.lacks.empty() ? tone::dim : tone::warm,
                    paint.shortened(node.lacks.empty() ? node.type : node.lacks, *small, node_width * z - 14.0 * z));
