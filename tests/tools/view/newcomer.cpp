@@ -22,7 +22,19 @@ namespace fs = std::filesystem;
 namespace {
 
 std::future<Outcome> begin(const Display& display, const Folder& folder, const std::string& arguments) {
-    return std::async(std::launch::async, [&display, &folder, arguments] { return on(display, folder, arguments); });
+    return std::async(std::launch::async,
+                      [&display, &folder, arguments] { return on(display, folder, arguments, 280); });
+}
+
+/// Waits until the window shows what was done: pictures are slow on a busy machine.
+void settle(const Person& person) {
+    Picture before = person.look();
+    for (int i = 0; i < 30; ++i) {
+        Person::wait(0.5);
+        Picture now = person.look();
+        if (now.rgb == before.rgb) return;
+        before = std::move(now);
+    }
 }
 
 /// TACTUS_KEEP_PICTURES names a folder for pictures that somebody looks at.
@@ -52,17 +64,21 @@ double loudest(const fs::path& sound) {
 /// Adds a node through the list that a double click opens.
 void add(Person& person, double x, double y, const std::string& words) {
     person.double_click(x, y);
+    settle(person);
     person.type(words);
+    settle(person);
     person.tap("Return");
-    Person::wait(0.6);
+    settle(person);
 }
 
 /// Does one thing through the list of commands.
 void command(Person& person, const std::string& words) {
     person.chord({"Control_L"}, "p");
+    settle(person);
     person.type(words);
+    settle(person);
     person.tap("Return");
-    Person::wait(0.6);
+    settle(person);
 }
 
 }  // namespace
