@@ -18,6 +18,7 @@ set_property(SOURCE devices/hosted/host_process.cpp APPEND PROPERTY
 
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} FILES_MATCHING PATTERN "*.png")
 install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.
 foreach(kind bones cases equalisers saw tasks)

@@ -8,6 +8,13 @@ foreach(kind patches displays tasks)
   endforeach()
 endforeach()
 
+# Small pictures of the patches, for the window's first page.
+file(GLOB pictures CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/library/pictures/*.png)
+foreach(file ${pictures})
+  get_filename_component(name ${file} NAME)
+  configure_file(${file} ${CMAKE_BINARY_DIR}/library/pictures/${name} COPYONLY)
+endforeach()
+
 # The gallery: small patches that `tactus new` copies.
 file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/how-to/patches/*.toml)
 foreach(file ${examples})

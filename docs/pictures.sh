@@ -62,4 +62,32 @@ if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" window "* ]]; then
         --reference "$(dirname "$command")/library/saw/cutting_190_7N.flac" >/dev/null)
     mv "$folder/window.png" "$pictures/window.png"
     echo window.png
+    (cd "$folder" && XDG_STATE_HOME=$folder/state "$command" view --view-script "$docs/window-tutorial.script" >/dev/null)
+    for name in start palette unfinished commands ball; do
+        mv "$folder/window-$name.png" "$pictures/window-$name.png"
+        echo "window-$name.png"
+    done
 fi
+
+# Small pictures of the library's patches, for the window's first page; patches without a scene show their graph.
+small() {
+    local name=$1
+    shift
+    [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" small "* ]] || return 0
+    "$tactus" render "$name" --out "$folder/small-$name" --frames 1 --size 320x200 "$@" >/dev/null
+    local frames=("$folder/small-$name"/frame_*.png)
+    mkdir -p "$docs/../assets/library/pictures"
+    mv "${frames[-1]}" "$docs/../assets/library/pictures/$name.png"
+    echo "small $name.png"
+}
+small burr-training --seconds 3
+small fragments --seconds 2.2
+small gripper-on-arm --seconds 4
+small look-around --seconds 2
+small peg-in-hole --seconds 2.4 --clip=-y
+small planning-trauma --seconds 0.5
+small pop-through --seconds 2 --view-from front
+small press-fragments --seconds 2
+small saw-task --seconds 2
+small saw-training --seconds 4
+small touch-sphere --seconds 2 --view-from front

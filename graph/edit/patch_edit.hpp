@@ -20,7 +20,7 @@ struct WireText {
 
 struct NewNode {
     std::string name, type;
-    std::string rate, group;  ///< one of them
+    std::string rate, group;  ///< one of them; none for a sub-patch whose nodes have rates
     std::vector<std::pair<std::string, std::string>> settings;  ///< parameters as people write them: "0.8 N/mm"
     std::vector<WireText> wires;
 };

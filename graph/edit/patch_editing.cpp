@@ -77,13 +77,40 @@ void Editing::reset(const Path& owner, std::string_view name) {
     remove(*entry);
 }
 
+void Editing::put(const Path& owner, std::string_view name, std::string_view value) {
+    if (!patch::is_name(name))
+        throw Error(fmt::format("'{}' is no name; names have letters, digits, '_' and '-'", name));
+    Path path = owner;
+    path.emplace_back(name);
+    if (const TomlEntry* entry = spans_.find(path)) return replace(entry->value, value);
+    const TomlEntry* const inline_table = spans_.find(owner);
+    const bool is_there = inline_table || std::ranges::any_of(spans_.headers, [&](const TomlHeader& header) {
+                              return header.path == owner;
+                          });
+    if (!is_there) {
+        const std::string newline(patch::newline_of(text_));
+        std::string header;
+        for (const std::string& part : owner) header += (header.empty() ? "" : ".") + part;
+        const bool ends_line = text_.empty() || text_.back() == '\n';
+        replace({text_.size(), text_.size()},
+                fmt::format("{}{}[{}]{}", ends_line ? "" : newline, text_.empty() ? "" : newline, header, newline));
+    }
+    insert(owner, name, std::string(value));
+}
+
+bool Editing::drop(const Path& path) {
+    bool is_gone = false;
+    while (remove_one(path)) is_gone = true;
+    return is_gone;
+}
+
 void Editing::add_table(const NewNode& node) {
     if (!patch::is_name(node.name))
         throw Error(fmt::format("'{}' is no name; names have letters, digits, '_' and '-'", node.name));
     if (has({"nodes", node.name})) throw Error(fmt::format("there is a node '{}' already", node.name));
     std::vector<std::pair<std::string, std::string>> lines{{"type", toml_quoted(node.type)}};
-    if (node.group.empty()) lines.emplace_back("rate", toml_quoted(node.rate));
-    else lines.emplace_back("group", toml_quoted(node.group));
+    if (!node.rate.empty()) lines.emplace_back("rate", toml_quoted(node.rate));
+    if (!node.group.empty()) lines.emplace_back("group", toml_quoted(node.group));
     for (const auto& [name, value] : node.settings) lines.emplace_back(name, literal(value));
     if (const TomlEntry* all = spans_.find({"nodes"}); all && all->value.of(text_).starts_with('{')) {
         std::string table = "{ ";
@@ -107,8 +134,8 @@ void Editing::add_table(const NewNode& node) {
 void Editing::remove_node(std::string_view name) {
     const Path path{"nodes", std::string(name)};
     if (!has(path)) throw Error(fmt::format("no node '{}'", name));
-    while (remove_one(path)) {
-    }
+    drop(path);
+    for (const char* table : {"places", "colours"}) drop({"window", table, std::string(name)});
 }
 
 void Editing::rename(std::string_view from, std::string_view to) {
@@ -121,6 +148,10 @@ void Editing::rename(std::string_view from, std::string_view to) {
         if (starts_with(header.path, path)) places.push_back(header.keys[1]);
     for (const TomlEntry& entry : spans_.entries)
         if (const TextSpan* key = entry.key(1); key && starts_with(entry.path, path)) places.push_back(*key);
+    for (const TomlEntry& entry : spans_.entries)
+        if (const TextSpan* key = entry.key(2);
+            key && entry.path.size() == 3 && entry.path[0] == "window" && entry.path[2] == from)
+            places.push_back(*key);
     std::ranges::sort(places, std::greater{}, &TextSpan::begin);
     for (const TextSpan& place : places) text_.replace(place.begin, place.end - place.begin, to);
     spans_ = toml_spans(text_);

@@ -25,6 +25,11 @@ public:
 
     void reset(const Path& owner, std::string_view name);
 
+    /// Sets an entry to a value as TOML writes it. A table that is not there is added at the end.
+    void put(const Path& owner, std::string_view name, std::string_view value);
+    /// Removes an entry or a table, wherever it is written. False: it is not there.
+    bool drop(const Path& path);
+
     void add_table(const NewNode& node);
 
     void remove_node(std::string_view name);

@@ -3,6 +3,7 @@
 
 #include "assets/file/toml_file.hpp"
 #include "dsp/core/units.hpp"
+#include "graph/patch/patch_window.hpp"
 #include "graph/patch/patch_wire.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -20,9 +21,9 @@ namespace tactus::patch {
 
 namespace {
 
-const std::array<std::string, 14> top_level{"title",  "about",   "wires",      "quantum",   "seed",
+const std::array<std::string, 15> top_level{"title",  "about",   "wires",      "quantum",   "seed",
                                             "assets", "groups",  "devices",    "actuators", "nodes",
-                                            "inputs", "outputs", "parameters", "parts"};
+                                            "inputs", "outputs", "parameters", "parts",     "window"};
 
 class PatchReader {
 public:
@@ -93,6 +94,7 @@ private:
             auto& ends = name == "inputs" ? patch_.inputs : name == "outputs" ? patch_.outputs : patch_.parameters;
             for_each(value, name, [&](const toml::key& k, const toml::node& v) { offer(k, v, name, ends); });
         } else if (name == "parts") parts(value);
+        else if (name == "window") read_window(value, name_, problems_);
         else
             problems_.add(at(key.source()),
                           fmt::format("unknown key '{}' at the top of a patch{}", name, did_you_mean(name, top_level)));

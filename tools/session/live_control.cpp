@@ -27,10 +27,11 @@ LiveControl::LiveControl(run::Engine& engine, PatchChoice choice, compile::Asset
       choice_(std::move(choice)),
       assets_(assets),
       say_(std::move(say)),
-      file_(find_patch(choice_.patch)),
+      file_(file_of(choice_)),
       watch_(file_) {
     watch_.follow(patch::part_files(engine.plan().patch));
-    if (!watch_.is_working())
+    // A patch that is not saved yet has nothing to watch.
+    if (!watch_.is_working() && std::filesystem::exists(file_))
         say_(fmt::format("{} cannot be watched for changes; edits take effect at the next start", file_.string()));
     try {
         socket_ = std::make_unique<ControlSocket>();

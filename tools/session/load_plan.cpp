@@ -111,15 +111,21 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
     return plan;
 }
 
+fs::path file_of(const PatchChoice& choice) { return choice.text ? fs::path(choice.patch) : find_patch(choice.patch); }
+
+patch::Patch read_choice(const PatchChoice& choice, patch::Problems& problems) {
+    if (choice.text) return patch::read_patch(*choice.text, choice.patch, problems);
+    return patch::load_patch(find_patch(choice.patch), problems);
+}
+
 std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems) {
-    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr,
-                   problems);
+    return plan_of(read_choice(choice, problems), choice.overrides, choice.seed, nullptr, problems);
 }
 
 compile::Plan load_plan(const PatchChoice& choice, compile::AssetCache& assets) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides,
-                                                choice.seed, &assets, problems);
+    std::optional<compile::Plan> plan =
+        plan_of(read_choice(choice, problems), choice.overrides, choice.seed, &assets, problems);
     throw_problems(problems);
     return std::move(*plan);
 }
@@ -144,7 +150,7 @@ void throw_problems(const patch::Problems& problems) {
 
 std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds,
                                             bool live) {
-    take::TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
+    take::TakeAbout about{file_of(choice), choice.overrides, choice.seed, seconds, live};
     // Absolute paths, because a take may be replayed from any folder.
     for (std::string& asset : about.overrides.assets)
         if (const auto equals = asset.find('='); equals != std::string::npos)

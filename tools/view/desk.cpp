@@ -14,20 +14,26 @@
 
 namespace tactus::view {
 
-Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
+Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memory)
     : questions(bench),
       window_(window),
       bench_(bench),
       take_(take),
-      fonts_{window.body, window.bold, window.large, window.scale()},
+      fonts_{window.body, window.bold, window.large, window.scale(), window.small},
       patch_(bench),
       nodes_(bench),
       scopes_(bench),
       scene_(bench),
       calibration_(bench, scene_),
       plan_(bench, scene_),
-      train_(bench) {
+      train_(bench),
+      memory_(memory),
+      start_page_(memory) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
+    commands_ = make_commands();
+    nodes_.ask_file = [this](const std::string& title, FileChooser chooser, FileDialog::Done done) {
+        ask_file(title, std::move(chooser), std::move(done));
+    };
 }
 
 const Feed* Desk::feed() const {
@@ -72,16 +78,8 @@ void Desk::show_messages(double height) {
 }
 
 void Desk::shortcuts() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
-    const auto pressed = [](char key) { return ImGui::IsKeyPressed(key, false); };
-    if (io.KeyCtrl && pressed('Z')) io.KeyShift ? bench_.redo() : bench_.undo();
-    if (io.KeyCtrl && pressed('Y')) bench_.redo();
-    if (io.KeyCtrl && pressed('S') && !take_) bench_.save();
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Space), false)) {
-        if (take_) take_->play(!take_->is_playing());
-        else bench_.pause(bench_.status()->state == RunStatus::State::runs);
-    }
+    if (ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
+    run_pressed(commands_);
 }
 
 void Desk::ask_farewell() {
@@ -108,7 +106,7 @@ void Desk::draw() {
     follow_run();
     scene_.hand().begin_picture();
     looked_at_.clear();
-    fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
+    fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};
     forget_spots();
     ImGui::NewFrame();
     ImGui::PushFont(fonts_.body);
@@ -119,6 +117,9 @@ void Desk::draw() {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     shortcuts();
+    if (start_page_.is_open) return draw_start();
+    // On a narrow window the words of the run need the room of the menus.
+    draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0);
     run_bar(bench_, take_, fonts_);
     const Point below_bar = point(ImGui::GetCursorScreenPos());
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
@@ -142,7 +143,8 @@ void Desk::draw() {
     show_messages(messages);
     ask_farewell();
     // One dialog at a time.
-    if (farewell != Farewell::asks) questions.draw();
+    draw_dialogs();
+    if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();
     ImGui::End();
     if (!take_) state_banner(bench_, below_bar, fonts_);
     if (!shows(columns_, Panel::scene)) scene_.rest();

@@ -2,6 +2,10 @@
 // The layout of the window: all panels.
 #pragma once
 
+#include "tools/view/files/file_dialog.hpp"
+#include "tools/view/files/start_page.hpp"
+#include "tools/view/files/window_memory.hpp"
+#include "tools/view/frame/command_list.hpp"
 #include "tools/view/frame/layout.hpp"
 #include "tools/view/patch/node_panel.hpp"
 #include "tools/view/patch/patch_panel.hpp"
@@ -15,6 +19,7 @@
 #include "tools/view/window.hpp"
 #include "tools/view/workbench.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
@@ -22,9 +27,16 @@
 
 namespace tactus::view {
 
+/// What the desk asks of its owner.
+struct DeskWishes {
+    std::filesystem::path open;  ///< a patch, a take or a plan
+    bool new_patch = false, start_page = false;
+    bool any() const { return !open.empty() || new_patch || start_page; }
+};
+
 class Desk {
 public:
-    Desk(Window& window, Workbench& bench, TakeBench* take);
+    Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memory);
 
     /// Draws one frame, between Window::begin and Window::end.
     void draw();
@@ -39,6 +51,12 @@ public:
     const Feed* feed() const;
 
     Layout layout = Layout::patch;
+    /// Changes the layout, and remembers it for this patch.
+    void use_layout(Layout wanted);
+    DeskWishes wishes;
+    StartPage& start_page() { return start_page_; }
+    /// A file dropped on the window.
+    void take_dropped(const std::filesystem::path& file);
 
     /// Dialog when the window closes: end or continue the run?
     enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
@@ -65,6 +83,22 @@ private:
     void show_messages(double height);
     void ask_farewell();
     void shortcuts();
+    std::vector<Command> make_commands();
+    void add_file_commands(std::vector<Command>& all);
+    void add_edit_commands(std::vector<Command>& all);
+    void add_view_commands(std::vector<Command>& all);
+    void add_run_commands(std::vector<Command>& all);
+    /// Commands and all that they can be applied to: types to add, nodes to go to, wires to make, examples to open.
+    std::vector<Command> all_commands();
+    void ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done);
+    void ask_open();
+    void ask_save_as();
+    void ask_value(const std::string& node, const std::string& param, const std::string& value);
+    void draw_value();
+    void go_to_largest_force();
+    void draw_start();
+    void draw_dialogs();
+    void take_wishes();
 
     Window& window_;
     Workbench& bench_;
@@ -80,6 +114,13 @@ private:
     PlanPanel plan_;
     TrainPanel train_;
     std::set<std::string> looked_at_;
+    WindowMemory& memory_;
+    StartPage start_page_;
+    FileDialog dialog_;
+    CommandList list_;
+    std::vector<Command> commands_;
+    std::string value_of_, value_;  ///< the parameter whose value is asked for
+    bool asks_value_ = false;
     std::vector<LayoutColumn> columns_;
     std::vector<std::vector<LayoutColumn>> moved_;  ///< columns of other layouts and panels, for when they return
 };

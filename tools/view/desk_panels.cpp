@@ -21,12 +21,13 @@ public:
         const ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar;
         ImGui::BeginChild(id, vec({0.0, height}), false,
                           ImGuiWindowFlags_AlwaysUseWindowPadding | (scrolls ? ImGuiWindowFlags_None : still));
+        // Of the panel, not of what pops up from it.
+        ImGui::PopStyleVar();
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec(spacing));
     }
     ~PanelFrame() {
         ImGui::PopStyleVar();
         ImGui::EndChild();
-        ImGui::PopStyleVar();
     }
     PanelFrame(const PanelFrame&) = delete;
     PanelFrame& operator=(const PanelFrame&) = delete;
@@ -180,7 +181,7 @@ void Desk::draw_node(double height) {
     const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;
     nodes_.wants_catalogue = false;
     if (tab("Add a node", front)) {
-        nodes_.draw_catalogue(patch_.selected, fonts_);
+        nodes_.draw_catalogue(patch_.selected);
         ImGui::EndTabItem();
     }
     ImGui::EndTabBar();

@@ -18,6 +18,7 @@ inline Point point(ImVec2 v) { return {static_cast<double>(v.x), static_cast<dou
 struct Fonts {
     ImFont *body, *bold, *large;
     double scale;  ///< of the window's contents
+    ImFont* small = nullptr;  ///< null: the body's
 };
 
 /// Text of any size, from the font with the nearest size.
@@ -68,6 +69,7 @@ public:
 private:
     ImFont* font(double size, bool heavy) const {
         if (heavy) return fonts_.bold;
+        if (fonts_.small && size < 0.9 * static_cast<double>(fonts_.body->FontSize)) return fonts_.small;
         return size > 1.3 * static_cast<double>(fonts_.body->FontSize) ? fonts_.large : fonts_.body;
     }
 

@@ -25,13 +25,13 @@ namespace {
 constexpr double longest_wait = 60.0;  // s, for conditions to wait for
 
 const std::vector<std::string> commands{
-    "open",      "run",        "stop",    "pause",      "resume", "record", "select",    "set",     "reset",
-    "add",       "wire",       "connect", "remove",     "rename", "undo",   "redo",      "save",    "scope",
-    "reference", "freeze",     "export",  "disconnect", "fit",    "look",   "catalogue", "goto",    "scene",
-    "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
-    "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
-    "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
-    "display",   "offset",     "screens", "shut",       "layout", "spots"};
+    "open",      "run",        "stop",    "pause",      "resume", "record",  "select",    "set",     "reset",
+    "add",       "wire",       "connect", "remove",     "rename", "undo",    "redo",      "save",    "scope",
+    "reference", "freeze",     "export",  "disconnect", "fit",    "look",    "catalogue", "goto",    "scene",
+    "hover",     "click",      "drag",    "wheel",      "wait",   "until",   "frames",    "size",    "minimise",
+    "restore",   "screenshot", "close",   "say",        "from",   "stereo",  "clip",      "measure", "check",
+    "scale",     "press",      "double",  "slide",      "pull",   "type",    "key",       "cost",    "head",
+    "display",   "offset",     "screens", "shut",       "layout", "instant", "text",      "spots"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -127,20 +127,20 @@ bool Script::edit(const Line& line, Desk& desk) {
     if (what == "disconnect") return bench.disconnect(word(line, 1));
     if (what == "remove") return bench.remove(word(line, 1));
     if (what == "rename") return bench.rename(word(line, 1), word(line, 2));
+    if (what == "undo" && line.words.size() > 1) {
+        while (bench.undo()) {
+        }
+        return true;
+    }
     if (what == "undo") return bench.undo();
     if (what == "redo") return bench.redo();
     if (what == "save") return line.words.size() > 1 ? bench.save_as(line.words[1]) : bench.save();
     if (what == "wire") {
-        if (!bench.draft()) throw Error("there is no node draft that needs wires");
-        bench.connect_draft(word(line, 1), word(line, 2));
-        return true;
+        if (bench.last_added().empty()) throw Error("there is no new node that needs wires");
+        return bench.connect(word(line, 1), bench.last_added() + "." + word(line, 2));
     }
     // add TYPE GROUP
-    const auto& lanes = bench.picture().lanes;
-    const auto lane = std::ranges::find(lanes, word(line, 2), &PictureLane::name);
-    if (lane == lanes.end()) throw Error(fmt::format("no group '{}'", word(line, 2)));
-    bench.begin_draft(word(line, 1), static_cast<int>(lane - lanes.begin()));
-    return true;
+    return !bench.add_node(word(line, 1), word(line, 2)).empty();
 }
 
 bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
@@ -189,6 +189,7 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
         return pictures_ >= 3;
     }
     if (waited > longest_wait) throw Error(fmt::format("'{}' was not reached within {} s", what, longest_wait));
+    if (what == "instant") return desk.take() && std::abs(desk.take()->time() - number(line, 1)) < 1e-3;
     if (what == "scene") return !desk.take() || desk.take()->scene_is_there();
     // until SECONDS | until paused | until recording | until over
     const auto status = desk.bench().status();
@@ -203,8 +204,8 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     Workbench& bench = desk.bench();
     const std::string& what = line.words.front();
     const auto is = [&](auto... names) { return ((what == names) || ...); };
-    if (is("wait", "frames", "screenshot", "click", "drag", "wheel", "scene", "until", "press", "double", "slide",
-           "pull", "type", "key", "cost"))
+    if (is("wait", "frames", "screenshot", "click", "drag", "wheel", "scene", "instant", "until", "press", "double",
+           "slide", "pull", "type", "key", "cost"))
         return wait_for(line, desk, window);
     if (is("set", "reset", "connect", "disconnect", "remove", "rename", "undo", "redo", "save", "wire", "add")) {
         const bool made = edit(line, desk);
@@ -214,7 +215,8 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
                                                    : bench.messages().back().text);
         return true;
     }
-    if (is("run")) bench.run();
+    if (is("text")) file::write_durable_file(word(line, 1), bench.editor().text());
+    else if (is("run")) bench.run();
     else if (is("stop")) bench.stop();
     else if (is("pause", "resume")) bench.pause(what == "pause");
     else if (is("record")) bench.record(line.words.size() < 2 || line.words[1] != "off");

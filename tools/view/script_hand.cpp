@@ -24,6 +24,11 @@ Script::Keys Script::key_named(const std::string& name) {
     }
     if (key == "enter") keys.key = ImGui::GetKeyIndex(ImGuiKey_Enter);
     else if (key == "delete") keys.key = ImGui::GetKeyIndex(ImGuiKey_Delete);
+    else if (key == "tab") keys.key = ImGui::GetKeyIndex(ImGuiKey_Tab);
+    else if (key == "escape") keys.key = ImGui::GetKeyIndex(ImGuiKey_Escape);
+    else if (key == "down") keys.key = ImGui::GetKeyIndex(ImGuiKey_DownArrow);
+    else if (key == "up") keys.key = ImGui::GetKeyIndex(ImGuiKey_UpArrow);
+    else if (key == "f1") keys.key = 290;  // of GLFW
     else if (key == "space") keys.key = ImGui::GetKeyIndex(ImGuiKey_Space);
     else if (key.size() == 1) keys.key = std::toupper(static_cast<unsigned char>(key[0]));
     else throw Error(fmt::format("no key '{}'", name));

@@ -17,6 +17,16 @@ std::uint32_t colour_of(const ValueType* type) {
     return colour(0x69d08a);
 }
 
+std::uint32_t colour_named(std::string_view name) {
+    if (name == "blue") return colour(0x2f5f96);
+    if (name == "green") return colour(0x2f7a50);
+    if (name == "amber") return colour(0x8f6a1c);
+    if (name == "red") return colour(0x93404a);
+    if (name == "violet") return colour(0x6a4a95);
+    if (name == "teal") return colour(0x1f7277);
+    return colour(0x4a5261);
+}
+
 void apply_theme(double scale) {
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();

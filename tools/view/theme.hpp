@@ -5,6 +5,7 @@
 #include "graph/node/value.hpp"
 
 #include <cstdint>
+#include <string_view>
 
 namespace tactus::view {
 
@@ -28,6 +29,9 @@ inline constexpr std::uint32_t curves[] = {colour(0x5ab0ff), colour(0xff9f5a), c
 
 /// Colour of a wire by its type; null: any type.
 std::uint32_t colour_of(const ValueType* type);
+
+/// Colour of a node or comment by its name in the patch; grey for unknown names.
+std::uint32_t colour_named(std::string_view name);
 
 /// Sets colours and sizes of all widgets; `scale`: relative to a standard screen.
 void apply_theme(double scale);

@@ -34,7 +34,7 @@ public:
         ++haptic::window_hand().windows;
         if (!view.script.empty()) {
             script_.emplace(view.script);
-            script_->open = [this](const std::string& what) { wanted_ = what; };
+            script_->open = [this](const std::string& what) { wanted_.open = what; };
         }
     }
 
@@ -52,7 +52,19 @@ public:
         choice_.is_further = std::exchange(has_opened_, true);
         bench_ = std::make_unique<Workbench>(choice_);
         bench_->find_kept_edits();
+        memory_.opened(bench_->editor().file());
         set_up();
+    }
+
+    void open_untitled() {
+        close();
+        choice_.is_further = std::exchange(has_opened_, true);
+        bench_ = Workbench::untitled(choice_);
+        set_up();
+    }
+    void open_start_page() {
+        open_untitled();
+        desk_->start_page().open();
     }
 
     void open_take(const fs::path& folder) {
@@ -64,6 +76,7 @@ public:
         choice.seed = take_->take().about.seed;
         bench_ = std::make_unique<Workbench>(choice);
         bench_->has_patch_behind = !choice_.patch.empty();
+        memory_.opened(folder);
         set_up();
     }
 
@@ -85,7 +98,9 @@ public:
                 desk_->scene().hand().begin_picture();
             }
             if (script_) script_->step(*desk_, window_);
-            if (!wanted_.empty()) open_wanted();
+            for (const std::string& file : window_.take_dropped()) desk_->take_dropped(file);
+            if (desk_->wishes.any()) wish(std::exchange(desk_->wishes, {}));
+            if (wanted_.any()) open_wanted();
             if (bench_->wants_take) open_take(fs::path(bench_->take()));
             else if (bench_->wants_patch) open_patch(choice_);
             if (const std::optional<bool> goes_on = farewell()) return *goes_on;
@@ -107,22 +122,46 @@ private:
     }
 
     void set_up() {
-        desk_ = std::make_unique<Desk>(window_, *bench_, take_.get());
+        desk_ = std::make_unique<Desk>(window_, *bench_, take_.get(), memory_);
         window_.set_title(fmt::format("{} - Tactus", bench_->title()));
-        desk_->layout = layout_of_name(view_.layout).value_or(Layout::patch);
+        auto layout = layout_of_name(view_.layout);
+        if (!layout) layout = memory_.layout_of(bench_->editor().file());
+        if (!layout) layout = layout_of_name(bench_->window().layout);
+        desk_->layout = layout.value_or(Layout::patch);
         desk_->scene().use(view_.sight);
         if (view_.reference.empty()) return;
         desk_->scopes().set_reference(view_.reference);
     }
 
+    /// Asks first when edits would be left behind.
+    void wish(DeskWishes wishes) {
+        if (!take_ && bench_->has_unsaved_edits()) {
+            asked_ = std::move(wishes);
+            desk_->questions.leaving = Questions::Leaving::asks;
+        } else wanted_ = std::move(wishes);
+    }
+
     void open_wanted() {
-        const std::string what = std::exchange(wanted_, {});
-        if (fs::exists(fs::path(what) / "take.json")) return open_take(what);
-        RunChoice choice = choice_;
-        choice.patch = what;
-        choice.overrides = {};
-        choice.record.clear();
-        open_patch(choice);
+        const DeskWishes wanted = std::exchange(wanted_, {});
+        try {
+            if (wanted.start_page) return open_start_page();
+            if (wanted.new_patch) return open_untitled();
+            if (fs::exists(wanted.open / "take.json")) return open_take(wanted.open);
+            RunChoice choice = choice_;
+            choice.patch = wanted.open.string();
+            choice.overrides = {};
+            if (kind_of_file(wanted.open) == FileKind::plan) {
+                choice.patch = "planning-trauma";
+                choice.overrides.assets = {"case=" + fs::absolute(wanted.open).string()};
+            }
+            choice.record.clear();
+            open_patch(choice);
+        } catch (const Error& error) {
+            // A script says where it fails; a person reads it in the window.
+            if (script_) throw;
+            if (!bench_) open_start_page();
+            bench_->tell(error.what(), true);
+        }
     }
 
     /// True when the run continues after the window closes.
@@ -134,7 +173,11 @@ private:
         if (script_ && script_->wants_to_close()) return view_.keep_running;
         using Leaving = Questions::Leaving;
         Questions& questions = desk_->questions;
-        if (questions.leaving == Leaving::leaves) window_.close();
+        if (questions.leaving == Leaving::none) asked_ = {};
+        if (questions.leaving == Leaving::leaves && asked_.any()) {
+            questions.leaving = Leaving::none;
+            wanted_ = std::exchange(asked_, {});
+        } else if (questions.leaving == Leaving::leaves) window_.close();
         else if (window_.wants_to_close() && !take_ && bench_->has_unsaved_edits()) {
             window_.keep_open();
             questions.leaving = Leaving::asks;
@@ -159,7 +202,8 @@ private:
     std::unique_ptr<TakeBench> take_;
     std::unique_ptr<Workbench> bench_;
     std::unique_ptr<Desk> desk_;
-    std::string wanted_;
+    DeskWishes wanted_, asked_;  ///< asked: waits for what becomes of unsaved edits
+    WindowMemory memory_;
     bool has_opened_ = false;
 
 public:
@@ -196,9 +240,15 @@ int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted
     return run->losses().empty() ? done : output_lost;
 }
 
-int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted) {
+int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted) {
     Viewer viewer(choice.view, interrupted);
-    viewer.open_take(choice.take);
+    if (choice.file.empty()) viewer.open_start_page();
+    else if (fs::is_directory(choice.file)) viewer.open_take(choice.file);
+    else {
+        RunChoice patch;
+        patch.patch = choice.file.string();
+        viewer.open_patch(patch);
+    }
     viewer.show();
     return done;
 }

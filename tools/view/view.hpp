@@ -12,7 +12,7 @@ namespace tactus::view {
 /// window can be opened.
 int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted);
 
-/// Opens a window on a take. Throws Error.
-int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted);
+/// Opens a window on a take or a patch, which is not run; without a file, on the start page. Throws Error.
+int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted);
 
 }  // namespace tactus::view

@@ -25,8 +25,8 @@ struct ViewedRunChoice : session::RunChoice {
     ViewChoice view;
 };
 
-struct TakeViewChoice {
-    std::filesystem::path take;
+struct FileViewChoice {
+    std::filesystem::path file;  ///< a take or a patch; empty: the start page
     ViewChoice view;
 };
 

@@ -7,6 +7,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 struct GLFWwindow;
 struct ImFont;
@@ -40,12 +42,15 @@ public:
     double scale() const { return scale_; }
     /// Total time between `begin` and `end`, s.
     double drawn_s() const { return drawn_s_; }
+    /// Files dropped on the window since the last call.
+    std::vector<std::string> take_dropped() { return std::exchange(listener_.dropped, {}); }
     /// Captures the next frame in `picture`.
     void want_picture();
     const display::Image& picture() const { return shown_; }
 
     ImFont* body = nullptr;
     ImFont* bold = nullptr;
+    ImFont* small = nullptr;  ///< for the smallest text
     ImFont* large = nullptr;  ///< twice the size, for magnified text
 
 private:
@@ -59,7 +64,11 @@ private:
     };
     Library library_;
     GLFWwindow* window_ = nullptr;
-    InputQueue input_;
+    struct Listener {
+        InputQueue input;
+        std::vector<std::string> dropped;
+    };
+    Listener listener_;
     int width_ = 0, height_ = 0;
     double scale_ = 1.0;
     bool follows_screen_ = false;  // its scale

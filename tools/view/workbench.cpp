@@ -3,6 +3,8 @@
 #include "tools/session/site_choice.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "graph/edit/patch_arrange.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
@@ -15,7 +17,6 @@ namespace tactus::view {
 
 using session::find_patch;
 using session::plan_of;
-using session::throw_problems;
 
 namespace fs = std::filesystem;
 
@@ -31,17 +32,34 @@ std::string_view without_mark(std::string_view text) {
 }  // namespace
 
 Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
-    const fs::path file = find_patch(choice.patch);
-    editor_ = std::make_unique<edit::PatchEditor>(file::read_whole_file(file), file,
+    const fs::path file = session::file_of(choice);
+    editor_ = std::make_unique<edit::PatchEditor>(choice.text ? *choice.text : file::read_whole_file(file), file,
                                                   [this](std::string_view text) { return check(text); });
+    choice_.text.reset();
     if (const auto problem = check(editor_->text())) tell(*problem, true);
     adopt();
+    tell_unfinished();
     last_take_ = choice.record;
 }
 
+std::unique_ptr<Workbench> Workbench::untitled(RunChoice choice) {
+    std::error_code ignored;
+    fs::path file = fs::current_path(ignored) / "untitled.toml";
+    for (int i = 2; fs::exists(file, ignored); ++i) file.replace_filename(fmt::format("untitled-{}.toml", i));
+    choice.patch = file.string();
+    choice.text = "";
+    choice.overrides = {};
+    choice.record.clear();
+    return std::make_unique<Workbench>(choice);
+}
+
+bool Workbench::is_untitled() const {
+    std::error_code ignored;
+    return !fs::exists(editor_->file(), ignored);
+}
+
 std::string Workbench::title() const {
-    if (plan_ && !plan_->patch.title.empty()) return plan_->patch.title;
-    return editor_->file().stem().string();
+    return written_.title.empty() ? editor_->file().stem().string() : written_.title;
 }
 
 void Workbench::tell(std::string text, bool is_problem) {
@@ -49,25 +67,65 @@ void Workbench::tell(std::string text, bool is_problem) {
     if (messages_.size() > most_messages) messages_.pop_front();
 }
 
-std::optional<std::string> Workbench::check(std::string_view text) {
+Workbench::Judged Workbench::judge(std::string_view text) const {
+    Judged judged;
     patch::Problems problems;
-    std::optional<compile::Plan> plan =
-        plan_of(patch::read_patch(without_mark(text), editor_ ? editor_->file() : fs::path(choice_.patch), problems),
-                choice_.overrides, choice_.seed, nullptr, problems);
-    checked_.reset();
-    if (plan && problems.empty()) {
-        checked_ = std::make_unique<compile::Plan>(std::move(*plan));
-        return std::nullopt;
+    const fs::path file = editor_ ? editor_->file() : session::file_of(choice_);
+    judged.running = without_mark(text);
+    judged.written = patch::read_patch(judged.running, file, problems);
+    const auto is_blank = [&] {
+        return judged.written.nodes.empty() && problems.list.size() == 1 &&
+               problems.list.front().message().starts_with("the patch has no nodes");
+    };
+    if (is_blank()) return judged;
+    if (problems.empty()) judged.unfinished = unfinished_of(judged.written, problems);
+    patch::Patch runs = judged.written;
+    if (problems.empty() && !judged.unfinished.empty()) {
+        judged.running = edit::without_nodes(judged.running, judged.unfinished.names());
+        runs = patch::read_patch(judged.running, file, problems);
+        if (runs.nodes.empty()) return judged;
     }
-    if (problems.empty()) return "the patch does not compile";
-    return problems.list.front().what();
+    std::optional<compile::Plan> plan;
+    if (problems.empty()) plan = plan_of(std::move(runs), choice_.overrides, choice_.seed, nullptr, problems);
+    if (!problems.empty()) judged.problem = problems.list.front().what();
+    else if (!plan) judged.problem = "the patch does not compile";
+    else judged.plan = std::make_unique<compile::Plan>(std::move(*plan));
+    return judged;
+}
+
+std::optional<std::string> Workbench::check(std::string_view text) {
+    try {
+        checked_ = judge(text);
+    } catch (const Error& error) {
+        checked_ = {};
+        checked_.problem = error.what();
+    }
+    if (checked_.problem.empty()) return std::nullopt;
+    return checked_.problem;
 }
 
 /// Shows the plan that was checked last.
 void Workbench::adopt() {
-    plan_ = std::move(checked_);
-    picture_ = plan_ ? picture_of(*plan_) : PatchPicture{};
+    is_broken_ = !checked_.problem.empty();
+    plan_ = std::move(checked_.plan);
+    written_ = std::move(checked_.written);
+    unfinished_ = std::move(checked_.unfinished);
+    running_text_ = std::move(checked_.running);
+    checked_ = {};
+    window_ = patch::window_of(without_mark(editor_->text()));
+    PictureMatter matter{plan_.get(), &unfinished_, &window_, {}};
+    for (const patch::PatchNode& node : written_.nodes)
+        if (patch::is_sub_patch(node)) matter.parts.emplace_back(node.name, node.type);
+    picture_ = is_broken_ ? PatchPicture{} : picture_of(matter);
     ++plan_version_;
+}
+
+void Workbench::tell_unfinished() {
+    if (unfinished_.empty()) return;
+    const UnfinishedNode& first = unfinished_.nodes.front();
+    const std::size_t others = unfinished_.nodes.size() - 1;
+    tell(fmt::format("{} does not run yet: {}{}", first.name, first.lacks,
+                     others == 0 ? "" : fmt::format("; nor do {} more", others)));
 }
 
 /// Handles a text changed by undo, or saved by another program.
@@ -82,7 +140,7 @@ void Workbench::follow() {
     if (!run_ || !plan_) return;
     const PatchChange change = followed_ ? change_between(*followed_, *plan_) : PatchChange{{}, true};
     for (const PatchChange::Setting& s : change.settings) run_->set(s.node, s.param, s.value);
-    if (change.needs_edit) run_->edit(std::string(without_mark(editor_->text())));
+    if (change.needs_edit) run_->edit(running_text_);
     followed_ = plan_;
 }
 
@@ -96,6 +154,7 @@ bool Workbench::edit(const edit::PatchEditor::Edit& how, std::string done) {
     adopt();
     follow();
     tell(std::move(done));
+    tell_unfinished();
     return true;
 }
 
@@ -175,6 +234,12 @@ edit::InputTakes Workbench::taken_by(const std::string& to) const {
     return edit::InputTakes::one_wire;
 }
 
+bool Workbench::reconnect(const std::string& from, const std::string& old_to, const std::string& to) {
+    return edit(
+        [&](std::string_view text) { return edit::with_wire(edit::without_wire(text, old_to), {from, to, {}}); },
+        fmt::format("{} -> {} in place of {}", from, to, old_to));
+}
+
 bool Workbench::undo() {
     if (!editor_->can_undo()) return false;
     editor_->undo();
@@ -190,11 +255,9 @@ bool Workbench::redo() {
 }
 
 void Workbench::check_saved() {
-    patch::Problems problems;
-    const std::optional<compile::Plan> saved =
-        plan_of(patch::load_patch(editor_->file(), problems), choice_.overrides, choice_.seed, nullptr, problems);
-    throw_problems(problems);
-    const PatchChange change = plan_ && saved ? change_between(*plan_, *saved) : PatchChange{{}, true};
+    const Judged saved = judge(file::read_whole_file(editor_->file()));
+    if (!saved.problem.empty()) throw Error(saved.problem);
+    const PatchChange change = plan_ && saved.plan ? change_between(*plan_, *saved.plan) : PatchChange{{}, true};
     if (change.needs_edit || !change.settings.empty())
         throw Error(fmt::format("{}: the saved file compiles to a different plan than the one shown",
                                 editor_->file().string()));
@@ -205,20 +268,18 @@ void Workbench::turn(const std::string& node, const std::string& param, const st
 }
 
 std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
-    patch::Problems problems;
     try {
-        const std::string text = edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to));
-        plan_of(patch::read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed,
-                nullptr, problems);
+        const Judged judged = judge(edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to)));
+        if (judged.problem.empty()) return std::nullopt;
+        return judged.problem;
     } catch (const Error& error) {
         return error.what();
     }
-    if (problems.empty()) return std::nullopt;
-    return problems.list.front().message();
 }
 
 void Workbench::run() {
     if (run_ && !run_->is_over()) return;
+    if (!plan_ && !is_broken_) return tell("nothing runs yet: add nodes and give them their wires", true);
     run_.reset();
     observer_ = std::make_shared<observe::Observer>();
     ++runs_;
@@ -227,12 +288,12 @@ void Workbench::run() {
     choice.keeps_journal = true;
     choice.is_further = choice.is_further || runs_ > 1;
     has_take_ = !choice.record.empty();
+    // A text that does not compile says so from its file.
+    if (plan_) choice.text = running_text_;
     run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
     // The next run makes another take.
     choice_.record.clear();
-    // The run starts with the saved file; unsaved edits are applied at once.
-    followed_ = editor_->is_saved() ? plan_ : nullptr;
-    if (!followed_) follow();
+    followed_ = plan_;
 }
 
 void Workbench::stop() {
@@ -282,7 +343,7 @@ void Workbench::tend() {
 
 bool Workbench::has_same_parts() {
     check(editor_->text());
-    return checked_ && checked_->patch.parts == plan_->patch.parts;
+    return checked_.plan && checked_.plan->patch.parts == plan_->patch.parts;
 }
 
 /// Applied as an edit, which can be undone.

@@ -9,23 +9,17 @@
 #include "graph/edit/patch_editor.hpp"
 #include "tools/session/run_choice.hpp"
 #include "tools/view/patch/patch_picture.hpp"
+#include "tools/view/patch/unfinished.hpp"
 #include "tools/view/viewed_run.hpp"
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::view {
-
-/// A new node whose inputs still lack wires. It becomes an edit when it is complete.
-struct Draft {
-    edit::NewNode node;
-    std::vector<PicturePort> inputs, outputs;
-
-    bool is_complete() const;  ///< true when every required input has a wire
-};
 
 struct Message {
     std::string text;
@@ -36,10 +30,19 @@ class Workbench {
 public:
     /// Reads the patch; compile errors go to `messages`. Throws Error when it cannot be read.
     explicit Workbench(const RunChoice& choice);
+    /// A new patch with no file, at its place in the working folder; empty.
+    static std::unique_ptr<Workbench> untitled(RunChoice choice);
+    bool is_untitled() const;
 
     const edit::PatchEditor& editor() const { return *editor_; }
-    /// The plan of the text; null when it does not compile, which happens only for files saved by other programs.
+    /// The plan of all that is finished; null when nothing is, or when the text does not compile, which happens only for
+    /// files saved by other programs.
     const compile::Plan* plan() const { return plan_.get(); }
+    bool is_broken() const { return is_broken_; }
+    const Unfinished& unfinished() const { return unfinished_; }
+    const patch::PatchWindow& window() const { return window_; }
+    /// The nodes as written, with sub-patches as one.
+    const patch::Patch& written() const { return written_; }
     const PatchPicture& picture() const { return picture_; }
     /// Increases when plan and picture change.
     std::int64_t plan_version() const { return plan_version_; }
@@ -57,6 +60,8 @@ public:
     bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
     /// Removes the wire to that input; of several the one from `from`, or the first when none is given.
     bool disconnect(const std::string& to, const std::string& from = {});
+    /// Takes a wire off one input and leads it to another, as one edit.
+    bool reconnect(const std::string& from, const std::string& old_to, const std::string& to);
     /// Moves the saw's site to a point of the bone (scene, m), along the surface's normal, as one edit. Refused for a
     /// patch without a bone to saw.
     bool cut_at(const Vec3& site);
@@ -91,13 +96,46 @@ public:
     /// For a moving slider: changes the run but not the text.
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
-    /// Starts a draft of a node type in a group; without required inputs it becomes an edit at once.
-    void begin_draft(const std::string& type, int group);
-    std::optional<Draft>& draft() { return draft_; }
-    /// Wires an output to an input of the draft; a complete draft becomes an edit.
-    void connect_draft(const std::string& from, const std::string& input);
+    /// Adds a node of a type to a lane: a group of the patch, or a rate. It may lack wires; what does not run yet. The
+    /// first node of a hand adds a simulated device. Returns its name; empty: refused.
+    std::string add_node(const std::string& type, const std::string& lane,
+                         std::optional<patch::PatchPlace> place = std::nullopt);
+    const std::string& last_added() const { return last_added_; }
+    /// The lane that suits a type best: of what it was used with, or a usual rate.
+    std::string lane_for(const std::string& type) const;
     /// A free node name for the type.
     std::string free_name(const std::string& type) const;
+
+    // Several nodes, as one edit each.
+    bool remove(const std::vector<std::string>& nodes);
+    bool place(const std::map<std::string, patch::PatchPlace>& places);
+    bool place_automatically(const std::vector<std::string>& nodes);
+    bool colour(const std::vector<std::string>& nodes, const std::string& name);
+    std::string copy(const std::vector<std::string>& nodes) const;
+    /// Adds what `copy` gave. Returns the names that the nodes have here; none: refused.
+    std::vector<std::string> paste(const std::string& copied, patch::PatchPlace by);
+    /// Moves nodes into a file beside the patch, and puts a node of that patch in their place.
+    bool make_sub_patch(const std::vector<std::string>& nodes, const std::string& name);
+    bool open_sub_patch(const std::string& node, bool wanted);
+
+    // Comments.
+    bool comment(const patch::PatchComment& comment);
+    bool remove_comment(const std::string& name);
+    /// Adds one with a free name.
+    bool add_comment(patch::PatchPlace place, const std::string& text);
+
+    // Files and devices.
+    /// Names a file as an asset, and lets a parameter of a node use it.
+    bool use_file(const std::string& node, const std::string& param, const std::filesystem::path& file);
+    /// Replaces the file of an asset.
+    bool replace_asset(const std::string& asset, const std::filesystem::path& file);
+    /// A file for a parameter of `selected` that takes such files, or else for an asset that is one. False: nothing
+    /// takes it; the reason is in `messages`.
+    bool take_file(const std::filesystem::path& file, const std::string& selected);
+    bool set_driver(const std::string& device, const std::string& driver);
+    /// An empty value removes the setting.
+    bool set_device(const std::string& device, const std::string& name, const std::string& value);
+    bool keep_layout(const std::string& layout);
 
     /// Throws Error unless the saved file compiles to the shown plan.
     void check_saved();
@@ -130,7 +168,17 @@ public:
 private:
     bool edit(const edit::PatchEditor::Edit& how, std::string done);
     edit::InputTakes taken_by(const std::string& to) const;
+    /// What a text means.
+    struct Judged {
+        patch::Patch written;
+        Unfinished unfinished;
+        std::string running;  ///< the text without what is unfinished
+        std::unique_ptr<compile::Plan> plan;
+        std::string problem;  ///< empty: none
+    };
+    Judged judge(std::string_view text) const;
     std::optional<std::string> check(std::string_view text);
+    void tell_unfinished();
     void adopt();
     void adopt_text();
     void follow();
@@ -142,13 +190,17 @@ private:
     RunChoice choice_;
     compile::AssetCache assets_;
     std::unique_ptr<edit::PatchEditor> editor_;
-    std::unique_ptr<compile::Plan> checked_;
+    Judged checked_;
     std::shared_ptr<const compile::Plan> plan_;
     std::shared_ptr<const compile::Plan> followed_;  // the plan last applied to the run
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
-    std::optional<Draft> draft_;
+    patch::Patch written_;
+    Unfinished unfinished_;
+    patch::PatchWindow window_;
+    std::string running_text_, last_added_;
+    bool is_broken_ = false;
     std::shared_ptr<observe::Observer> observer_;
     std::unique_ptr<ViewedRun> run_;
     std::filesystem::path last_take_;

@@ -26,6 +26,10 @@ bool Workbench::save() {
                  true);
             return false;
         }
+        if (is_untitled()) {
+            wants_name = true;
+            return false;
+        }
         if (editor_->is_changed_elsewhere()) {
             take_over_file();
             tell("not saved: the text does not compile; undo to your own text and save again", true);

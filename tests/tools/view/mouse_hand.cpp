@@ -14,14 +14,6 @@ std::future<Outcome> begin(const Display& display, const Folder& folder, const s
     return std::async(std::launch::async, [&display, &folder, arguments] { return on(display, folder, arguments); });
 }
 
-#define NEEDS_PERSON(person, display)                                          \
-    NEEDS_DISPLAY(display)                                                     \
-    Person person(display);                                                    \
-    if (!person.is_there()) {                                                  \
-        tactus::test::skip("libXtst is not installed (apt install libxtst6)"); \
-        return;                                                                \
-    }
-
 }  // namespace
 
 TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <thread>
 
@@ -93,6 +94,43 @@ void Person::tap(const std::string& name) {
     key(name, true);
     key(name, false);
     wait(0.1);
+}
+
+void Person::chord(const std::vector<std::string>& modifiers, const std::string& name) {
+    for (const std::string& modifier : modifiers) key(modifier, true);
+    wait(0.1);
+    tap(name);
+    for (const std::string& modifier : modifiers) key(modifier, false);
+    wait(0.3);
+}
+
+void Person::double_click(double x, double y) {
+    move(x, y);
+    wait(0.3);
+    for (int i = 0; i < 2; ++i) {
+        button(1, true);
+        button(1, false);
+    }
+    wait(0.5);
+}
+
+void Person::type(const std::string& text) {
+    static const std::string shifted = "_:ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    for (const char c : text) {
+        std::string name(1, static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+        if (c == ' ') name = "space";
+        if (c == '_' || c == '-') name = "minus";
+        if (c == '.') name = "period";
+        if (c == '/') name = "slash";
+        if (c == ':') name = "semicolon";
+        const bool is_shifted = shifted.find(c) != std::string::npos;
+        if (is_shifted) key("Shift_L", true);
+        key(name, true);
+        key(name, false);
+        if (is_shifted) key("Shift_L", false);
+        wait(0.05);
+    }
+    wait(0.4);
 }
 
 Picture Person::look() const {

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tactus::test {
 
@@ -29,6 +30,11 @@ public:
     /// Drags with a button held, in so many seconds.
     void drag(double x, double y, double to_x, double to_y, double seconds, int which = 1);
     void tap(const std::string& name);
+    /// With modifiers held: "Control_L", "Shift_L".
+    void chord(const std::vector<std::string>& modifiers, const std::string& name);
+    void double_click(double x, double y);
+    /// Letters, digits, blanks and "_-./:" as a keyboard of the United States has them.
+    void type(const std::string& text);
     static void wait(double seconds);
 
     /// The whole screen.
@@ -42,3 +48,11 @@ private:
 };
 
 }  // namespace tactus::test
+
+#define NEEDS_PERSON(person, display)                                          \
+    NEEDS_DISPLAY(display)                                                     \
+    Person person(display);                                                    \
+    if (!person.is_there()) {                                                  \
+        tactus::test::skip("libXtst is not installed (apt install libxtst6)"); \
+        return;                                                                \
+    }

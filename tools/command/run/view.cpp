@@ -9,17 +9,22 @@ namespace tactus::command {
 
 namespace {
 
-int view_take(const view::TakeViewChoice& choice) { return view::view_take(choice, session::stop_on_signals()); }
+int view_file(const view::FileViewChoice& choice) { return view::view_file(choice, session::stop_on_signals()); }
 
 Action add(VerbOptions& verb) {
-    const auto choice = std::make_shared<view::TakeViewChoice>();
-    verb.add("take", choice->take, "folder of a take, made with --record").required();
+    const auto choice = std::make_shared<view::FileViewChoice>();
+    verb.add("file", choice->file,
+             "folder of a take, made with --record, or a patch, which is opened and not run (default: a page to choose "
+             "from)");
     add_view_options(verb, choice->view);
-    return [choice] { return view_take(*choice); };
+    return [choice] { return view_file(*choice); };
 }
 
 }  // namespace
 
-Verb view_verb() { return {"view", "open a take in a window: its values and bones at any instant", add}; }
+Verb view_verb() {
+    return {"view", "open a window: on a take, with its values and bones at any instant, on a patch, or to choose",
+            add};
+}
 
 }  // namespace tactus::command

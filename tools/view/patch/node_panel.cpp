@@ -110,8 +110,8 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     ImGui::BeginDisabled(is_read_only || field.is_driven);
     switch (field.kind) {
         case Kind::quantity: quantity(field, node); break;
+        case Kind::asset: asset(field, node); break;
         case Kind::choice:
-        case Kind::asset:
             if (ImGui::BeginCombo("##value", field.text.empty() ? "none" : field.text.c_str())) {
                 for (const std::string& option : field.options)
                     if (ImGui::Selectable(option.c_str(), option == field.text)) bench_.set(node, field.name, option);
@@ -161,12 +161,24 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     }
 }
 
+void NodePanel::read_fields(const PictureNode& node) {
+    fields_.clear();
+    if (node.plan >= 0) {
+        fields_ = parameters_of(*bench_.plan(), node.plan);
+        return;
+    }
+    const auto type = std::ranges::find(nodes::catalogue(), node.type, [](const NodeType* t) { return t->name; });
+    const auto& written = bench_.written().nodes;
+    const auto known = std::ranges::find(written, node.name, &patch::PatchNode::name);
+    if (type != nodes::catalogue().end() && known != written.end())
+        fields_ = parameters_of(**type, bench_.written(), *known);
+}
+
 void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
-    const compile::Plan* plan = bench_.plan();
     const int index = bench_.picture().find(selected);
-    if (!plan || index < 0) return dim("Click a node of the patch to show its parameters here.");
+    if (index < 0) return dim("Click a node of the patch to show its parameters here.");
     if (version_ != bench_.plan_version() || shown_ != selected) {
-        fields_ = parameters_of(*plan, index);
+        read_fields(bench_.picture().nodes[static_cast<std::size_t>(index)]);
         version_ = bench_.plan_version();
         if (shown_ != selected) turning_.clear();
         shown_ = renaming_ = selected;
@@ -183,6 +195,11 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     ImGui::TextDisabled("%s, %s", node.type.c_str(),
                         bench_.picture().lanes[static_cast<std::size_t>(node.group)].name.c_str());
     if (type != nodes::catalogue().end()) dim(std::string((*type)->about));
+    if (!node.lacks.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
+        ImGui::TextWrapped("Does not run yet: %s.", node.lacks.c_str());
+        ImGui::PopStyleColor();
+    }
     const auto status = bench_.status();
     const auto time = std::ranges::find(status->nodes, selected, &NodeStatus::name);
     if (time != status->nodes.end() && time->mean_us > 0.0)
@@ -205,6 +222,7 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
         }
         ImGui::EndTable();
     }
+    draw_device(node);
     ImGui::Spacing();
     if (!is_read_only && ImGui::Button("Remove the node")) bench_.remove(selected);
     if (renamed) {
@@ -213,39 +231,8 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     }
 }
 
-void NodePanel::draw_draft(const Fonts& fonts, std::string& selected) {
-    Draft& draft = *bench_.draft();
-    ImGui::PushFont(fonts.bold);
-    ImGui::Text("%s", draft.node.type.c_str());
-    ImGui::PopFont();
-    ImGui::SameLine();
-    ImGui::TextDisabled("needs these wires before it can be added");
-    ImGui::InputText("name", &draft.node.name);
-    const std::string name = draft.node.name;
-    std::string from, to;
-    for (const PicturePort& input : draft.inputs) {
-        if (input.is_optional) continue;
-        const auto wire = std::ranges::find(draft.node.wires, name + "." + input.name, &edit::WireText::to);
-        const std::string shown = wire == draft.node.wires.end() ? "choose an output" : wire->from;
-        if (!ImGui::BeginCombo(input.name.c_str(), shown.c_str())) continue;
-        for (const PictureNode& node : bench_.picture().nodes)
-            for (const PicturePort& output : node.outputs) {
-                if (input.type && output.type != input.type) continue;
-                const std::string port = node.name + "." + output.name;
-                if (ImGui::Selectable(port.c_str())) from = port, to = input.name;
-            }
-        ImGui::EndCombo();
-    }
-    if (ImGui::Button("Discard")) bench_.draft().reset();
-    else if (!to.empty()) {
-        bench_.connect_draft(from, to);
-        if (!bench_.draft()) selected = name;
-    }
-}
-
-void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
+void NodePanel::draw_catalogue(std::string& selected) {
     if (is_read_only) return dim("A take is read-only; run the patch to change it.");
-    if (bench_.draft()) return draw_draft(fonts, selected);
     const auto& lanes = bench_.picture().lanes;
     group_ = std::clamp(group_, 0, std::max(0, static_cast<int>(lanes.size()) - 1));
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
@@ -273,9 +260,8 @@ void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
     }
     ImGui::EndChild();
     if (chosen.empty()) return;
-    const std::string name = bench_.free_name(chosen);
-    bench_.begin_draft(chosen, group_);
-    if (!bench_.draft() && bench_.picture().find(name) >= 0) selected = name;
+    const std::string lane = lanes.empty() ? bench_.lane_for(chosen) : lanes[static_cast<std::size_t>(group_)].name;
+    if (const std::string made = bench_.add_node(chosen, lane); !made.empty()) selected = made;
 }
 
 }  // namespace tactus::view

@@ -2,10 +2,14 @@
 // The parameters of the selected node, and the catalogue of node types.
 #pragma once
 
+#include "tools/view/files/file_chooser.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/patch/parameters.hpp"
 #include "tools/view/workbench.hpp"
 
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,16 +20,22 @@ public:
     explicit NodePanel(Workbench& bench) : bench_(bench) {}
 
     void draw_parameters(std::string& selected, const Fonts& fonts);
-    void draw_catalogue(std::string& selected, const Fonts& fonts);
+    void draw_catalogue(std::string& selected);
 
+    /// Opens a dialog for a file; the window sets it.
+    std::function<void(const std::string& title, FileChooser chooser,
+                       std::function<void(const std::filesystem::path&)>)>
+        ask_file;
     bool is_read_only = false;
     std::string search;      ///< of the catalogue
     bool wants_catalogue = false;  ///< show the catalogue
 
 private:
     void field(const ParameterField& field, const std::string& node);
+    void asset(const ParameterField& field, const std::string& node);
+    void draw_device(const PictureNode& node);
+    void read_fields(const PictureNode& node);
     void quantity(const ParameterField& field, const std::string& node);
-    void draw_draft(const Fonts& fonts, std::string& selected);
 
     Workbench& bench_;
     std::vector<ParameterField> fields_;
@@ -34,6 +44,7 @@ private:
     int group_ = 0;
     std::string turning_;  ///< the slider being dragged
     double turned_to_ = 0.0;
+    std::string device_option_, device_value_;
 };
 
 }  // namespace tactus::view

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/patch/parameters.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ public:
             .unit = v.unit;
     }
     void asset(std::string_view name, AssetParam& a) override {
-        add(Kind::asset, name, fmt::format("{}: {}", a.type_name, a.about), a.name);
+        add(Kind::asset, name, fmt::format("{}: {}", a.type_name, a.about), a.name).type = a.type_name;
     }
 
 private:
@@ -79,6 +80,30 @@ std::vector<ParameterField> parameters_of(const compile::Plan& plan, int index) 
         const Param* param = node.params.at(field.name);
         field.is_driven = std::ranges::any_of(
             plan.wires, [&](const compile::PlanWire& w) { return w.to_input < 0 && w.param == param; });
+    }
+    return fields;
+}
+
+std::vector<ParameterField> parameters_of(const NodeType& type, const patch::Patch& patch,
+                                          const patch::PatchNode& node) {
+    const compile::NodeInstance fresh(type.create(), type.destroy);
+    std::vector<ParameterField> fields = fields_of(type, fresh.get());
+    for (ParameterField& field : fields) {
+        field.standard = field.text;
+        field.normal = field.value;
+        if (field.kind == Kind::asset)
+            for (const patch::PatchAsset& asset : patch.assets) field.options.push_back(asset.name);
+        const auto setting = std::ranges::find(node.settings, field.name, &OptionText::name);
+        if (setting == node.settings.end()) continue;
+        field.is_set = true;
+        field.text = setting->text;
+        if (field.kind != Kind::quantity) continue;
+        try {
+            field.value =
+                parse_as(setting->text, field.unit) / (field.unit.empty() ? 1.0 : parse_unit(field.unit).factor);
+        } catch (const Error&) {
+            // The compiler will say so; the form shows the default.
+        }
     }
     return fields;
 }

@@ -14,6 +14,7 @@ namespace tactus::view {
 struct ParameterField {
     enum class Kind { quantity, choice, flag, text, vector, asset } kind = Kind::quantity;
     std::string name, about;
+    std::string type;      ///< of an asset: "bone"
     std::string text;      ///< value as written in a patch
     std::string standard;  ///< its default; empty for an asset
     bool is_set = false;   ///< set in the patch
@@ -27,6 +28,10 @@ struct ParameterField {
 
 /// The parameters of a node, in order of declaration.
 std::vector<ParameterField> parameters_of(const compile::Plan& plan, int node);
+
+/// Those of a node that is not part of a plan, by its type and what the patch says of it.
+std::vector<ParameterField> parameters_of(const NodeType& type, const patch::Patch& patch,
+                                          const patch::PatchNode& node);
 
 /// For quantities with a range too wide for a slider: change per pixel of dragging, in its unit; proportional to the
 /// value, at least as for a value of 1. None: use a slider.

@@ -26,6 +26,12 @@ Box PatchPanel::screen(const Box& world) const {
     return {a.x, a.y, b.x, b.y};
 }
 
+std::optional<double> PatchPanel::letters(double size, double room) const {
+    const double least = readable * unit_;
+    if (room * canvas_.zoom < least) return std::nullopt;
+    return std::max(size * canvas_.zoom, least);
+}
+
 bool PatchPanel::is_late(const std::string& group) const {
     const auto found = health_.find(group);
     return found != health_.end() && ImGui::GetTime() - found->second.since < red_for_s;
@@ -72,7 +78,9 @@ void PatchPanel::notice_new_plan() {
     if (follows_size_) fits_ = false;
     plan_version_ = bench_.plan_version();
     times_.clear();
+    dragging_ = {};
     if (!selected.empty() && bench_.picture().find(selected) < 0) selected.clear();
+    std::erase_if(chosen, [&](const std::string& name) { return bench_.picture().find(name) < 0; });
 }
 
 /// The status changes several times a second, and a patch can have ten thousand nodes.
@@ -104,7 +112,15 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     height_ = size.y;
     if (width_ < 8.0 || height_ < 8.0) return;
     notice_new_plan();
-    if (!fits_ && !picture.nodes.empty()) {
+    // Somebody else has selected a node.
+    if (!selected.empty() && !chosen.contains(selected)) chosen = {selected};
+    if (selected.empty() && chosen.size() == 1) chosen.clear();
+    if (!fits_ && picture.nodes.empty() && picture.comments.empty()) {
+        canvas_ = {{-40.0, -60.0}, unit_};
+        fits_ = true;
+        follows_size_ = false;
+    }
+    if (!fits_) {
         canvas_.fit(picture.bounds, width_, height_, unit_);
         fits_ = follows_size_ = true;
     }
@@ -120,6 +136,7 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     paint.list()->PushClipRect(low, high, true);
     const Box visible = canvas_.visible(width_, height_);
     draw_lanes(paint);
+    draw_comments(paint);
     draw_wires(paint, visible);
     draw_heads(paint, *status_);
     if (is_afar()) draw_stacks(paint, visible);
@@ -128,11 +145,17 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
             if (picture.nodes[n].box.meets(visible)) draw_node(paint, picture.nodes[n], times_[n], feed, looked_at);
     draw_deliveries(paint, visible);
     draw_wiring(paint);
-    if (!bench_.plan())
+    draw_dragging(paint);
+    draw_minimap(paint);
+    if (picture.nodes.empty() && !bench_.is_broken() && !is_read_only)
+        paint.text(corner_ + Point{24, 24}, text_size * unit_, tone::dim, "Double-click, or press Tab, to add a node");
+    if (bench_.is_broken())
         paint.text(corner_ + Point{16, 14}, text_size * unit_, tone::bad, "the patch does not compile; see below");
     paint.list()->PopClipRect();
-    if (ImGui::IsItemHovered()) explain(hovered_);
+    if (ImGui::IsItemHovered() && dragging_.what == Dragging::What::nothing) explain(hovered_);
     menus();
+    edit_comment();
+    if (const std::string made = palette_.draw(fonts); !made.empty()) choose_only(made);
 }
 
 void PatchPanel::draw_lanes(const Painter& paint) {
@@ -150,7 +173,8 @@ void PatchPanel::draw_lanes(const Painter& paint) {
 void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom;
-    if (text_size * z < readable) return;
+    const auto large = letters(text_size, lane_head_height - 3.0), small = letters(small_size, lane_head_height - 3.0);
+    if (!large || !small) return;
     struct Words {
         std::string text;
         double size;
@@ -158,15 +182,14 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
         bool is_heavy;
     };
     for (const PictureLane& lane : picture.lanes) {
-        std::vector<Words> words{{lane.name, text_size * z, tone::text, true},
-                                 {lane.note, small_size * z, tone::dim, false}};
+        std::vector<Words> words{{lane.name, *large, tone::text, true}, {lane.note, *small, tone::dim, false}};
         const auto group = std::ranges::find(status.groups, lane.name, &GroupStatus::name);
         if (group != status.groups.end() && group->ticks > 0) {
             words.push_back({fmt::format("{:.1f} µs a call, load {:.1f} %, late {:.3f} ms (99 %)", group->execution_us,
                                          100.0 * group->load, group->late_p99_ms),
-                             small_size * z, tone::dim, false});
+                             *small, tone::dim, false});
             if (group->missed > 0)
-                words.push_back({fmt::format("{} missed", group->missed), small_size * z,
+                words.push_back({fmt::format("{} missed", group->missed), *small,
                                  is_late(lane.name) ? tone::bad : tone::warm, true});
         }
         const Point begin = screen(Point{picture.bounds.left + 16, lane.top + 8});
@@ -175,7 +198,7 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
         paint.box({begin.x - 4.0 * z, begin.y - 1.0 * z, begin.x + wide - 6.0 * z, begin.y + 17.0 * z}, lane_ground);
         Point at = begin;
         for (const Words& w : words) {
-            paint.text({at.x, at.y + (text_size * z - w.size) * 0.7}, w.size, w.ink, w.text, w.is_heavy);
+            paint.text({at.x, at.y + (*large - w.size) * 0.7}, w.size, w.ink, w.text, w.is_heavy);
             at.x += paint.width_of(w.text, w.size, w.is_heavy) + 14.0 * z;
         }
     }
@@ -185,50 +208,60 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
 void PatchPanel::draw_stacks(const Painter& paint, const Box& visible) {
     for (const Box& stack : bench_.picture().stacks)
         if (stack.meets(visible)) paint.box(screen(stack), tone::node_edge);
-    if (const int chosen = bench_.picture().find(selected); chosen >= 0)
-        paint.box(screen(bench_.picture().nodes[static_cast<std::size_t>(chosen)].box), tone::chosen);
+    if (const int node = bench_.picture().find(selected); node >= 0)
+        paint.box(screen(bench_.picture().nodes[static_cast<std::size_t>(node)].box), tone::chosen);
 }
 
 void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
                            std::set<std::string>& looked_at) {
     const double z = canvas_.zoom;
     const Box box = screen(node.box);
-    const bool is_chosen = node.name == selected;
+    const bool is_chosen = chosen.contains(node.name);
+    const ImU32 edge = is_chosen ? tone::chosen : node.lacks.empty() ? tone::node_edge : tone::warm;
     if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
-    if (text_size * z < readable) {
+    const auto large = letters(text_size, title_height - 6.0), small = letters(small_size, 16.0);
+    const ImU32 head_ink = node.colour.empty() ? tone::node_head : colour_named(node.colour);
+    if (!large) {
         // Many boxes, too small for visible round corners.
-        paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
-        return paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0}, tone::node);
+        paint.box(box, edge);
+        return paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0},
+                         node.colour.empty() ? tone::node : head_ink);
     }
     paint.box(box, tone::node, rounding * z);
     Box head = box;
     head.bottom = box.top + (title_height - 6.0) * z;
-    paint.list()->AddRectFilled(vec({head.left, head.top}), vec({head.right, head.bottom}), tone::node_head,
+    paint.list()->AddRectFilled(vec({head.left, head.top}), vec({head.right, head.bottom}), head_ink,
                                 static_cast<float>(rounding * z), ImDrawFlags_RoundCornersTop);
-    paint.frame(box, is_chosen ? tone::chosen : tone::node_edge, rounding * z, is_chosen ? 2.0 : 1.0);
+    paint.frame(box, edge, rounding * z, is_chosen || node.is_part ? 2.0 : 1.0);
     double room = node_width * z - 16.0 * z;
-    if (status && status->mean_us > 0.0) {
+    if (small && status && status->mean_us > 0.0) {
         const std::string time = fmt::format("{:.{}f} µs", status->mean_us, status->mean_us < 10.0 ? 1 : 0);
-        paint.text_left_of({box.right - 8.0 * z, box.top + 5.0 * z}, small_size * z, tone::dim, time);
-        room -= paint.width_of(time, small_size * z) + 6.0 * z;
+        paint.text_left_of({box.right - 8.0 * z, box.top + 5.0 * z}, *small, tone::dim, time);
+        room -= paint.width_of(time, *small) + 6.0 * z;
         // Load of the node as a bar below the title.
         const double share = std::clamp(status->share, 0.0, 1.0);
         Box bar{box.left, head.bottom - 2.0 * z, box.left + share * box.width(), head.bottom};
         paint.box(bar, share > 0.7 ? tone::bad : share > 0.4 ? tone::warm : tone::good);
     }
-    paint.text({box.left + 8.0 * z, box.top + 3.0 * z}, text_size * z, tone::text,
-               paint.shortened(node.name, text_size * z, room, true), true);
-    paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, small_size * z, tone::dim, node.type);
+    // Without room for the type the name stands in the middle.
+    const double title_top = small ? box.top + 3.0 * z : box.top + 0.45 * ((title_height - 6.0) * z - *large);
+    paint.text({box.left + 8.0 * z, title_top}, *large, tone::text, paint.shortened(node.name, *large, room, true),
+               true);
+    if (small)
+        paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, *small, node.lacks.empty() ? tone::dim : tone::warm,
+                   paint.shortened(node.lacks.empty() ? node.type : node.lacks, *small, node_width * z - 14.0 * z));
     draw_ports(paint, node, feed, looked_at);
 }
 
 void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const Feed* feed,
                             std::set<std::string>& looked_at) {
-    const double z = canvas_.zoom, size = small_size * z;
+    const double z = canvas_.zoom;
+    const std::optional<double> written = letters(small_size, port_height - 1.0);
+    const double size = written.value_or(0.0);
     const double half = 0.5 * node_width * z - 10.0 * z;
     const PatchPicture& picture = bench_.picture();
     const ValueType* wanted = nullptr;
-    if (wiring_.node >= 0)
+    if (wiring_.node >= 0 && !wiring_.is_backward)
         wanted =
             picture.nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)].type;
     for (const PicturePort& port : node.inputs) {
@@ -238,17 +271,19 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
         if (suits) paint.dot(at, 8.0 * z, faded(ink, 0.35));
         paint.dot(at, 4.0 * z, ink);
         if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
-        paint.text({at.x + 9.0 * z, at.y - 0.6 * size}, size, port.is_connected || suits ? tone::text : tone::dim,
-                   paint.shortened(port.name, size, half));
+        if (written)
+            paint.text({at.x + 9.0 * z, at.y - 0.6 * size}, size, port.is_connected || suits ? tone::text : tone::dim,
+                       paint.shortened(port.name, size, half));
     }
     for (const PicturePort& port : node.outputs) {
         const Point at = screen(port.at);
         const ImU32 ink = colour_of(port.type);
         paint.dot(at, 4.0 * z, ink);
         if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
+        if (!written) continue;
         paint.text_left_of({at.x - 9.0 * z, at.y - 0.6 * size}, size, tone::text,
                            paint.shortened(port.name, size, half));
-        if (!feed || !port.type || size < 5.8) continue;
+        if (!feed || !port.type || !node.lacks.empty() || node.is_part) continue;
         const std::string name = node.name + "." + port.name;
         looked_at.insert(name);
         const Feed::Latest latest = feed->latest(name);
@@ -263,8 +298,8 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
             continue;
         }
         const std::string text = short_value(*port.type, latest, port.unit);
-        paint.text({at.x + 8.0 * z, at.y - 1.35 * size}, 0.95 * size, faded(ink, 0.95),
-                   paint.shortened(text, 0.95 * size, (column_gap - 12.0) * z));
+        paint.text({at.x + 8.0 * z, at.y - 1.3 * size}, size, faded(ink, 0.95),
+                   paint.shortened(text, size, (column_gap - 12.0) * z));
     }
 }
 

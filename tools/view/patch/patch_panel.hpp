@@ -4,6 +4,7 @@
 
 #include "tools/view/canvas.hpp"
 #include "tools/view/painter.hpp"
+#include "tools/view/patch/node_palette.hpp"
 #include "tools/view/signal/feed.hpp"
 #include "tools/view/workbench.hpp"
 
@@ -18,15 +19,30 @@ namespace tactus::view {
 
 class PatchPanel {
 public:
-    explicit PatchPanel(Workbench& bench) : bench_(bench) {}
+    explicit PatchPanel(Workbench& bench) : bench_(bench), palette_(bench) {}
 
     /// Draws into the current child window. Adds ports with visible values to `looked_at`.
     void draw(const Feed* feed, const Fonts& fonts, std::set<std::string>& looked_at);
 
     std::string selected;     ///< name of a node, empty: none
+    std::set<std::string> chosen;  ///< nodes; with `selected` among them
     std::string wants_scope;  ///< a port to show in a scope
     bool is_read_only = false;
     void fit() { fits_ = false; }
+    // What menus and keys do with the chosen nodes.
+    void copy() const;
+    void paste();
+    void duplicate();
+    void cut();
+    void remove_chosen();
+    void choose_all();
+    enum class Align { left, top, columns, rows };
+    void align(Align how);
+    void nudge(Point by);
+    void add_comment();
+    void make_sub_patch();
+    void open_palette();
+    bool has_minimap = true;
     /// Centres the view on a node.
     void look_at(const std::string& node);
     /// Position of "node", "node.output" or "node.input"; none: not visible.
@@ -34,11 +50,20 @@ public:
 
 private:
     static constexpr double text_size = 13.0, small_size = 10.5;  ///< at a zoom of one
-    static constexpr double readable = 5.5;  ///< pixels: smaller text is left out
+    static constexpr double readable = 11.0;  ///< pixels at scale 1: text is never smaller
 
     struct Wiring {
-        int node = -1, port = -1;  ///< the output from which a wire is being dragged
+        int node = -1, port = -1;  ///< the output, or input, from which a wire is being dragged
+        bool is_backward = false;  ///< from an input to an output
+        std::string taken_off;     ///< the input that a wire was taken off, "node.port"; empty: a new wire
         std::string checked, objection;
+    };
+    /// Nodes, a comment or a frame that the mouse drags; in units of the picture.
+    struct Dragging {
+        enum class What { nothing, nodes, comment, corner, frame } what = What::nothing;
+        Point from, to;
+        std::string name;  ///< of a comment
+        bool is_moved() const { return what != What::nothing && (from.x != to.x || from.y != to.y); }
     };
     struct Health {
         std::int64_t missed = 0;
@@ -57,10 +82,25 @@ private:
                    std::set<std::string>& looked_at);
     void draw_ports(const Painter& paint, const PictureNode& node, const Feed* feed, std::set<std::string>& looked_at);
     void draw_wiring(const Painter& paint);
+    void draw_comments(const Painter& paint);
+    void draw_dragging(const Painter& paint);
+    void draw_minimap(const Painter& paint);
+    void edit_comment();
     void handle_mouse();
+    void press(const Hit& over, Point world);
+    void press_node(const std::string& name);
+    void drag(Point world);
+    void let_go(Point world);
     void finish_wire(const Hit& over);
+    const PictureComment* comment_at(Point world) const;
+    std::vector<std::string> chosen_nodes() const;  ///< of the patch's text, once each
+    void choose_only(const std::string& name);
+    /// Size of text at this zoom; none: there is no room for readable letters.
+    std::optional<double> letters(double size, double room) const;
     void explain(const Hit& over);
     void menus();
+    void node_menu(const std::string& name, bool is_part);
+    void canvas_menu();
     std::string port_name(const Hit& hit) const;
     Point screen(Point world) const { return canvas_.to_pixel(world) + corner_; }
     Box screen(const Box& world) const;
@@ -81,6 +121,12 @@ private:
     std::map<std::string, Health> health_;
     std::map<std::string, double> meters_;  ///< peak meters of signals
     std::string new_name_;
+    NodePalette palette_;
+    Dragging dragging_;
+    std::string commented_, comment_text_;
+    bool wants_part_name_ = false;
+    mutable int pastes_ = 0;
+    Point mouse_;  ///< in units of the picture
 };
 
 /// The most informative number of a value as text, such as "12.3 mm".

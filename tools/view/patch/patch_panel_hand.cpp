@@ -2,12 +2,104 @@
 // Mouse interaction with the picture of the patch.
 #include "tools/view/patch/patch_panel.hpp"
 
+#include "tools/view/theme.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
+
+const PictureComment* PatchPanel::comment_at(Point world) const {
+    const auto& all = bench_.picture().comments;
+    const auto found = std::ranges::find_if(all, [&](const PictureComment& c) { return c.box.contains(world); });
+    return found == all.end() ? nullptr : &*found;
+}
+
+void PatchPanel::choose_only(const std::string& name) {
+    selected = name;
+    chosen.clear();
+    if (!name.empty()) chosen.insert(name);
+}
+
+void PatchPanel::press_node(const std::string& name) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyShift || io.KeyCtrl) {
+        if (chosen.erase(name) == 0) chosen.insert(name), selected = name;
+        else if (selected == name) selected = chosen.empty() ? "" : *chosen.begin();
+        return;
+    }
+    if (!chosen.contains(name)) choose_only(name);
+    selected = name;
+}
+
+void PatchPanel::press(const Hit& over, Point world) {
+    const PatchPicture& picture = bench_.picture();
+    using What = Dragging::What;
+    dragging_ = {What::nothing, world, world, {}};
+    if (over.what == Hit::What::output || over.what == Hit::What::input) {
+        if (is_read_only) return;
+        wiring_ = {over.index, over.port, over.what == Hit::What::input, {}, {}, {}};
+        if (over.what == Hit::What::output) return;
+        // A wire that is there comes off its input.
+        for (const PictureWire& wire : picture.wires)
+            if (wire.to == over.index && wire.input == over.port)
+                wiring_ = {wire.from, wire.output, false, port_name(over), {}, {}};
+        return;
+    }
+    if (over.what == Hit::What::node) {
+        press_node(picture.nodes[static_cast<std::size_t>(over.index)].name);
+        if (!is_read_only) dragging_.what = What::nodes;
+        return;
+    }
+    if (over.what == Hit::What::wire) return;
+    if (const PictureComment* comment = comment_at(world); comment && !is_read_only) {
+        constexpr double corner = 16.0;
+        const bool at_corner = world.x > comment->box.right - corner && world.y > comment->box.bottom - corner;
+        dragging_.what = at_corner ? What::corner : What::comment;
+        dragging_.name = comment->name;
+        return;
+    }
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.KeyShift && !io.KeyCtrl) choose_only("");
+    dragging_.what = What::frame;
+}
+
+void PatchPanel::drag(Point world) {
+    const float far = ImGui::GetIO().MouseDragMaxDistanceSqr[0];
+    if (dragging_.what != Dragging::What::nothing && far > 9.0f) dragging_.to = world;
+}
+
+void PatchPanel::let_go(Point world) {
+    const Dragging done = std::exchange(dragging_, {});
+    if (!done.is_moved()) return;
+    const Point by = world - done.from;
+    const PatchPicture& picture = bench_.picture();
+    using What = Dragging::What;
+    if (done.what == What::nodes) {
+        std::map<std::string, patch::PatchPlace> places;
+        for (const PictureNode& node : picture.nodes)
+            if (chosen.contains(node.name))
+                places[node.name] = place_in_lane(picture, node, Point{node.box.left, node.box.top} + by);
+        bench_.place(places);
+    } else if (done.what == What::comment || done.what == What::corner) {
+        const auto& all = bench_.window().comments;
+        const auto found = std::ranges::find(all, done.name, &patch::PatchComment::name);
+        if (found == all.end()) return;
+        patch::PatchComment moved = *found;
+        patch::PatchPlace& changed = done.what == What::comment ? moved.place : moved.size;
+        changed = {changed.x + by.x, changed.y + by.y};
+        moved.size = {std::max(moved.size.x, 60.0), std::max(moved.size.y, 30.0)};
+        bench_.comment(moved);
+    } else if (done.what == What::frame) {
+        const Box box{std::min(done.from.x, world.x), std::min(done.from.y, world.y), std::max(done.from.x, world.x),
+                      std::max(done.from.y, world.y)};
+        for (const PictureNode& node : picture.nodes)
+            if (node.box.meets(box)) chosen.insert(node.name), selected = node.name;
+    }
+}
 
 void PatchPanel::handle_mouse() {
     const ImGuiIO& io = ImGui::GetIO();
@@ -17,49 +109,69 @@ void PatchPanel::handle_mouse() {
         canvas_.zoom_at(mouse, std::pow(1.15, static_cast<double>(io.MouseWheel)));
         follows_size_ = false;
     }
-    if (inside || wiring_.node >= 0)
-        hovered_ = hit(bench_.picture(), canvas_.to_world(mouse), 7.0 / std::max(canvas_.zoom, 0.3));
+    const Point world = mouse_ = canvas_.to_world(mouse);
+    if (inside || wiring_.node >= 0) hovered_ = hit(bench_.picture(), world, 7.0 / std::max(canvas_.zoom, 0.3));
     else hovered_ = {};
-    if (inside && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        if (hovered_.what == Hit::What::output && !is_read_only) wiring_ = {hovered_.index, hovered_.port, {}, {}};
-        else if (hovered_.what == Hit::What::node)
-            selected = bench_.picture().nodes[static_cast<std::size_t>(hovered_.index)].name;
-        else if (hovered_.what == Hit::What::nothing) selected.clear();
-    }
+    if (inside && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) press(hovered_, world);
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) drag(world);
     if (inside && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-        if (hovered_.what == Hit::What::output) wants_scope = port_name(hovered_);
-        if (hovered_.what == Hit::What::nothing) fit();
         wiring_ = {};
+        dragging_ = {};
+        if (hovered_.what == Hit::What::output) wants_scope = port_name(hovered_);
+        if (hovered_.what == Hit::What::node) {
+            const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(hovered_.index)];
+            if (node.is_part && !is_read_only) bench_.open_sub_patch(node.name, true);
+        }
+        if (hovered_.what == Hit::What::nothing && !is_read_only) {
+            if (const PictureComment* comment = comment_at(world)) commented_ = comment->name;
+            else palette_.open(mouse + corner_, world, {}, nullptr);
+        }
     }
-    if (wiring_.node >= 0 && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) finish_wire(hovered_);
-    const bool drags_ground =
-        ImGui::IsItemActive() && wiring_.node < 0 &&
-        (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3.0f) || ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 3.0f) ||
-         ImGui::IsMouseDragging(ImGuiMouseButton_Right, 3.0f));
-    if (drags_ground) {
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
+        if (wiring_.node >= 0) finish_wire(hovered_);
+        else let_go(world);
+    }
+    const bool pans = ImGui::IsItemActive() && (ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 3.0f) ||
+                                                ImGui::IsMouseDragging(ImGuiMouseButton_Right, 3.0f));
+    if (pans) {
         canvas_.pan(point(io.MouseDelta));
         follows_size_ = false;
     }
-    if (inside && ImGui::IsMouseReleased(ImGuiMouseButton_Right) && io.MouseDragMaxDistanceSqr[1] < 16.0f &&
-        hovered_.what != Hit::What::nothing) {
+    if (inside && ImGui::IsMouseReleased(ImGuiMouseButton_Right) && io.MouseDragMaxDistanceSqr[1] < 16.0f) {
         menu_ = hovered_;
+        if (hovered_.what == Hit::What::node)
+            press_node(bench_.picture().nodes[static_cast<std::size_t>(hovered_.index)].name);
         ImGui::OpenPopup("menu");
     }
-    if (ImGui::IsWindowFocused() && !is_read_only && !selected.empty() &&
-        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete)))
-        bench_.remove(selected);
 }
 
 void PatchPanel::finish_wire(const Hit& over) {
-    const Hit from{Hit::What::output, wiring_.node, wiring_.port};
-    if (over.what == Hit::What::input) bench_.connect(port_name(from), port_name(over));
-    else if (over.what == Hit::What::node) {
+    const Wiring wiring = std::exchange(wiring_, {});
+    const Hit from{wiring.is_backward ? Hit::What::input : Hit::What::output, wiring.node, wiring.port};
+    const std::string name = port_name(from);
+    if (wiring.is_backward) {
+        if (over.what == Hit::What::output) bench_.connect(port_name(over), name);
+        return;
+    }
+    if (over.what == Hit::What::input) {
+        if (wiring.taken_off.empty()) bench_.connect(name, port_name(over));
+        else if (wiring.taken_off != port_name(over)) bench_.reconnect(name, wiring.taken_off, port_name(over));
+        return;
+    }
+    if (!wiring.taken_off.empty()) {
+        bench_.disconnect(wiring.taken_off);
+        return;
+    }
+    if (over.what == Hit::What::node && over.index != wiring.node) {
         // A wire dropped on a node drives one of its parameters.
         menu_ = over;
-        new_name_ = port_name(from);
+        new_name_ = name;
         ImGui::OpenPopup("drive");
+    } else if (over.what == Hit::What::nothing && ImGui::IsItemHovered()) {
+        const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(wiring.node)];
+        palette_.open(point(ImGui::GetIO().MousePos), mouse_, name,
+                      node.outputs[static_cast<std::size_t>(wiring.port)].type);
     }
-    wiring_ = {};
 }
 
 void PatchPanel::explain(const Hit& over) {
@@ -80,7 +192,7 @@ void PatchPanel::explain(const Hit& over) {
             fmt::format("{}.{}: {}{}{}{}{}{}", node.name, port.name, port.type ? port.type->name : "any type",
                         port.unit.empty() ? "" : ", ", port.unit, port.is_param ? ", parameter" : "",
                         port.about.empty() ? "" : "\n", port.about);
-        if (wiring_.node >= 0 && over.what == Hit::What::input) {
+        if (wiring_.node >= 0 && !wiring_.is_backward && over.what == Hit::What::input) {
             const std::string pair = port_name({Hit::What::output, wiring_.node, wiring_.port}) + ">" + port_name(over);
             if (pair != wiring_.checked) {
                 wiring_.checked = pair;
@@ -116,19 +228,20 @@ void PatchPanel::menus() {
         } else if (menu_.what == Hit::What::input) {
             if (ImGui::MenuItem("Remove the wire", nullptr, false, !is_read_only)) bench_.disconnect(port_name(menu_));
         } else if (menu_.what == Hit::What::node) {
-            const std::string name = picture.nodes[static_cast<std::size_t>(menu_.index)].name;
-            ImGui::TextDisabled("%s", name.c_str());
-            if (ImGui::MenuItem("Remove the node", "Del", false, !is_read_only)) bench_.remove(name);
-        }
+            const PictureNode& node = picture.nodes[static_cast<std::size_t>(menu_.index)];
+            node_menu(node.name, node.is_part);
+        } else canvas_menu();
         ImGui::EndPopup();
     }
     if (ImGui::BeginPopup("drive")) {
         const std::string node =
             picture.nodes.empty() || menu_.index < 0 ? "" : picture.nodes[static_cast<std::size_t>(menu_.index)].name;
         ImGui::TextDisabled("%s drives a parameter of %s", new_name_.c_str(), node.c_str());
-        if (bench_.plan() && menu_.index >= 0)
-            for (const auto& [name, param] : bench_.plan()->nodes[static_cast<std::size_t>(menu_.index)].params)
-                if (!param->is_structural && ImGui::MenuItem(name.c_str(), param->unit.c_str())) {
+        const TypePorts* ports =
+            menu_.index < 0 ? nullptr : ports_of_type(picture.nodes[static_cast<std::size_t>(menu_.index)].type);
+        if (ports)
+            for (const auto& [name, unit] : ports->params)
+                if (ImGui::MenuItem(name.c_str(), unit.c_str())) {
                     bench_.connect(new_name_, node + "." + name);
                     break;
                 }

@@ -24,10 +24,10 @@ double length_of(const BezierCurve& c) {
 void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom;
-    const int chosen = picture.find(selected);
+    const int chosen_node = picture.find(selected);
     for (std::size_t w = 0; w < picture.wires.size(); ++w) {
         const PictureWire& wire = picture.wires[w];
-        const bool is_near = wire.from == chosen || wire.to == chosen;
+        const bool is_near = wire.from == chosen_node || wire.to == chosen_node;
         if (!wire.bounds.meets(visible) || (is_afar() && !is_near)) continue;
         const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
         ImU32 ink = colour_of(from.outputs[static_cast<std::size_t>(wire.output)].type);
@@ -56,12 +56,14 @@ void PatchPanel::draw_piece(const Painter& paint, const BezierCurve& piece, bool
 /// Labels of the selected node's wires: type and delay.
 void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
     const PatchPicture& picture = bench_.picture();
-    const double z = canvas_.zoom, size = small_size * z;
-    const int chosen = picture.find(selected);
-    if (chosen < 0 || size < readable) return;
+    const double z = canvas_.zoom;
+    const int chosen_node = picture.find(selected);
+    const std::optional<double> written = letters(small_size, port_height);
+    if (chosen_node < 0 || !written) return;
+    const double size = *written;
     std::vector<Box> taken;
     for (const PictureWire& wire : picture.wires) {
-        if ((wire.from != chosen && wire.to != chosen) || !wire.bounds.meets(visible)) continue;
+        if ((wire.from != chosen_node && wire.to != chosen_node) || !wire.bounds.meets(visible)) continue;
         const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
         const ValueType* type = from.outputs[static_cast<std::size_t>(wire.output)].type;
         // Wires within a tick have no delay, and the colour shows the type.
@@ -83,10 +85,11 @@ void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
 
 void PatchPanel::draw_wiring(const Painter& paint) {
     if (wiring_.node < 0) return;
+    const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(wiring_.node)];
     const PicturePort& port =
-        bench_.picture().nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)];
+        (wiring_.is_backward ? node.inputs : node.outputs)[static_cast<std::size_t>(wiring_.port)];
     const Point mouse = point(ImGui::GetIO().MousePos), from = screen(port.at);
-    const auto curve = curve_between(from, mouse);
+    const auto curve = wiring_.is_backward ? curve_between(mouse, from) : curve_between(from, mouse);
     const bool refused = hovered_.what == Hit::What::input && !wiring_.objection.empty();
     paint.list()->AddBezierCubic(vec(curve[0]), vec(curve[1]), vec(curve[2]), vec(curve[3]),
                                  refused ? tone::bad : colour_of(port.type), 2.5f);

@@ -4,11 +4,13 @@
 #pragma once
 
 #include "graph/compile/plan.hpp"
+#include "graph/patch/patch_window.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/patch/wire_route.hpp"
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::view {
@@ -19,13 +21,29 @@ struct PicturePort {
     bool is_optional = false, is_connected = false;
     bool is_param = false;  ///< a driven parameter
     Point at;
+    bool takes_many = false;  ///< any number of wires: an input of events
 };
 
 struct PictureNode {
     std::string name, type;
-    int group = 0;
+    int group = 0;  ///< its lane
     Box box;
     std::vector<PicturePort> inputs, outputs;
+    int plan = -1;          ///< its index in the plan; -1: a closed sub-patch, or unfinished
+    bool is_part = false;   ///< a closed sub-patch
+    std::string lacks;      ///< why it is unfinished; empty: it is not
+    std::string colour;     ///< a name; empty: none
+};
+
+struct PictureComment {
+    std::string name, text, colour;
+    Box box;
+};
+
+/// An open sub-patch: the frame around its nodes in one lane.
+struct PictureFrame {
+    std::string name;
+    Box box;
 };
 
 struct PictureWire {
@@ -44,8 +62,11 @@ struct PictureLane {
 
 struct PatchPicture {
     std::vector<PictureLane> lanes;  ///< in the order of the plan's groups
-    std::vector<PictureNode> nodes;  ///< in the order of the plan's nodes
+    std::vector<PictureNode>
+        nodes;  ///< in the order of the plan's nodes, then closed sub-patches, then unfinished ones
     std::vector<PictureWire> wires;  ///< wires between nodes
+    std::vector<PictureComment> comments;
+    std::vector<PictureFrame> frames;
     std::vector<Box> stacks;  ///< bounds of stacked boxes, for small zoom
     Box bounds;
 
@@ -54,7 +75,24 @@ struct PatchPicture {
 
 inline constexpr double title_height = 38.0, port_height = 17.0, node_width = 158.0, column_gap = 100.0;
 
+struct Unfinished;
+
+/// What of a patch is shown beside its plan.
+struct PictureMatter {
+    const compile::Plan* plan = nullptr;  ///< null: nothing runs yet
+    const Unfinished* unfinished = nullptr;
+    const patch::PatchWindow* window = nullptr;
+    std::vector<std::pair<std::string, std::string>> parts;  ///< name and type of each sub-patch
+};
+
+/// A sub-patch is one box unless the window says that it is open.
+PatchPicture picture_of(const PictureMatter& matter);
 PatchPicture picture_of(const compile::Plan& plan);
+
+/// Where a node stands within its lane, as a window keeps it.
+patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& node, Point corner);
+
+inline constexpr double lane_head_height = 30.0;
 
 /// The item at a point. Ports take precedence over nodes, nodes over wires.
 struct Hit {

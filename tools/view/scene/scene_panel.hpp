@@ -105,7 +105,7 @@ private:
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
     std::int64_t plan_version_ = -1, judged_version_ = -1;
-    bool is_empty_ = false;
+    bool is_empty_ = true;
     bool is_aimed_ = false, needs_picture_ = true;
     bool was_drawn_ = false;
     double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: time per picture, including the window

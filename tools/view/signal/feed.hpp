@@ -10,6 +10,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -93,6 +94,14 @@ public:
     void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
     Latest latest(const std::string& port) const override;
     const Trace* trace(const std::string& port) const override;
+
+    /// The instant at which the first three columns of an output were longest, over the whole take.
+    struct Peak {
+        std::string port;
+        double when = 0.0, value = 0.0;
+    };
+    /// None: the take has no finite value of it.
+    std::optional<Peak> largest(const std::string& port) const;
 
     double traced_s = 5.0;  ///< length of the traces
 

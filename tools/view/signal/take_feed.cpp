@@ -81,6 +81,26 @@ void TakeFeed::read(const std::string& port, double begin, double end, Trace& in
     }
 }
 
+std::optional<TakeFeed::Peak> TakeFeed::largest(const std::string& port) const {
+    const auto found = streams_.find(port);
+    if (found == streams_.end()) return std::nullopt;
+    std::optional<Peak> best;
+    for (const take::TakeStreamInfo* info : found->second) {
+        take::TakeStreamReader reader(take_.folder / info->file, *info);
+        const std::size_t wide = std::min<std::size_t>(3, static_cast<std::size_t>(reader.channels()));
+        reader.seek(info->start);
+        for (std::int64_t tick = info->start;; ++tick) {
+            const double* frame = reader.frame(tick);
+            if (!frame) break;
+            double sum = 0.0;
+            for (std::size_t c = 0; c < wide; ++c) sum += frame[c] * frame[c];
+            if (std::isfinite(sum) && (!best || std::sqrt(sum) > best->value))
+                best = Peak{port, static_cast<double>(tick) * seconds(info->period), std::sqrt(sum)};
+        }
+    }
+    return best;
+}
+
 void TakeFeed::follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) {
     if (latest_at_ != now_) latest_.clear();
     latest_at_ = now_;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a window shows a patch, kept in the patch itself; nothing that runs reads it:
+//
+//     [window]
+//     layout = "plan"                    # patch, plan or train
+//     open   = ["handle"]                # sub-patches whose nodes are shown
+//     [window.places]
+//     ball = [240, 60]                   # upper left corner of the node within its lane
+//     [window.colours]
+//     ball = "amber"
+//     [window.comments.why]
+//     text  = "the wall of the canal"
+//     place = [20, 300]
+//     size  = [240, 80]
+#pragma once
+
+#include "graph/patch/patch.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace toml {
+inline namespace v3 {
+class node;
+}  // namespace v3
+}  // namespace toml
+
+namespace tactus::patch {
+
+/// In units of the picture: pixels at zoom 1.
+struct PatchPlace {
+    double x = 0.0, y = 0.0;
+};
+
+struct PatchComment {
+    std::string name, text, colour;
+    PatchPlace place, size;
+};
+
+struct PatchWindow {
+    std::string layout;  ///< empty: not said
+    std::vector<std::string> open;
+    std::map<std::string, PatchPlace> places;  ///< by node; some may not be there
+    std::map<std::string, std::string> colours;
+    std::vector<PatchComment> comments;
+};
+
+/// The names of colours, in the order of a menu.
+const std::vector<std::string>& colour_names();
+
+/// Reads the value of `window`. Adds what is wrong to `problems`. `file` names the patch in messages.
+PatchWindow read_window(const toml::node& value, const std::string& file, Problems& problems);
+
+/// The window of a patch's text; empty for a text that is no patch.
+PatchWindow window_of(std::string_view text);
+
+}  // namespace tactus::patch

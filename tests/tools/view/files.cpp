@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files to choose from, what the start page lists, and what the window remembers.
+#include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
+#include "tests/tools/patches.hpp"
+#include "tests/tools/run_command.hpp"
+#include "tools/view/files/file_chooser.hpp"
+#include "tools/view/files/start_list.hpp"
+#include "tools/view/files/window_memory.hpp"
+#include "tools/view/workbench.hpp"
+
+#include <algorithm>
+
+using namespace tactus;
+using namespace tactus::view;
+using tactus::test::Folder;
+using tactus::test::slurp;
+
+namespace {
+
+std::vector<std::string> names(const std::vector<FileChooser::Entry>& entries) {
+    std::vector<std::string> all;
+    for (const auto& entry : entries) all.push_back(entry.name);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a folder is listed with its own folders first, and only files that suit") {
+    const Folder folder;
+    namespace fs = std::filesystem;
+    fs::create_directories(folder.path / "b/inner");
+    fs::create_directories(folder.path / "Take");
+    folder.write("Take/take.json", "{}");
+    for (const char* file : {"zeta.toml", "Alpha.TOML", ".hidden.toml", "sound.wav"}) folder.write(file, "x");
+    FileChooser open(FileChooser::For::open, folder.path, {".toml"});
+    CHECK(names(open.entries()) == std::vector<std::string>{"b", "Take", "Alpha.TOML", "zeta.toml"});
+    CHECK(open.entries()[1].is_take);
+    open.name = "alp";
+    CHECK(names(open.entries()) == std::vector<std::string>{"Alpha.TOML"});
+    // The only one that suits is meant.
+    CHECK(open.accept() == open.folder() / "Alpha.TOML");
+    open.name = "b";
+    CHECK_FALSE(open.accept());
+    CHECK(open.folder().filename() == "b");
+    CHECK(open.name.empty());
+    open.go_up();
+    open.name = "Take";
+    CHECK(open.accept() == open.folder() / "Take");
+    open.name = "missing";
+    CHECK_FALSE(open.accept());
+    CHECK(open.problem.find("there is no file") != std::string::npos);
+    open.name.clear();
+    CHECK_FALSE(open.accept());
+    open.step(1);
+    open.step(1);
+    CHECK(open.name == "Take");
+    open.step(-5);
+    CHECK(open.name == "b");
+    open.step(50);
+    CHECK(open.name == "zeta.toml");
+    CHECK_FALSE(open.go_to(folder.path / "nowhere"));
+    CHECK_FALSE(open.problem.empty());
+    CHECK(open.entries().size() == 4);
+}
+
+TEST_CASE("a file to save gets its ending, and never replaces another") {
+    const Folder folder;
+    folder.write("old.toml", "x");
+    FileChooser save(FileChooser::For::save, folder.path, {".toml"});
+    save.name = "new";
+    CHECK(save.accept() == save.folder() / "new.toml");
+    save.name = "old";
+    CHECK_FALSE(save.accept());
+    CHECK(save.problem.find("is there already") != std::string::npos);
+    save.name = "no/such/place";
+    CHECK_FALSE(save.accept());
+    CHECK(save.problem.find("there is no folder") != std::string::npos);
+    save.name = (folder.path / "by path.toml").string();
+    CHECK(save.accept() == folder.path / "by path.toml");
+}
+
+TEST_CASE("the start page lists examples with titles, files that still are there, takes and plans") {
+    const Folder folder;
+    namespace fs = std::filesystem;
+    fs::create_directories(folder.path / "library/patches");
+    fs::create_directories(folder.path / "library/pictures");
+    folder.write("library/patches/ball.toml", "title = \"A ball\"\n[nodes.a]\ntype = \"constant\"\nrate = \"60 Hz\"\n");
+    folder.write("library/patches/broken.toml", "title = ");
+    folder.write("library/pictures/ball.png", "");
+    fs::create_directories(folder.path / "work/monday");
+    folder.write("work/monday/take.json", "{}");
+    fs::create_directories(folder.path / "work/deep/er");
+    folder.write("work/deep/case.plan.json", "{}");
+    folder.write("work/deep/er/far.plan.json", "{}");
+    const StartList list =
+        start_list(folder.path / "library", folder.path / "work",
+                   {(folder.path / "gone.toml").string(), (folder.path / "library/patches/ball.toml").string()});
+    REQUIRE(list.examples.size() == 2);
+    CHECK(list.examples[0].title == "A ball");
+    CHECK(list.examples[0].picture.filename() == "ball.png");
+    CHECK(list.examples[1].title == "broken");
+    CHECK(list.examples[1].picture.empty());
+    REQUIRE(list.recent.size() == 1);
+    CHECK(list.recent[0].title == "ball.toml");
+    REQUIRE(list.takes.size() == 1);
+    CHECK(list.takes[0].title == "monday");
+    REQUIRE(list.plans.size() == 1);
+    CHECK(start_list(folder.path / "nothing", folder.path / "nothing", {}).examples.empty());
+    CHECK(kind_of_file(folder.path / "work/monday") == FileKind::take);
+    CHECK(kind_of_file("x.plan.json") == FileKind::plan);
+    CHECK(kind_of_file("x.TOML") == FileKind::patch);
+    CHECK(kind_of_file("scan.nii.gz") == FileKind::scan);
+    CHECK(kind_of_file("x.wav") == FileKind::sound);
+    CHECK(kind_of_file("x.xyz") == FileKind::unknown);
+}
+
+TEST_CASE("the window remembers files and layouts, and survives a damaged memory") {
+    const Folder folder;
+    const auto file = folder.path / "state/window.json";
+    {
+        WindowMemory memory(file);
+        for (int i = 0; i < 25; ++i) memory.opened(folder.path / ("p" + std::to_string(i)));
+        memory.opened(folder.path / "p20");
+        memory.keep_layout(folder.path / "p20", Layout::train);
+    }
+    const WindowMemory again(file);
+    CHECK(again.recent().size() == 20);
+    CHECK(again.recent().front().ends_with("p20"));
+    CHECK(std::ranges::count(again.recent(), again.recent().front()) == 1);
+    CHECK(again.layout_of(folder.path / "p20") == Layout::train);
+    CHECK_FALSE(again.layout_of(folder.path / "p1"));
+    for (const char* damage : {"{", "[]", "{\"recent\": 3}", "{\"recent\": [1], \"layouts\": {\"a\": 2}}", ""}) {
+        folder.write("state/window.json", damage);
+        CHECK(WindowMemory(file).recent().empty());
+    }
+    // A home that cannot be written.
+    WindowMemory lost("/proc/nowhere/window.json");
+    lost.opened("/tmp/x");
+    CHECK(lost.recent().size() == 1);
+}
+
+TEST_CASE("a file that is dropped goes to the node that takes it, as one edit") {
+    const Folder folder;
+    session::RunChoice choice;
+    choice.patch = folder
+                       .write("p.toml",
+                              "wires = [\"go.out -> drum.trigger\"]\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
+                              "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\n")
+                       .string();
+    Workbench bench(choice);
+    const std::string before = bench.editor().text();
+    REQUIRE(bench.unfinished().find("drum"));
+    const auto sound = folder.write("knock one.wav", "x");
+    CHECK_FALSE(bench.take_file(folder.write("scan.nrrd", "x"), ""));
+    CHECK(bench.messages().back().text.find("tactus import") != std::string::npos);
+    CHECK_FALSE(bench.take_file(folder.write("bone.vdb", "x"), ""));
+    REQUIRE(bench.take_file(sound, ""));
+    CHECK(bench.editor().text().find("knock_one = ") != std::string::npos);
+    CHECK(bench.editor().text().find("sound = \"knock_one\"") != std::string::npos);
+    // Another one takes its place; the name stays.
+    const auto other = folder.write("other.wav", "x");
+    REQUIRE(bench.take_file(other, "drum"));
+    CHECK(bench.editor().text().find("other.wav") != std::string::npos);
+    while (bench.undo()) {
+    }
+    CHECK(bench.editor().text() == before);
+}

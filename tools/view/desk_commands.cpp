@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be done in the window, by name, and the dialogs that it opens.
+#include "tools/view/desk.hpp"
+
+#include "nodes/catalogue.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+void Desk::add_file_commands(std::vector<Command>& all) {
+    const auto is_patch = [this] { return take_ == nullptr; };
+    all.push_back({"File", "New patch", "Ctrl+N", "empty canvas begin", [this] { wishes.new_patch = true; }});
+    all.push_back({"File", "Open...", "Ctrl+O", "patch take plan file", [this] { ask_open(); }});
+    all.push_back({"File", "Start page", "", "examples recent home", [this] { wishes.start_page = true; }});
+    all.push_back({"File", "Save", "Ctrl+S", "write file",
+                   [this] {
+                       if (bench_.is_untitled()) ask_save_as();
+                       else bench_.save();
+                   },
+                   [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled()); }, nullptr, true});
+    all.push_back(
+        {"File", "Save as...", "Ctrl+Shift+S", "write copy another name", [this] { ask_save_as(); }, is_patch});
+    all.push_back({"File", "Keep the layout in the patch", "", "window panels",
+                   [this] { bench_.keep_layout(std::string(name_of(layout))); }, is_patch});
+    all.push_back(
+        {"File", "Close the window", "Ctrl+Q", "quit exit end", [this] { window_.close(); }, nullptr, nullptr, true});
+}
+
+void Desk::add_edit_commands(std::vector<Command>& all) {
+    const auto may = [this] { return take_ == nullptr; };
+    const auto has_chosen = [this] { return take_ == nullptr && !patch_.chosen.empty(); };
+    const auto has_several = [this] { return take_ == nullptr && patch_.chosen.size() > 1; };
+    using Align = PatchPanel::Align;
+    all.push_back({"Edit", "Undo", "Ctrl+Z", "back revert", [this] { bench_.undo(); },
+                   [this] { return bench_.editor().can_undo(); }});
+    all.push_back(
+        {"Edit", "Redo", "Ctrl+Y", "again", [this] { bench_.redo(); }, [this] { return bench_.editor().can_redo(); }});
+    all.push_back({"", "Redo", "Ctrl+Shift+Z", "again", [this] { bench_.redo(); },
+                   [this] { return bench_.editor().can_redo(); }});
+    all.push_back({"Edit", "Cut", "Ctrl+X", "nodes", [this] { patch_.cut(); }, has_chosen, nullptr, true});
+    all.push_back({"Edit", "Copy", "Ctrl+C", "nodes", [this] { patch_.copy(); }, has_chosen});
+    all.push_back({"Edit", "Paste", "Ctrl+V", "nodes", [this] { patch_.paste(); }, may});
+    all.push_back({"Edit", "Duplicate", "Ctrl+D", "nodes copy", [this] { patch_.duplicate(); }, has_chosen});
+    all.push_back({"Edit", "Remove", "Del", "delete nodes erase", [this] { patch_.remove_chosen(); }, has_chosen});
+    all.push_back({"Edit", "Choose all", "Ctrl+A", "select nodes everything", [this] { patch_.choose_all(); }});
+    all.push_back(
+        {"Edit", "Add a node...", "Tab", "new insert create", [this] { patch_.open_palette(); }, may, nullptr, true});
+    all.push_back({"Edit", "Add a comment", "", "note text box", [this] { patch_.add_comment(); }, may});
+    all.push_back({"Edit", "Make a sub-patch of the chosen nodes...", "Ctrl+G", "group part nest",
+                   [this] { patch_.make_sub_patch(); }, has_chosen});
+    all.push_back({"", "Align left edges", "", "arrange", [this] { patch_.align(Align::left); }, has_several});
+    all.push_back({"", "Align top edges", "", "arrange", [this] { patch_.align(Align::top); }, has_several});
+    all.push_back(
+        {"", "Align as a row", "", "arrange distribute", [this] { patch_.align(Align::columns); }, has_several});
+    all.push_back(
+        {"", "Align as a column", "", "arrange distribute", [this] { patch_.align(Align::rows); }, has_several});
+    constexpr double step = 20.0;
+    const auto move = [&](const char* keys, const char* name, Point by) {
+        all.push_back({"", name, keys, "nodes nudge", [this, by] { patch_.nudge(by); }, has_chosen});
+    };
+    move("Ctrl+Left", "Move the nodes left", {-step, 0.0});
+    move("Ctrl+Right", "Move the nodes right", {step, 0.0});
+    move("Ctrl+Up", "Move the nodes up", {0.0, -step});
+    move("Ctrl+Down", "Move the nodes down", {0.0, step});
+}
+
+void Desk::add_view_commands(std::vector<Command>& all) {
+    for (const Layout each : {Layout::patch, Layout::plan, Layout::train})
+        all.push_back({"View", fmt::format("Layout: {}", name_of(each)),
+                       fmt::format("Ctrl+{}", 1 + static_cast<int>(each)), "panels window",
+                       [this, each] { use_layout(each); }, nullptr, [this, each] { return layout == each; }});
+    all.push_back(
+        {"View", "Show the whole patch", "F", "fit zoom all", [this] { patch_.fit(); }, nullptr, nullptr, true});
+    all.push_back({"View", "Small map", "", "minimap overview", [this] { patch_.has_minimap = !patch_.has_minimap; },
+                   nullptr, [this] { return patch_.has_minimap; }});
+    all.push_back({"View", "Look at the scene anew", "", "camera reset fit", [this] { scene_.reset(); }});
+    all.push_back({"View", "List of node types", "", "catalogue library", [this] { nodes_.wants_catalogue = true; }});
+    all.push_back({"Help", "Find a command...", "Ctrl+P", "palette search", [this] { list_.open(all_commands()); }});
+    all.push_back({"Help", "Keys", "F1", "shortcuts help", [this] { list_.open_help(); }});
+}
+
+void Desk::add_run_commands(std::vector<Command>& all) {
+    if (take_) {
+        all.push_back({"Take", "Play or stand", "Space", "", [this] { take_->play(!take_->is_playing()); }});
+        all.push_back(
+            {"Take", "Go to the largest force", "M", "maximum peak instant", [this] { go_to_largest_force(); }});
+        all.push_back({"Take", "Go to the beginning", "Home", "start", [this] { take_->go_to(0.0); }});
+        all.push_back({"Take", "Go to the end", "End", "", [this] { take_->go_to(take_->length()); }});
+        all.push_back({"Take", "Back to the patch", "", "", [this] { bench_.wants_patch = true; },
+                       [this] { return bench_.has_patch_behind; }});
+        return;
+    }
+    using State = RunStatus::State;
+    const auto runs = [this] { return bench_.running() && bench_.status()->state != State::over; };
+    all.push_back(
+        {"Run", "Run the patch", "F5", "start play go", [this] { bench_.run(); }, [runs] { return !runs(); }});
+    all.push_back({"Run", "End the run", "", "stop", [this] { bench_.stop(); }, runs});
+    all.push_back({"Run", "Pause or go on", "Space", "hold resume",
+                   [this] { bench_.pause(bench_.status()->state == State::runs); }, runs});
+    all.push_back({"Run", "Record a take", "Ctrl+R", "save log", [this] { bench_.record(!bench_.is_recording()); },
+                   nullptr, [this, runs] { return runs() && bench_.is_recording(); }});
+    all.push_back({"Run", "Look at the take", "", "recording open", [this] { bench_.wants_take = true; },
+                   [this, runs] {
+                       return !runs() && !bench_.take().empty() && fs::exists(bench_.take() / "result.json") &&
+                              bench_.editor().is_saved();
+                   }});
+}
+
+std::vector<Command> Desk::make_commands() {
+    std::vector<Command> all;
+    add_file_commands(all);
+    add_edit_commands(all);
+    add_run_commands(all);
+    add_view_commands(all);
+    return all;
+}
+
+std::vector<Command> Desk::all_commands() {
+    std::vector<Command> all = commands_;
+    const PatchPicture& picture = bench_.picture();
+    for (const PictureNode& node : picture.nodes)
+        all.push_back({"go to", node.name, "", node.type, [this, name = node.name] {
+                           patch_.selected = name;
+                           patch_.look_at(name);
+                       }});
+    const std::string folder = (session::library_folder() / "patches").string();
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".toml")
+            all.push_back({"open", "Open " + entry.path().stem().string(), "", "example",
+                           [this, path = entry.path()] { wishes.open = path; }});
+    const StartList nearby = start_list({}, fs::current_path(ignored), memory_.recent());
+    for (const auto* list : {&nearby.recent, &nearby.takes, &nearby.plans})
+        for (const StartItem& item : *list)
+            all.push_back({"open", "Open " + item.title, "", "file recent take plan",
+                           [this, path = item.path] { wishes.open = path; }});
+    if (take_) return all;
+    for (const NodeType* type : nodes::catalogue())
+        all.push_back({"add", "Add " + type->name, "", std::string(type->about), [this, name = type->name] {
+                           if (const std::string made = bench_.add_node(name, bench_.lane_for(name)); !made.empty())
+                               patch_.selected = made;
+                       }});
+    // Wires into the inputs that lack one, from every output that suits.
+    constexpr std::size_t most_wires = 4000;
+    std::size_t wires = 0;
+    for (const PictureNode& to : picture.nodes)
+        for (const PicturePort& input : to.inputs)
+            for (const PictureNode& from : picture.nodes)
+                for (const PicturePort& output : from.outputs) {
+                    if (input.is_connected || &from == &to || (input.type && output.type && input.type != output.type))
+                        continue;
+                    if (++wires > most_wires) continue;
+                    const std::string a = from.name + "." + output.name, b = to.name + "." + input.name;
+                    all.push_back({"wire", fmt::format("Wire {} to {}", a, b), "", "connect",
+                                   [this, a, b] { bench_.connect(a, b); }});
+                }
+    for (const PictureNode& to : picture.nodes)
+        if (const TypePorts* ports = ports_of_type(to.type))
+            for (const auto& [param, unit] : ports->params)
+                for (const PictureNode& from : picture.nodes)
+                    for (const PicturePort& output : from.outputs) {
+                        if (&from == &to || output.type != &value::number || ++wires > most_wires) continue;
+                        const std::string a = from.name + "." + output.name, b = to.name + "." + param;
+                        all.push_back({"wire", fmt::format("Wire {} to {}", a, b), "", "drive parameter",
+                                       [this, a, b] { bench_.connect(a, b); }});
+                    }
+    if (!bench_.written().devices.empty())
+        all.push_back({"set", "Set a device setting...", "", "DEVICE.SETTING VALUE, as simulated.start_z 60 mm",
+                       [this] { ask_value("DEVICE.SETTING VALUE", "", ""); }});
+    for (const patch::PatchDevice& device : bench_.written().devices)
+        for (const OptionText& setting : device.settings)
+            all.push_back(
+                {"set", fmt::format("Set devices.{}.{}...", device.name, setting.name), "", "device",
+                 [this, name = device.name, setting] { ask_value("devices." + name, setting.name, setting.text); }});
+    if (const int index = picture.find(patch_.selected);
+        index >= 0 && picture.nodes[static_cast<std::size_t>(index)].plan >= 0)
+        for (const ParameterField& field :
+             parameters_of(*bench_.plan(), picture.nodes[static_cast<std::size_t>(index)].plan))
+            all.push_back({"set", fmt::format("Set {}.{}...", patch_.selected, field.name), "", field.about,
+                           [this, node = patch_.selected, field] { ask_value(node, field.name, field.text); }});
+    return all;
+}
+
+void Desk::use_layout(Layout wanted) {
+    layout = wanted;
+    memory_.keep_layout(bench_.editor().file(), wanted);
+}
+
+void Desk::ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done) {
+    dialog_.open(title, std::move(chooser), std::move(done));
+}
+
+void Desk::ask_open() {
+    std::error_code ignored;
+    const fs::path file = bench_.editor().file();
+    const bool is_own = !file.empty() && !session::is_of_library(file);
+    FileChooser chooser(FileChooser::For::open, is_own ? file.parent_path() : fs::current_path(ignored),
+                        {".toml", ".plan.json"});
+    ask_file("Open a patch, a take or a plan", std::move(chooser),
+             [this](const fs::path& path) { wishes.open = path; });
+}
+
+void Desk::ask_save_as() {
+    std::error_code ignored;
+    const fs::path file = bench_.editor().file();
+    const bool is_own = !bench_.is_untitled() && !session::is_of_library(file);
+    FileChooser chooser(FileChooser::For::save, is_own ? file.parent_path() : fs::current_path(ignored), {".toml"});
+    chooser.name = bench_.is_untitled() ? "" : bench_.free_file().filename().string();
+    ask_file("Save the patch as", std::move(chooser), [this](const fs::path& path) {
+        if (!bench_.save_as(path.string())) return;
+        memory_.opened(path);
+        window_.set_title(fmt::format("{} - Tactus", bench_.title()));
+    });
+}
+
+void Desk::ask_value(const std::string& node, const std::string& param, const std::string& value) {
+    value_of_ = param.empty() ? node : node + "." + param;
+    value_ = value;
+    asks_value_ = true;
+}
+
+void Desk::draw_value() {
+    constexpr const char* title = "value";
+    if (std::exchange(asks_value_, false)) {
+        ImGui::OpenPopup(title);
+        ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    }
+    if (!ImGui::BeginPopup(title)) return;
+    ImGui::TextUnformatted(value_of_.c_str());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(20.0f * ImGui::GetFontSize());
+    const bool entered =
+        ImGui::InputText("##value", &value_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    mark_spot("value");
+    if (entered && value_of_.starts_with("DEVICE")) {
+        const std::size_t blank = value_.find(' '), dot = value_.find('.');
+        if (dot < blank && blank != std::string::npos)
+            bench_.set_device(value_.substr(0, dot), value_.substr(dot + 1, blank - dot - 1), value_.substr(blank + 1));
+        else bench_.tell("write DEVICE.SETTING VALUE, as simulated.start_z 60 mm", true);
+        ImGui::CloseCurrentPopup();
+    } else if (entered) {
+        const std::size_t dot = value_of_.rfind('.');
+        const std::string owner = value_of_.substr(0, dot), name = value_of_.substr(dot + 1);
+        constexpr std::string_view device = "devices.";
+        if (owner.starts_with(device)) bench_.set_device(owner.substr(device.size()), name, value_);
+        else bench_.set(owner, name, value_);
+        ImGui::CloseCurrentPopup();
+    }
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+void Desk::go_to_largest_force() {
+    std::optional<TakeFeed::Peak> best;
+    const auto look_at = [&](const std::string& port) {
+        if (const auto peak = take_->feed().largest(port); peak && (!best || peak->value > best->value)) best = peak;
+    };
+    try {
+        if (bench_.plan())
+            for (const compile::PlanNode& node : bench_.plan()->nodes)
+                if (node.type->role == NodeRole::hand_sink)
+                    for (const compile::PlanOutput& output : node.outputs)
+                        if (output.name == "applied") look_at(node.name + ".applied");
+        // A patch without a hand has forces, too.
+        if (!best)
+            for (const Feed::Port& port : take_->feed().ports())
+                if (port.type == &value::wrench) look_at(port.name);
+    } catch (const Error& error) {
+        return bench_.tell(error.what(), true);
+    }
+    if (!best) return bench_.tell("this take has no forces", true);
+    take_->play(false);
+    take_->go_to(best->when);
+    patch_.selected = best->port.substr(0, best->port.find('.'));
+    patch_.wants_scope = best->port;
+    bench_.tell(fmt::format("largest force: {:.3f} N at {:.3f} s, {}", best->value, best->when, best->port));
+}
+
+void Desk::take_dropped(const fs::path& file) {
+    const FileKind kind = kind_of_file(file);
+    if (kind == FileKind::patch || kind == FileKind::take) wishes.open = file;
+    else if (take_) bench_.tell("a take is read-only; run the patch to change it", true);
+    else if (kind != FileKind::plan || !bench_.take_file(file, patch_.selected)) {
+        if (kind == FileKind::plan) wishes.open = file;
+        else bench_.take_file(file, patch_.selected);
+    }
+    if (wishes.any()) start_page_.is_open = false;
+}
+
+void Desk::draw_start() {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
+    start_page_.draw(fonts_);
+    ImGui::PopStyleVar();
+    scene_.rest();
+    if (std::exchange(start_page_.wants_new, false)) wishes.new_patch = true;
+    if (std::exchange(start_page_.wants_dialog, false)) ask_open();
+    if (const auto path = std::exchange(start_page_.chosen, std::nullopt)) wishes.open = *path;
+    const bool leaves =
+        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && !dialog_.is_open() && !list_.is_open();
+    if (leaves) start_page_.is_open = false;
+    draw_dialogs();
+    if (!dialog_.is_open()) questions.draw();
+    ImGui::End();
+    ImGui::PopFont();
+}
+
+void Desk::draw_dialogs() {
+    // A patch without a place needs one.
+    if (bench_.wants_name && bench_.is_untitled() && !dialog_.is_open()) {
+        bench_.wants_name = false;
+        ask_save_as();
+    }
+    dialog_.draw(fonts_);
+    list_.draw(commands_, fonts_);
+    draw_value();
+}
+
+}  // namespace tactus::view

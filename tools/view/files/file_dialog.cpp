@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/files/file_dialog.hpp"
+
+#include "tools/session/load_plan.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool pressed(ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
+
+}  // namespace
+
+void FileDialog::open(const std::string& title, FileChooser chooser, Done done) {
+    title_ = title;
+    chooser_ = std::move(chooser);
+    done_ = std::move(done);
+    wants_open_ = true;
+    was_opened_ = false;
+}
+
+void FileDialog::refuse(const std::string& why) {
+    if (chooser_) chooser_->problem = why;
+}
+
+void FileDialog::places() {
+    const auto place = [&](const char* name, const fs::path& folder) {
+        std::error_code ignored;
+        if (folder.empty() || !fs::is_directory(folder, ignored)) return;
+        if (ImGui::Selectable(name)) chooser_->go_to(folder);
+        mark_spot(std::string("place ") + name);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", folder.c_str());
+    };
+    const char* const home = std::getenv("HOME");
+    std::error_code ignored;
+    place("home", home ? home : "");
+    place("working folder", fs::current_path(ignored));
+    place("library", session::library_folder() / "patches");
+    place("small patches", session::library_folder() / "examples");
+    place("all files", "/");
+}
+
+void FileDialog::files() {
+    std::optional<std::string> wanted;
+    bool is_double = false;
+    for (const FileChooser::Entry& entry : chooser_->entries()) {
+        if (entry.is_folder) ImGui::PushStyleColor(ImGuiCol_Text, entry.is_take ? tone::good : tone::warm);
+        const std::string shown = entry.is_folder && !entry.is_take ? entry.name + "/" : entry.name;
+        if (ImGui::Selectable(shown.c_str(), entry.name == chooser_->name, ImGuiSelectableFlags_AllowDoubleClick)) {
+            wanted = entry.name;
+            is_double = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+        }
+        mark_spot("file " + entry.name);
+        if (entry.name == chooser_->name && (pressed(ImGuiKey_DownArrow) || pressed(ImGuiKey_UpArrow)))
+            ImGui::SetScrollHereY();
+        if (entry.is_folder) ImGui::PopStyleColor();
+        if (entry.is_take) {
+            ImGui::SameLine();
+            ImGui::TextDisabled("take");
+        }
+    }
+    if (!wanted) return;
+    chooser_->name = *wanted;
+    if (!is_double) return;
+    if (const auto file = chooser_->accept()) {
+        const Done done = done_;
+        chooser_.reset();
+        done(*file);
+    }
+}
+
+void FileDialog::draw(const Fonts& fonts) {
+    if (std::exchange(wants_open_, false)) {
+        ImGui::OpenPopup(title_.c_str());
+        const Point all = point(ImGui::GetMainViewport()->Size);
+        const Point size{std::min(720.0 * fonts.scale, 0.96 * all.x), std::min(480.0 * fonts.scale, 0.94 * all.y)};
+        ImGui::SetNextWindowPos(vec((all - size) * 0.5));
+        ImGui::SetNextWindowSize(vec(size));
+    }
+    if (title_.empty()) return;
+    if (!ImGui::BeginPopupModal(title_.c_str(), nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
+        if (was_opened_) chooser_.reset();
+        return;
+    }
+    was_opened_ = true;
+    const auto leave = [] {
+        ImGui::CloseCurrentPopup();
+        ImGui::EndPopup();
+    };
+    if (!chooser_) return leave();
+    if (ImGui::SmallButton("up")) chooser_->go_up();
+    mark_spot("folder up");
+    ImGui::SameLine();
+    ImGui::TextUnformatted(chooser_->folder().c_str());
+    const float below = 2.0f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
+    ImGui::BeginChild("places", ImVec2(9.0f * ImGui::GetFontSize(), -below));
+    places();
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("files", ImVec2(0.0f, -below));
+    files();
+    ImGui::EndChild();
+    if (!chooser_) return leave();
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool entered =
+        ImGui::InputTextWithHint("##name", "name or path", &chooser_->name, ImGuiInputTextFlags_EnterReturnsTrue);
+    mark_spot("file name");
+    if (pressed(ImGuiKey_DownArrow)) chooser_->step(1);
+    if (pressed(ImGuiKey_UpArrow)) chooser_->step(-1);
+    ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
+    ImGui::TextUnformatted(chooser_->problem.c_str());
+    ImGui::PopStyleColor();
+    const bool accepted = ImGui::Button("   OK   ");
+    mark_spot("accept file");
+    ImGui::SameLine();
+    const bool cancelled = ImGui::Button("Cancel") || pressed(ImGuiKey_Escape);
+    mark_spot("cancel file");
+    if (cancelled) {
+        chooser_.reset();
+        return leave();
+    }
+    if (entered || accepted)
+        if (const auto file = chooser_->accept()) {
+            const Done done = done_;
+            chooser_.reset();
+            leave();
+            return done(*file);
+        }
+    ImGui::EndPopup();
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the window remembers from one time to the next: files opened last, and the layout of each. No user interface.
+#pragma once
+
+#include "tools/view/frame/layout.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+class WindowMemory {
+public:
+    /// Kept in a JSON file; a file that is missing or damaged is as an empty one. Never throws for what it holds.
+    explicit WindowMemory(std::filesystem::path file = place());
+
+    /// `$XDG_STATE_HOME/tactus/window.json`, default `~/.local/state`; empty without a home.
+    static std::filesystem::path place();
+
+    /// Patches and takes, those opened last first; at most 20. Some may be gone.
+    const std::vector<std::string>& recent() const { return recent_; }
+    void opened(const std::filesystem::path& what);
+
+    std::optional<Layout> layout_of(const std::filesystem::path& patch) const;
+    void keep_layout(const std::filesystem::path& patch, Layout layout);
+
+private:
+    void save() const noexcept;
+
+    std::filesystem::path file_;
+    std::vector<std::string> recent_;
+    std::map<std::string, Layout> layouts_;
+};
+
+}  // namespace tactus::view

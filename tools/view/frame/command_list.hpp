@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands on the screen: menus, keys, the list of Ctrl+P and the table of F1.
+#pragma once
+
+#include "tools/view/frame/commands.hpp"
+#include "tools/view/painter.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+/// Menus of all commands, on the current line; one button when there is less room than `room`, pixels.
+void draw_menus(const std::vector<Command>& commands, double room);
+
+/// Runs the command whose keys are pressed in this frame.
+void run_pressed(const std::vector<Command>& commands);
+
+class CommandList {
+public:
+    /// Opens the list; `all`: what it offers until it closes.
+    void open(std::vector<Command> all);
+    void open_help() { wants_help_ = true; }
+    /// `commands`: for the table of keys.
+    void draw(const std::vector<Command>& commands, const Fonts& fonts);
+    bool is_open() const { return is_open_; }
+
+private:
+    void draw_list(const Fonts& fonts);
+
+    std::vector<Command> all_;
+    std::vector<const Command*> found_;
+    std::string words_;
+    std::size_t chosen_ = 0;
+    bool wants_open_ = false, wants_help_ = false, is_open_ = false;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Node types by words. No user interface.
+#pragma once
+
+#include "tools/view/patch/patch_picture.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace tactus::view {
+
+/// The input of a type that a value would go to: one of its type, or one that takes any; null: none.
+const PicturePort* input_for(const NodeType& type, const ValueType* value);
+
+/// Types that suit some words, best first. `feeds`: only types with an input for a value of this type; null: all.
+std::vector<const NodeType*> types_for(std::string_view words, const ValueType* feeds);
+
+}  // namespace tactus::view

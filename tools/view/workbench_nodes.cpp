@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// New nodes, several nodes at once, comments, files and devices.
+#include "tools/view/workbench.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "graph/edit/patch_arrange.hpp"
+#include "graph/patch/sub_patch.hpp"
+#include "nodes/catalogue.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/view/files/start_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char *fast = "1 kHz", *audio = "48 kHz";
+
+const NodeType* type_of(const std::string& name) {
+    const auto all = nodes::catalogue();
+    const auto found = std::ranges::find(all, name, [](const NodeType* t) { return t->name; });
+    return found == all.end() ? nullptr : *found;
+}
+
+bool carries_signal(const std::string& type) {
+    const TypePorts* ports = ports_of_type(type);
+    const auto is_signal = [](const PicturePort& port) { return port.type == &value::signal; };
+    return ports && (std::ranges::any_of(ports->inputs, is_signal) || std::ranges::any_of(ports->outputs, is_signal));
+}
+
+std::string count_of(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::string Workbench::free_name(const std::string& type) const {
+    const auto is_taken = [&](const std::string& name) {
+        return std::ranges::find(written_.nodes, name, &patch::PatchNode::name) != written_.nodes.end();
+    };
+    std::string name = type;
+    for (int i = 2; is_taken(name); ++i) name = fmt::format("{}_{}", type, i);
+    return name;
+}
+
+std::string Workbench::lane_for(const std::string& type) const {
+    const bool is_audio = carries_signal(type);
+    std::string best;
+    for (const PictureLane& lane : picture_.lanes) {
+        const auto l = static_cast<int>(&lane - picture_.lanes.data());
+        const bool has_audio = std::ranges::any_of(
+            picture_.nodes, [&](const PictureNode& node) { return node.group == l && carries_signal(node.type); });
+        if (has_audio == is_audio && best.empty()) best = lane.name;
+        if (!is_audio && lane.name == fast) best = lane.name;
+    }
+    return best.empty() ? is_audio ? audio : fast : best;
+}
+
+std::string Workbench::add_node(const std::string& type, const std::string& lane,
+                                std::optional<patch::PatchPlace> place) {
+    const NodeType* known = type_of(type);
+    if (!known) {
+        tell(fmt::format("no node type '{}'", type), true);
+        return {};
+    }
+    const std::string name = free_name(type);
+    const bool is_group = std::ranges::find(written_.groups, lane, &patch::PatchGroup::name) != written_.groups.end();
+    const edit::NewNode node{name, type, is_group ? "" : lane, is_group ? lane : "", {}, {}};
+    const bool is_of_hand = known->role == NodeRole::hand_source || known->role == NodeRole::hand_sink;
+    const bool needs_device = is_of_hand && written_.devices.empty();
+    const bool made = edit(
+        [&](std::string_view text) {
+            std::string changed = edit::with_node(text, node);
+            if (needs_device) changed = edit::with_device(changed, "simulated", "simulated");
+            if (place) changed = edit::with_places(changed, {{name, *place}});
+            return changed;
+        },
+        fmt::format("added {} of type {}", name, type));
+    if (!made) return {};
+    last_added_ = name;
+    return name;
+}
+
+bool Workbench::remove(const std::vector<std::string>& nodes) {
+    if (nodes.empty()) return false;
+    if (nodes.size() == 1) return remove(nodes.front());
+    return edit([&](std::string_view text) { return edit::without_nodes(text, nodes); },
+                fmt::format("removed {}", count_of(nodes.size())));
+}
+
+bool Workbench::place(const std::map<std::string, patch::PatchPlace>& places) {
+    return edit([&](std::string_view text) { return edit::with_places(text, places); },
+                fmt::format("moved {}", count_of(places.size())));
+}
+
+bool Workbench::place_automatically(const std::vector<std::string>& nodes) {
+    return edit([&](std::string_view text) { return edit::without_places(text, nodes); },
+                fmt::format("{} stand where they would by themselves", count_of(nodes.size())));
+}
+
+bool Workbench::colour(const std::vector<std::string>& nodes, const std::string& name) {
+    return edit([&](std::string_view text) { return edit::with_colours(text, nodes, name); },
+                fmt::format("coloured {}", count_of(nodes.size())));
+}
+
+std::string Workbench::copy(const std::vector<std::string>& nodes) const {
+    try {
+        return edit::copied(editor_->text(), nodes, fs::absolute(editor_->file()).parent_path());
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+std::vector<std::string> Workbench::paste(const std::string& copied, patch::PatchPlace by) {
+    patch::Problems problems;
+    const patch::Patch patch = patch::read_patch(copied, "clipboard", problems);
+    if (patch.nodes.empty() || !problems.empty()) {
+        tell("the clipboard holds no nodes of a patch", true);
+        return {};
+    }
+    std::map<std::string, std::string> names;
+    std::set<std::string> taken;
+    for (const patch::PatchNode& node : written_.nodes) taken.insert(node.name);
+    for (const patch::PatchNode& node : patch.nodes) {
+        // "gain_2" becomes "gain_3".
+        std::string stem = node.name;
+        if (const std::size_t bar = stem.rfind('_'); bar != std::string::npos && bar > 0 && bar + 1 < stem.size() &&
+                                                     stem.find_first_not_of("0123456789", bar + 1) == std::string::npos)
+            stem.resize(bar);
+        std::string name = node.name;
+        for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
+        names[node.name] = name;
+    }
+    if (!edit([&](std::string_view text) { return edit::with_pasted(text, copied, names, by); },
+              fmt::format("added {}", count_of(names.size()))))
+        return {};
+    std::vector<std::string> made;
+    for (const auto& [from, to] : names) made.push_back(to);
+    return made;
+}
+
+bool Workbench::make_sub_patch(const std::vector<std::string>& nodes, const std::string& name) {
+    if (is_untitled() || session::is_of_library(editor_->file())) {
+        tell("save the patch first: its sub-patch is a file beside it", true);
+        return false;
+    }
+    const fs::path folder = fs::absolute(editor_->file()).parent_path();
+    std::string file = name + ".toml";
+    std::error_code ignored;
+    for (int i = 2; fs::exists(folder / file, ignored); ++i) file = fmt::format("{}-{}.toml", name, i);
+    bool is_written = false;
+    const bool made = edit(
+        [&](std::string_view text) {
+            edit::SubPatch parts = edit::with_sub_patch(text, nodes, name, file, folder);
+            file::write_durable_file(folder / file, parts.inner);
+            is_written = true;
+            return parts.outer;
+        },
+        fmt::format("{} are now the sub-patch {}, in {}", count_of(nodes.size()), name, (folder / file).string()));
+    // Undo keeps the file: redo needs it.
+    if (!made && is_written) fs::remove(folder / file, ignored);
+    return made;
+}
+
+bool Workbench::open_sub_patch(const std::string& node, bool wanted) {
+    std::vector<std::string> open = window_.open;
+    std::erase(open, node);
+    if (wanted) open.push_back(node);
+    return edit([&](std::string_view text) { return edit::with_open_parts(text, open); },
+                fmt::format("{} is {}", node, wanted ? "open" : "closed"));
+}
+
+bool Workbench::comment(const patch::PatchComment& comment) {
+    return edit([&](std::string_view text) { return edit::with_comment(text, comment); }, "changed a comment");
+}
+
+bool Workbench::remove_comment(const std::string& name) {
+    return edit([&](std::string_view text) { return edit::without_comment(text, name); }, "removed a comment");
+}
+
+bool Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
+    std::string name = "note";
+    for (int i = 2; std::ranges::find(window_.comments, name, &patch::PatchComment::name) != window_.comments.end();
+         ++i)
+        name = fmt::format("note_{}", i);
+    return comment({name, words, "", place, {220.0, 80.0}});
+}
+
+namespace {
+
+std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
+    std::string name = file.stem().stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    if (name.empty()) name = "file";
+    const std::string stem = name;
+    for (int i = 2; std::ranges::find(patch.assets, name, &patch::PatchAsset::name) != patch.assets.end(); ++i)
+        name = fmt::format("{}_{}", stem, i);
+    return name;
+}
+
+}  // namespace
+
+bool Workbench::use_file(const std::string& node, const std::string& param, const fs::path& file) {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    const auto known = std::ranges::find_if(written_.assets, [&](const patch::PatchAsset& asset) {
+        return fs::absolute(asset.path).lexically_normal() == path;
+    });
+    const std::string name = known == written_.assets.end() ? asset_name_of(path, written_) : known->name;
+    return edit(
+        [&](std::string_view text) {
+            std::string changed(text);
+            if (known == written_.assets.end()) changed = edit::with_asset(changed, name, path.string());
+            return edit::with_setting(changed, node, param, name);
+        },
+        fmt::format("{}.{} = {}, which is {}", node, param, name, path.string()));
+}
+
+bool Workbench::replace_asset(const std::string& asset, const fs::path& file) {
+    const std::string path = fs::absolute(file).lexically_normal().string();
+    // What the command line said of it does not hold any more.
+    std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
+    return edit([&](std::string_view text) { return edit::with_asset(text, asset, path); },
+                fmt::format("{} is now {}", asset, path));
+}
+
+bool Workbench::take_file(const fs::path& file, const std::string& selected) {
+    const FileKind kind = kind_of_file(file);
+    if (kind == FileKind::scan) {
+        tell(fmt::format("{}: a scan or a mesh becomes a bone first: tactus import {} bone.vdb", file.string(),
+                         file.filename().string()),
+             true);
+        return false;
+    }
+    const std::string name = file.filename().string();
+    const auto suits = [&](const TypePorts::File& asset) {
+        const std::vector<std::string> endings = endings_of_asset(asset.type);
+        return !endings.empty() &&
+               std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
+    };
+    const auto param_of = [&](const patch::PatchNode& node) -> const TypePorts::File* {
+        const TypePorts* ports = ports_of_type(node.type);
+        if (!ports) return nullptr;
+        const auto found = std::ranges::find_if(ports->files, suits);
+        return found == ports->files.end() ? nullptr : &*found;
+    };
+    for (const patch::PatchNode& node : written_.nodes)
+        if (const TypePorts::File* param = node.name == selected ? param_of(node) : nullptr)
+            return use_file(node.name, param->name, file);
+    for (const patch::PatchNode& node : written_.nodes) {
+        const TypePorts::File* param = param_of(node);
+        if (!param) continue;
+        const auto setting = std::ranges::find(node.settings, param->name, &OptionText::name);
+        return setting == node.settings.end() ? use_file(node.name, param->name, file)
+                                              : replace_asset(setting->text, file);
+    }
+    tell(fmt::format("{}: no node of this patch takes such a file", file.string()), true);
+    return false;
+}
+
+bool Workbench::set_driver(const std::string& device, const std::string& driver) {
+    return edit([&](std::string_view text) { return edit::with_device(text, device, driver); },
+                fmt::format("device {} has the driver {}", device, driver));
+}
+
+bool Workbench::set_device(const std::string& device, const std::string& name, const std::string& value) {
+    return edit([&](std::string_view text) { return edit::with_device_setting(text, device, name, value); },
+                fmt::format("device {}: {} = {}", device, name, value.empty() ? "its default" : value));
+}
+
+bool Workbench::keep_layout(const std::string& layout) {
+    return edit([&](std::string_view text) { return edit::with_layout(text, layout); },
+                fmt::format("the patch opens in the layout {}", layout));
+}
+
+}  // namespace tactus::view
