@@ -74,7 +74,7 @@ small() {
     local name=$1
     shift
     [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" small "* ]] || return 0
-    "$tactus" render "$name" --out "$folder/small-$name" --frames 1 --size 320x200 "$@" >/dev/null
+    "$tactus" render "$name" --out "$folder/small-$name" --frames 1 --size 320x200 --no-legend "$@" >/dev/null
     local frames=("$folder/small-$name"/frame_*.png)
     mkdir -p "$docs/../assets/library/pictures"
     mv "${frames[-1]}" "$docs/../assets/library/pictures/$name.png"

@@ -128,6 +128,7 @@ void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
     add("--view-from", choice.view_from, "front, back, left, right, top, bottom, iso (front left) or tool (its side)");
     add("--size", choice.size, "size of the pictures in pixels, WIDTHxHEIGHT");
     add("--clip", choice.clip, "clip the scene at a plane: x, -y, \"z=12 mm\"");
+    verb.flag("--no-legend", choice.has_no_legend, "with --frames: without legend and scale, for small pictures");
     add_sight_options(verb, choice.sight, &frames);
 }
 

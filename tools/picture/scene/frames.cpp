@@ -144,8 +144,8 @@ struct FrameWriter::State {
             display::Legend legend = model.legend();
             legend.title = fmt::format("{}, {:.2f} s, {}", legend.title, time_of(frame), view_text());
             legend.warnings.insert(legend.warnings.end(), sight.warnings().begin(), sight.warnings().end());
-            add_legend(image, legend, views, sight.text_of(screen));
-            if (!sight.is_off_axis() && sight.mode_of(0) == display::StereoMode::mono)
+            if (!choice.has_no_legend) add_legend(image, legend, views, sight.text_of(screen));
+            if (!choice.has_no_legend && !sight.is_off_axis() && sight.mode_of(0) == display::StereoMode::mono)
                 display::add_scale_bar(image, camera.metres_per_pixel(image.height));
             std::string name = fmt::format("frame_{:04}", frame);
             if (sight.screens() > 1) name += "_" + file_part(sight.display_file()->screens[screen].name);

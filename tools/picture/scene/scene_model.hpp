@@ -60,7 +60,7 @@ public:
     const display::Legend& legend() const { return legend_; }
     /// Bounds of static bodies and of the initial tool poses, for fitting the camera.
     const display::Bounds& bounds() const { return bounds_; }
-    /// Position of a blade in the last picture.
+    /// A place on the hand's side of a blade or a ball on a hand, in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
     /// Whether mesh `index` of the last picture is a bone that is carved.
     bool is_bone(std::size_t index) const;

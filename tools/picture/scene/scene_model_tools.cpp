@@ -12,6 +12,13 @@ namespace tactus::picture {
 
 using namespace scene_colours;
 
+namespace {
+
+/// A place that is on the hand's side of a tool at any depth in a bone.
+Vec3 hands_side_of(const Pose& tool) { return tool.apply({0.0, -0.2, 0.0}); }
+
+}  // namespace
+
 void SceneModel::show_blades() {
     for (const auto& blade : outline_.blades) {
         const auto pose = pose_of(blade.pose);
@@ -20,7 +27,7 @@ void SceneModel::show_blades() {
         display::add_blade(patch, blade.shape, steel);
         // Margin for its motion.
         show(shape_mesh("blade " + blade.node, patch), *pose, display::bounds_of(patch), 1.0, false, false);
-        tool_ = pose->apply({0.0, -0.2, 0.0});  // on the hand's side, at any depth of the teeth
+        tool_ = hands_side_of(*pose);
         show_force(blade.wrench, pose->position);
     }
 }
@@ -44,6 +51,7 @@ void SceneModel::show_balls() {
         display::add_ball(patch, Vec3(0.0), ball.radius, proxy_colour);
         show(shape_mesh(ball.pose, patch), *proxy, display::bounds_of(patch), hand ? 0.75 : 1.0, false);
         legend_.entries.push_back({hand ? "proxy" : "tool", proxy_colour});
+        if (!hand && !tool_) tool_ = hands_side_of(*proxy);
         show_force(ball.wrench, proxy->position);
     }
 }
