@@ -31,7 +31,8 @@ struct Detents {
                                  .at = first.value * unit_of(axis),
                                  .direction = unit_of(axis)}};
         for (int n = -5; n <= 5; ++n)
-            all.push_back({.kind = VisualKind::point, .frame = "frame", .at = (first.value + n * spacing.value) * unit_of(axis)});
+            all.push_back(
+                {.kind = VisualKind::point, .frame = "frame", .at = (first.value + n * spacing.value) * unit_of(axis)});
         return all;
     }
 

@@ -21,7 +21,7 @@ struct VesselSettings {
     vessel::TrackSettings track;
     std::optional<vessel::LegGeometry> leg;    ///< judges the run-off of a lower leg
     std::vector<std::filesystem::path> out;    ///< see write_track
-    std::filesystem::path straightened;        ///< not empty: pulls the branch of the seed straight, for a picture there
+    std::filesystem::path straightened;  ///< not empty: pulls the branch of the seed straight, for a picture there
 };
 
 inline constexpr double least_hu_of_vessels = -150.0;  ///< below fat: lower HU count as this value
@@ -31,7 +31,7 @@ struct FoundVessel {
     std::optional<vessel::RunOff> run_off;
     std::optional<vessel::Straightened> straightened;
     std::vector<std::string> notes;  ///< on how the scan was read
-    double seconds = 0.0;            ///< processor time of the tracking
+    double seconds = 0.0;  ///< processor time of the tracking
 };
 
 /// Writes the files when a vessel was found. Throws Error for scans that cannot be read, label maps, seeds outside of the scan, on
