@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/openigtlink/tracker.hpp"
 
+#include "devices/driver/peer_socket.hpp"
 #include "devices/openigtlink/message.hpp"
 #include "dsp/core/rotation.hpp"
 
@@ -85,9 +86,7 @@ public:
     }
 
     bool round(driver::Exchange& exchange) noexcept override {
-        pollfd line{file_, POLLIN, 0};
-        ::poll(&line, 1, 0);
-        if (line.revents != 0 && !read()) return false;
+        if (!read()) return false;
         driver::Reading reading;
         reading.has_twist = true;
         reading.is_valid = motion_.at(hosted::boot_ns(), settings_.oldest_ns, reading.pose, reading.twist);
@@ -103,14 +102,13 @@ public:
     bool is_peer() const noexcept override { return true; }
 
 private:
-    /// At most what one look brings: a flood waits in the socket. False: the peer is gone, or speaks something else.
+    /// False: the peer is gone, or speaks something else.
     bool read() noexcept {
         std::array<std::uint8_t, 16384> bytes;
-        const ssize_t count = ::read(file_, bytes.data(), bytes.size());
-        if (count == 0) return false;
-        if (count < 0) return errno == EAGAIN || errno == EINTR;
+        const std::optional<std::size_t> count = driver::read_now(file_, bytes);
+        if (!count) return false;
         try {
-            reader_.take({bytes.data(), static_cast<std::size_t>(count)});
+            reader_.take(std::span(bytes).first(*count));
             while (const std::optional<Message> message = reader_.next())
                 if (const std::optional<Pose> pose = pose_in(*message, settings_.transform))
                     motion_.add(*pose, hosted::boot_ns());

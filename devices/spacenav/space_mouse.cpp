@@ -2,6 +2,7 @@
 #include "devices/spacenav/space_mouse.hpp"
 
 #include "devices/driver/buttons.hpp"
+#include "devices/driver/peer_socket.hpp"
 #include "devices/haptic/operated.hpp"
 #include "devices/spacenav/events.hpp"
 #include "dsp/core/rotation.hpp"
@@ -9,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -98,9 +98,10 @@ public:
     }
 
     bool round(driver::Exchange& exchange) noexcept override {
-        pollfd line{file_, POLLIN, 0};
-        ::poll(&line, 1, 0);
-        if (line.revents != 0 && !read()) return false;
+        std::array<std::uint8_t, 1024> bytes;
+        const std::optional<std::size_t> count = driver::read_now(file_, bytes);
+        if (!count) return false;
+        reader_.take(std::span(bytes).first(*count));
         const std::int64_t now = hosted::boot_ns();
         const double elapsed = last_ns_ == 0 ? 0.0 : static_cast<double>(now - last_ns_) * 1e-9;
         last_ns_ = now;
@@ -124,14 +125,6 @@ public:
     bool is_peer() const noexcept override { return true; }
 
 private:
-    /// At most what one look brings: a flood waits in the socket. False: the daemon is gone.
-    bool read() noexcept {
-        std::array<std::uint8_t, 1024> bytes;
-        const ssize_t count = ::read(file_, bytes.data(), bytes.size());
-        if (count > 0) reader_.take({bytes.data(), static_cast<std::size_t>(count)});
-        return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
-    }
-
     Settings settings_;
     int file_ = -1;
     EventReader reader_;

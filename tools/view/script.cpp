@@ -14,9 +14,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <sstream>
 
 namespace tactus::view {
 
@@ -33,66 +31,14 @@ const std::vector<std::string> commands{
     "scale",     "press",      "double",  "slide",      "pull",   "type",    "key",       "cost",    "head",
     "display",   "offset",     "screens", "shut",       "layout", "instant", "text",      "spots"};
 
-std::vector<std::string> words_of(const std::string& line) {
-    std::vector<std::string> words;
-    std::istringstream stream(line);
-    for (std::string word; stream >> word;) {
-        if (word.front() == '#') break;
-        if (word.front() == '"') {
-            std::string rest;
-            if (word.size() < 2 || word.back() != '"') {
-                std::getline(stream, rest, '"');
-                word = word.substr(1) + rest;
-            } else word = word.substr(1, word.size() - 2);
-        }
-        words.push_back(word);
-    }
-    return words;
-}
-
 }  // namespace
 
-Script::Script(const std::filesystem::path& file) : file_(file) {
-    std::istringstream text(file::read_whole_file(file));
-    int number = 0;
-    for (std::string written; std::getline(text, written);) {
-        ++number;
-        Line line{number, false, words_of(written)};
-        if (line.words.empty()) continue;
-        if (line.words.front() == "!") {
-            line.is_refused = true;
-            line.words.erase(line.words.begin());
-        }
-        if (!line.words.empty() && line.words.front() == "rig") line.words.front() = "display";  // its name before
-        if (line.words.empty() || std::ranges::find(commands, line.words.front()) == commands.end()) {
-            const std::string name = line.words.empty() ? "" : line.words.front();
-            throw Error({file.string(), number, 1},
-                        fmt::format("no command '{}'{}", name, did_you_mean(name, commands)));
-        }
-        lines_.push_back(std::move(line));
-    }
-}
-
-const std::string& Script::word(const Line& line, std::size_t i) const {
-    if (i >= line.words.size())
-        throw Error({file_.string(), line.number, 1},
-                    fmt::format("'{}' needs {} more words", line.words.front(), i + 1 - line.words.size()));
-    return line.words[i];
-}
-
-double Script::number(const Line& line, std::size_t i) const {
-    const std::string& text = word(line, i);
-    double value = 0.0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size())
-        throw Error({file_.string(), line.number, 1}, fmt::format("'{}' is not a number", text));
-    return value;
-}
+Script::Script(const std::filesystem::path& file) : lines_(read_script(file, commands, {{"rig", "display"}})) {}
 
 void Script::step(Desk& desk, Window& window) {
     ++pictures_;
     while (!is_done()) {
-        const Line line = lines_[next_];
+        const ScriptLine line = lines_[next_];
         if (!since_) {
             since_ = ImGui::GetTime();
             pictures_ = 0;
@@ -101,7 +47,7 @@ void Script::step(Desk& desk, Window& window) {
             if (!perform(line, desk, window)) return;
         } catch (const Error& error) {
             if (error.where().line > 0) throw;
-            throw Error({file_.string(), line.number, 1}, error.what());
+            throw Error(line.where, error.what());
         }
         since_.reset();
         ++next_;
@@ -111,22 +57,21 @@ void Script::step(Desk& desk, Window& window) {
 }
 
 /// Commands that change the patch; each may be refused.
-bool Script::edit(const Line& line, Desk& desk) {
+bool Script::edit(const ScriptLine& line, Desk& desk) {
     Workbench& bench = desk.bench();
     const std::string& what = line.words.front();
     const auto split = [&](std::size_t i) {
-        const std::string& text = word(line, i);
+        const std::string& text = line.word(i);
         const std::size_t dot = text.find('.');
         if (dot == std::string::npos) throw Error(fmt::format("'{}' is not NODE.NAME", text));
         return std::pair(text.substr(0, dot), text.substr(dot + 1));
     };
-    if (what == "set") return bench.set(split(1).first, split(1).second, word(line, 2));
+    if (what == "set") return bench.set(split(1).first, split(1).second, line.word(2));
     if (what == "reset") return bench.reset(split(1).first, split(1).second);
-    if (what == "connect")
-        return bench.connect(word(line, 1), word(line, 2), line.words.size() > 3 ? line.words[3] : "");
-    if (what == "disconnect") return bench.disconnect(word(line, 1));
-    if (what == "remove") return bench.remove(word(line, 1));
-    if (what == "rename") return bench.rename(word(line, 1), word(line, 2));
+    if (what == "connect") return bench.connect(line.word(1), line.word(2), line.words.size() > 3 ? line.words[3] : "");
+    if (what == "disconnect") return bench.disconnect(line.word(1));
+    if (what == "remove") return bench.remove(line.word(1));
+    if (what == "rename") return bench.rename(line.word(1), line.word(2));
     if (what == "undo" && line.words.size() > 1) {
         while (bench.undo()) {
         }
@@ -137,39 +82,39 @@ bool Script::edit(const Line& line, Desk& desk) {
     if (what == "save") return line.words.size() > 1 ? bench.save_as(line.words[1]) : bench.save();
     if (what == "wire") {
         if (bench.last_added().empty()) throw Error("there is no new node that needs wires");
-        return bench.connect(word(line, 1), bench.last_added() + "." + word(line, 2));
+        return bench.connect(line.word(1), bench.last_added() + "." + line.word(2));
     }
     // add TYPE GROUP
-    return !bench.add_node(word(line, 1), word(line, 2)).empty();
+    return !bench.add_node(line.word(1), line.word(2)).empty();
 }
 
-bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
+bool Script::wait_for(const ScriptLine& line, Desk& desk, Window& window) {
     const std::string& what = line.words.front();
     const double waited = ImGui::GetTime() - since_.value_or(0.0);
-    if (what == "wait") return waited >= number(line, 1);
-    if (what == "frames") return pictures_ >= static_cast<int>(number(line, 1));
+    if (what == "wait") return waited >= line.number(1);
+    if (what == "frames") return pictures_ >= static_cast<int>(line.number(1));
     if (what == "screenshot") {
         // The first frame draws the changes, the second is saved.
         if (pictures_ == 1) window.want_picture();
         if (pictures_ < 2) return false;
-        display::write_png(window.picture(), word(line, 1));
+        display::write_png(window.picture(), line.word(1));
         return true;
     }
     if (what == "click" || what == "drag") {
         const std::size_t last = what == "drag" ? 3 : 1;
         const double share = std::clamp((pictures_ - 2) / 6.0, 0.0, 1.0);
-        const Point from{number(line, 1), number(line, 2)}, to{number(line, last), number(line, last + 1)};
+        const Point from{line.number(1), line.number(2)}, to{line.number(last), line.number(last + 1)};
         mouse_ = Mouse{from + (to - from) * share, pictures_ >= 1 && pictures_ < 10, false, 0.0};
         return pictures_ >= 12;
     }
     if (what == "press" || what == "double" || what == "slide" || what == "pull") return use_hand(line, desk);
     if (what == "type") {
         keys_ = {};
-        if (pictures_ == 1) keys_.text = word(line, 1);
+        if (pictures_ == 1) keys_.text = line.word(1);
         return pictures_ >= 4;
     }
     if (what == "key") {
-        keys_ = key_named(word(line, 1));
+        keys_ = key_named(line.word(1));
         keys_.is_down = pictures_ >= 1 && pictures_ < 3;
         keys_.ctrl = keys_.ctrl && keys_.is_down;
         if (pictures_ < 6) return false;
@@ -178,29 +123,29 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
     }
     if (what == "cost") {
         if (pictures_ == 0) cost_began_ = window.drawn_s();
-        if (pictures_ < static_cast<int>(number(line, 1))) return false;
+        if (pictures_ < static_cast<int>(line.number(1))) return false;
         say(stderr,
             fmt::format("{} pictures, {:.2f} ms each, {} triangles beside the scene's\n", pictures_,
                         1e3 * (window.drawn_s() - cost_began_) / pictures_, ImGui::GetIO().MetricsRenderIndices / 3));
         return true;
     }
     if (what == "wheel") {
-        mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, pictures_ == 1 ? number(line, 3) : 0.0};
+        mouse_ = Mouse{{line.number(1), line.number(2)}, false, false, pictures_ == 1 ? line.number(3) : 0.0};
         return pictures_ >= 3;
     }
     if (waited > longest_wait) throw Error(fmt::format("'{}' was not reached within {} s", what, longest_wait));
-    if (what == "instant") return desk.take() && std::abs(desk.take()->time() - number(line, 1)) < 1e-3;
+    if (what == "instant") return desk.take() && std::abs(desk.take()->time() - line.number(1)) < 1e-3;
     if (what == "scene") return !desk.take() || desk.take()->scene_is_there();
     // until SECONDS | until paused | until recording | until over
     const auto status = desk.bench().status();
-    if (word(line, 1) == "paused") return status->state == RunStatus::State::stands;
-    if (word(line, 1) == "recording") return status->is_recording;
-    if (word(line, 1) == "over") return status->state == RunStatus::State::over;
+    if (line.word(1) == "paused") return status->state == RunStatus::State::stands;
+    if (line.word(1) == "recording") return status->is_recording;
+    if (line.word(1) == "over") return status->state == RunStatus::State::over;
     if (status->state == RunStatus::State::over) throw Error("the run is over: " + status->failure);
-    return status->state != RunStatus::State::loading && status->time >= number(line, 1);
+    return status->state != RunStatus::State::loading && status->time >= line.number(1);
 }
 
-bool Script::perform(const Line& line, Desk& desk, Window& window) {
+bool Script::perform(const ScriptLine& line, Desk& desk, Window& window) {
     Workbench& bench = desk.bench();
     const std::string& what = line.words.front();
     const auto is = [&](auto... names) { return ((what == names) || ...); };
@@ -215,51 +160,51 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
                                                    : bench.messages().back().text);
         return true;
     }
-    if (is("text")) file::write_durable_file(word(line, 1), bench.editor().text());
+    if (is("text")) file::write_durable_file(line.word(1), bench.editor().text());
     else if (is("run")) bench.run();
     else if (is("stop")) bench.stop();
     else if (is("pause", "resume")) bench.pause(what == "pause");
     else if (is("record")) bench.record(line.words.size() < 2 || line.words[1] != "off");
-    else if (is("select")) desk.patch().selected = word(line, 1);
-    else if (is("scope")) desk.scopes().add(word(line, 1), line.words.size() > 2 && line.words[2] == "spectrum");
-    else if (is("reference")) desk.scopes().set_reference(word(line, 1));
+    else if (is("select")) desk.patch().selected = line.word(1);
+    else if (is("scope")) desk.scopes().add(line.word(1), line.words.size() > 2 && line.words[2] == "spectrum");
+    else if (is("reference")) desk.scopes().set_reference(line.word(1));
     else if (is("freeze")) desk.scopes().freeze(line.words.size() < 2 || line.words[1] != "off");
     else if (is("export")) {
         if (!desk.feed()) throw Error("no run");
-        desk.scopes().write(static_cast<std::size_t>(number(line, 1)), *desk.feed(), word(line, 2));
+        desk.scopes().write(static_cast<std::size_t>(line.number(1)), *desk.feed(), line.word(2));
     } else if (is("fit")) desk.patch().fit();
-    else if (is("look")) desk.patch().look_at(word(line, 1));
+    else if (is("look")) desk.patch().look_at(line.word(1));
     else if (is("catalogue")) {
         desk.nodes().wants_catalogue = true;
         desk.nodes().search = line.words.size() > 1 ? line.words[1] : "";
     } else if (is("goto")) {
         if (!desk.take()) throw Error("no take is open");
-        desk.take()->go_to(number(line, 1));
-    } else if (is("hover")) mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, 0.0};
-    else if (is("size")) window.resize(static_cast<int>(number(line, 1)), static_cast<int>(number(line, 2)));
-    else if (is("scale")) window.rescale(number(line, 1));
+        desk.take()->go_to(line.number(1));
+    } else if (is("hover")) mouse_ = Mouse{{line.number(1), line.number(2)}, false, false, 0.0};
+    else if (is("size")) window.resize(static_cast<int>(line.number(1)), static_cast<int>(line.number(2)));
+    else if (is("scale")) window.rescale(line.number(1));
     else if (is("minimise", "restore")) window.minimise(what == "minimise");
     else if (is("from")) {
-        const auto view = display::view_of_name(word(line, 1));
-        if (!view) throw Error(fmt::format("no view '{}'", word(line, 1)));
+        const auto view = display::view_of_name(line.word(1));
+        if (!view) throw Error(fmt::format("no view '{}'", line.word(1)));
         desk.scene().look_from(*view);
-    } else if (is("stereo")) desk.scene().use_stereo(word(line, 1));
+    } else if (is("stereo")) desk.scene().use_stereo(line.word(1));
     else if (is("head")) desk.scene().use_head(line.words.size() > 1 ? line.words[1] : "");
     else if (is("display")) desk.scene().use_display(line.words.size() > 1 ? line.words[1] : "");
-    else if (is("offset")) desk.scene().use_offset(word(line, 1));
+    else if (is("offset")) desk.scene().use_offset(line.word(1));
     else if (is("screens")) desk.scene().show_screens(line.words.size() < 2 || line.words[1] != "off");
-    else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));
+    else if (is("clip")) desk.scene().clip(static_cast<int>(line.number(1)), line.number(2));
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
-    else if (is("spots")) file::write_whole_file(word(line, 1), spot_list());
-    else if (is("say")) bench.tell(word(line, 1));
+    else if (is("spots")) file::write_whole_file(line.word(1), spot_list());
+    else if (is("say")) bench.tell(line.word(1));
     else if (is("layout")) {
-        const auto layout = layout_of_name(word(line, 1));
-        if (!layout) throw Error(fmt::format("no layout '{}'", word(line, 1)));
+        const auto layout = layout_of_name(line.word(1));
+        if (!layout) throw Error(fmt::format("no layout '{}'", line.word(1)));
         desk.layout = *layout;
     } else if (is("shut")) window.close();
     else if (is("open")) {
-        if (open) open(word(line, 1));
+        if (open) open(line.word(1));
     } else closes_ = true;
     return true;
 }

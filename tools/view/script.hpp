@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/view/canvas.hpp"
+#include "tools/view/files/script_line.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -39,11 +40,6 @@ public:
     };
 
 private:
-    struct Line {
-        int number = 0;
-        bool is_refused = false;
-        std::vector<std::string> words;
-    };
     struct Mouse {
         Point at;
         bool left = false, right = false;
@@ -53,15 +49,12 @@ private:
     /// "ctrl+z", "enter", "delete", "space" or a letter. Throws Error.
     static Keys key_named(const std::string& name);
     /// False: not finished; called again after the next frame.
-    bool perform(const Line& line, Desk& desk, Window& window);
-    bool edit(const Line& line, Desk& desk);
-    bool use_hand(const Line& line, Desk& desk);
-    bool wait_for(const Line& line, Desk& desk, Window& window);
-    const std::string& word(const Line& line, std::size_t i) const;
-    double number(const Line& line, std::size_t i) const;
+    bool perform(const ScriptLine& line, Desk& desk, Window& window);
+    bool edit(const ScriptLine& line, Desk& desk);
+    bool use_hand(const ScriptLine& line, Desk& desk);
+    bool wait_for(const ScriptLine& line, Desk& desk, Window& window);
 
-    std::filesystem::path file_;
-    std::vector<Line> lines_;
+    std::vector<ScriptLine> lines_;
     std::size_t next_ = 0;
     std::optional<double> since_;  ///< start of the waiting line, s
     int pictures_ = 0;  ///< since then

@@ -73,7 +73,7 @@ Point place(const std::string& name, const Desk& desk) {
 
 /// Press, double press, slide and pull at the speed of a hand, because the item under the mouse is known one frame
 /// later.
-bool Script::use_hand(const Line& line, Desk& desk) {
+bool Script::use_hand(const ScriptLine& line, Desk& desk) {
     constexpr int looks = 3, presses = 5, arrives = 12, lets_go = 14, done_at = 17;
     const std::string& what = line.words.front();
     if (pictures_ < looks) {
@@ -81,12 +81,12 @@ bool Script::use_hand(const Line& line, Desk& desk) {
         return false;
     }
     if (pictures_ == looks) {
-        from_ = to_ = place(word(line, 1), desk);
+        from_ = to_ = place(line.word(1), desk);
         if (what == "slide") {
-            const auto box = spot(word(line, 1));
-            to_.x = box ? box->left + number(line, 2) * box->width() : from_.x;
+            const auto box = spot(line.word(1));
+            to_.x = box ? box->left + line.number(2) * box->width() : from_.x;
         }
-        if (what == "pull") to_ = place(word(line, 2), desk);
+        if (what == "pull") to_ = place(line.word(2), desk);
     }
     const double way = std::clamp((pictures_ - presses) / static_cast<double>(arrives - presses), 0.0, 1.0);
     bool down = pictures_ >= presses && pictures_ < (what == "press" ? presses + 3 : lets_go);

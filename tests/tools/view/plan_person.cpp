@@ -5,7 +5,7 @@
 #include "dsp/core/rotation.hpp"
 #include "dsp/display/camera.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/places.hpp"
+#include "tests/tools/jaw_case.hpp"
 #include "tests/tools/view/person.hpp"
 
 #include <glm/geometric.hpp>
@@ -24,8 +24,6 @@ using namespace tactus::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path case_folder() { return tactus::test::library_folder() / "cases/mandible-twelve"; }
 
 struct Spot {
     double left, top, right, bottom;
@@ -74,25 +72,6 @@ struct Eyes {
     }
     cases::CasePlan plan() const { return cases::load_case_plan(folder / "out/case.plan.json"); }
 };
-
-struct Belongs {
-    Pose pose;  ///< p_bone = R p_file + t
-    Vec3 middle;  ///< in its file
-};
-std::map<std::string, Belongs> truth() {
-    std::map<std::string, Belongs> all;
-    std::ifstream file(case_folder() / "truth.txt");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with('#')) continue;
-        std::istringstream words(line);
-        std::string name;
-        Vec3 t, middle;
-        Quat q;
-        words >> name >> t.x >> t.y >> t.z >> q.w >> q.x >> q.y >> q.z >> middle.x >> middle.y >> middle.z;
-        all[name] = {{t * 1e-3, q}, middle * 1e-3};
-    }
-    return all;
-}
 
 /// The front view, as it is fitted to all fragments at their scanned places.
 display::OrbitCamera front_view(double aspect) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/view/canvas.hpp"
+#include "tools/view/files/script_line.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -41,17 +42,10 @@ public:
     bool wants_to_close() const { return closes_; }
 
 private:
-    struct Line {
-        int number = 0;
-        std::vector<std::string> words;
-    };
-    bool perform(const Line& line, PaintDesk& desk, Window& window);
-    bool use_mouse(const Line& line);
-    const std::string& word(const Line& line, std::size_t i) const;
-    double number(const Line& line, std::size_t i) const;
+    bool perform(const ScriptLine& line, PaintDesk& desk, Window& window);
+    bool use_mouse(const ScriptLine& line);
 
-    std::filesystem::path file_;
-    std::vector<Line> lines_;
+    std::vector<ScriptLine> lines_;
     std::size_t next_ = 0;
     int frames_ = 0;
     double since_ = -1.0;

@@ -5,6 +5,7 @@
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/tools/jaw_case.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -22,37 +23,15 @@
 
 using namespace tactus;
 using nlohmann::json;
+using tactus::test::case_folder;
 using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::slurp;
+using tactus::test::truth;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path case_folder() { return tactus::test::library_folder() / "cases/mandible-twelve"; }
-
-/// Where a fragment belongs, p_bone = R p_fragment + t, and the middle of its surface in its file.
-struct Belongs {
-    Pose pose;
-    Vec3 middle;
-};
-
-std::map<std::string, Belongs> truth() {
-    std::map<std::string, Belongs> all;
-    std::ifstream file(case_folder() / "truth.txt");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with('#')) continue;
-        std::istringstream words(line);
-        std::string name;
-        Vec3 t, middle;
-        Quat q;
-        words >> name >> t.x >> t.y >> t.z >> q.w >> q.x >> q.y >> q.z >> middle.x >> middle.y >> middle.z;
-        REQUIRE_FALSE(words.fail());
-        all[name] = {{t * 1e-3, q}, middle * 1e-3};
-    }
-    return all;
-}
 
 /// As the file has it: m.
 Pose pose_in(const json& j) {
