@@ -52,23 +52,35 @@ std::uint8_t Emitter::register_of(const Operand& operand) {
 }
 
 void Emitter::join_products() {
+    // One operand; a square takes the same one twice.
+    const auto takes = [](const Pending& p, std::size_t place) {
+        return 1 == std::count_if(p.operands, p.operands + p.count, [place](const Operand& o) {
+                   return !o.constant && !o.variable && o.between == place;
+               });
+    };
+    const auto is_sum = [](const Pending& p) {
+        return p.operation == Operation::add || p.operation == Operation::subtract;
+    };
     std::vector<Pending> joined;
-    for (const Pending& p : pending_) {
-        const bool is_sum = p.operation == Operation::add || p.operation == Operation::subtract;
-        const bool follows = is_sum && !joined.empty() && joined.back().operation == Operation::multiply;
+    for (std::size_t n = 0; n < pending_.size(); ++n) {
+        const Pending& p = pending_[n];
         // A result between is used once: by the instruction that finds it in the place where it was just put.
-        const auto is_product = [&](const Operand& o) {
-            return !o.constant && !o.variable && o.between == joined.back().to;
-        };
-        if (!follows || (!is_product(p.operands[0]) && !is_product(p.operands[1]))) {
+        const bool follows =
+            !joined.empty() && joined.back().operation == Operation::multiply && takes(p, joined.back().to);
+        // A product of three only where the second one does not join a sum.
+        const bool is_product = p.operation == Operation::multiply &&
+                                !(n + 1 < pending_.size() && is_sum(pending_[n + 1]) && takes(pending_[n + 1], p.to));
+        if (!follows || !(is_sum(p) || is_product)) {
             joined.push_back(p);
             continue;
         }
-        const bool is_left = is_product(p.operands[0]);
         Pending& product = joined.back();
-        product.operation = p.operation == Operation::add ? Operation::multiply_add
-                            : is_left                     ? Operation::multiply_subtract
-                                                          : Operation::subtract_product;
+        const Operand& left = p.operands[0];
+        const bool is_left = !left.constant && !left.variable && left.between == product.to;
+        product.operation = is_product                      ? Operation::multiply_multiply
+                            : p.operation == Operation::add ? Operation::multiply_add
+                            : is_left                       ? Operation::multiply_subtract
+                                                            : Operation::subtract_product;
         product.operands[2] = p.operands[is_left ? 1 : 0];
         product.count = 3;
         product.to = p.to;

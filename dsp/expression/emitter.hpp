@@ -42,7 +42,7 @@ private:
         std::size_t count = 0;
     };
 
-    /// Makes one instruction of a product and the sum or difference that takes it.
+    /// Makes one instruction of a product and the sum, difference or product that takes it.
     void join_products();
     std::size_t constant_index(double value);
     std::uint8_t register_of(const Operand& operand);

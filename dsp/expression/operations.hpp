@@ -32,7 +32,8 @@ constexpr std::size_t operands_of(Operation operation) {
         case Operation::choose:
         case Operation::multiply_add:
         case Operation::multiply_subtract:
-        case Operation::subtract_product: return 3;
+        case Operation::subtract_product:
+        case Operation::multiply_multiply: return 3;
         default: return 2;
     }
 }
@@ -86,6 +87,7 @@ template <class Run>
         case Operation::multiply_add: return run([](double a, double b, double c) { return a * b + c; });
         case Operation::multiply_subtract: return run([](double a, double b, double c) { return a * b - c; });
         case Operation::subtract_product: return run([](double a, double b, double c) { return c - a * b; });
+        case Operation::multiply_multiply: return run([](double a, double b, double c) { return a * b * c; });
     }
 }
 

@@ -32,7 +32,7 @@ Machine::Machine(Program program) : program_(std::move(program)), registers_(pro
     for (Instruction& i : program_.instructions) {
         const bool swaps = i.operation == Operation::add || i.operation == Operation::multiply ||
                            i.operation == Operation::multiply_add || i.operation == Operation::multiply_subtract ||
-                           i.operation == Operation::subtract_product;
+                           i.operation == Operation::subtract_product || i.operation == Operation::multiply_multiply;
         if (swaps && i.a >= program_.variables && i.b < program_.variables) std::swap(i.a, i.b);
     }
     for (Instruction& i : program_.instructions) {

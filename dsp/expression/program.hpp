@@ -49,6 +49,7 @@ enum class Operation : std::uint8_t {
     multiply_add,       ///< a·b + c, rounded twice as the formula says
     multiply_subtract,  ///< a·b − c
     subtract_product,   ///< c − a·b
+    multiply_multiply,  ///< (a·b)·c
 };
 
 /// registers[to] = operation(registers[a], registers[b], registers[c]).

@@ -35,6 +35,7 @@ template <class A, class Put>
         case Operation::multiply_add: TACTUS_EACH_SAMPLE put(k, a[k] * b[k] + c[k]); return true;
         case Operation::multiply_subtract: TACTUS_EACH_SAMPLE put(k, a[k] * b[k] - c[k]); return true;
         case Operation::subtract_product: TACTUS_EACH_SAMPLE put(k, c[k] - a[k] * b[k]); return true;
+        case Operation::multiply_multiply: TACTUS_EACH_SAMPLE put(k, a[k] * b[k] * c[k]); return true;
         case Operation::less: TACTUS_EACH_SAMPLE put(k, a[k] < b[k] ? 1.0 : 0.0); return true;
         case Operation::greater: TACTUS_EACH_SAMPLE put(k, a[k] > b[k] ? 1.0 : 0.0); return true;
         case Operation::minimum:

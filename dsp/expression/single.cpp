@@ -12,7 +12,7 @@ namespace tactus::expression {
 
 namespace {
 
-constexpr auto operations = static_cast<std::size_t>(Operation::subtract_product) + 1;
+constexpr auto operations = static_cast<std::size_t>(Operation::multiply_multiply) + 1;
 
 /// Where an operand is.
 enum class From : std::uint8_t { result, first, second, word };

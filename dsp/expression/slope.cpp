@@ -86,6 +86,8 @@ public:
                 return apply(Operation::subtract, apply(Operation::multiply, a, b, c), c, c);
             case Operation::subtract_product:
                 return apply(Operation::subtract, c, apply(Operation::multiply, a, b, c), c);
+            case Operation::multiply_multiply:
+                return apply(Operation::multiply, apply(Operation::multiply, a, b, c), c, c);
             case Operation::divide: {
                 if (b.value.low <= 0.0 && b.value.high >= 0.0) fail_with(a), fail_with(b);
                 const Interval per = reciprocal(b.value);

@@ -98,6 +98,12 @@ TEST_CASE("a formula of variables has the value of the C++ expression, to the bi
     CHECK(value_of("(x > 0 m) * k * x - c * v", x, v, n, "k = 0.8 N/mm, c = 2 N s/m") == 800.0 * x - 2.0 * v);
     CHECK(value_of("n*n*n - n", x, v, n) == n * n * n - n);
     CHECK(value_of("n^2 + n^3", x, v, n) == n * n + std::pow(n, 3.0));
+    // Products in a row, and a product that is taken twice.
+    CHECK(value_of("n * n * 3 * n", x, v, n) == n * n * 3.0 * n);
+    CHECK(value_of("n * (n * 3) * n", x, v, n) == n * (n * 3.0) * n);
+    CHECK(value_of("(n * 3)^2", x, v, n) == (n * 3.0) * (n * 3.0));
+    CHECK(value_of("(n * 3 * n)^2 - n", x, v, n) == (n * 3.0 * n) * (n * 3.0 * n) - n);
+    CHECK(value_of("n * 3 * n - n * n * 5", x, v, n) == n * 3.0 * n - n * n * 5.0);
     CHECK(value_of("sqrt(x*x + x*x)/x", x, v, n) == std::sqrt(x * x + x * x) / x);
     CHECK(value_of("min(n, max(2, 3*n) - n, 5)", x, v, n) == std::min(n, std::max(2.0, 3.0 * n) - n));
     CHECK(value_of("x", x) == x);
