@@ -34,8 +34,9 @@ struct Single::Steps {
         else if constexpr (from == From::second) return second;
         else return (at++)->value;
     }
+    // Each begins a line of the cache: else the cost depends on where the linker puts them.
     template <Operation operation, From from_a, From from_b, From from_c>
-    static double run(const Word* at, double result, double first, double second) noexcept {
+    [[gnu::aligned(64)]] static double run(const Word* at, double result, double first, double second) noexcept {
         ++at;
         const double a = take<from_a>(at, result, first, second);
         const double b = take<from_b>(at, result, first, second);
