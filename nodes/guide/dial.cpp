@@ -11,8 +11,11 @@ namespace tactus::nodes {
 
 struct Dial {
     static constexpr auto about =
-        "A knob with notches: torque = -stiffness / notches × sin(notches × angle) about an axis of the frame. Passive "
-        "and bounded by 'max_torque', but for sampling, as the other guides.";
+        "A knob with notches: torque = -stiffness / notches × sin(notches × angle) about an axis of the frame. Bounded "
+        "by "
+        "'max_torque'. Passive but for sampling, as the other guides, unless the bound shortens the torque on a hand "
+        "that is "
+        "tilted against the axis.";
 
     In<Pose> pose{"of the hand", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
