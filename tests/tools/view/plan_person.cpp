@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <future>
 #include <map>
@@ -220,6 +221,7 @@ private:
 
 TEST_CASE("a person with a mouse puts three fragments together, groups them, undoes two steps and exports",
           "[display][live]") {
+    if (!std::getenv("TACTUS_PERSON")) return skip("takes 80 s of a quiet machine; TACTUS_PERSON=1 runs it");
     NEEDS_DISPLAY(display)
     Person person(display);
     if (!person.is_there()) return skip("libXtst is not installed (apt install libxtst6)");
