@@ -8,6 +8,8 @@
 
 #include <atomic>
 #include <cstdio>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,6 +93,15 @@ unsigned call_servo(void* data) noexcept {
     return servo.has_ended.load() ? 0 : callback_continue;
 }
 
+/// To the end of the process: a thread of the vendor that hangs may still use it, as it does the library.
+template <class T>
+T* keep(std::unique_ptr<T> object) {
+    static std::mutex mutex;
+    static auto& all = *new std::vector<std::unique_ptr<T>>;
+    const std::lock_guard lock(mutex);
+    return all.emplace_back(std::move(object)).get();
+}
+
 class HdDevice final : public driver::Backend {
 public:
     HdDevice(std::string library, std::string config) : library_(std::move(library)), config_(std::move(config)) {}
@@ -111,13 +122,13 @@ public:
                         const driver::StepLog& step) override {
         mode_ = mode;
         step("load OpenHaptics");
-        if (!api_) api_ = new HdApi(library_);  // never freed, as the library itself
+        if (!api_) api_ = keep(std::make_unique<HdApi>(library_));
         step("open the device");
         open_device();
         step("read what it is");
         driver::Opened opened = describe();
         step("start the servo loop");
-        servo_ = new Servo;
+        servo_ = keep(std::make_unique<Servo>());
         servo_->api = api_;
         servo_->device = device_;
         servo_->exchange = exchange;
