@@ -46,17 +46,7 @@ struct DynamicCoupling {
                "finest field that is touched"};
     ContactParameters contact;
 
-    std::vector<Visual> visuals() const {
-        return {{.kind = VisualKind::held,
-                 .scene = "scene",
-                 .place = "held",
-                 .pose = "pose",
-                 .hand = "device",
-                 .grip = "grip",
-                 .force = "wrench",
-                 .at = grip_at,
-                 .held = held}};
-    }
+    std::vector<Visual> visuals() const { return {held_visual(held, grip_at)}; }
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());

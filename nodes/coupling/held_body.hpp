@@ -4,10 +4,24 @@
 
 #include "dsp/coupling/held_contact.hpp"
 #include "graph/node/port.hpp"
+#include "graph/node/visual.hpp"
 
 #include <algorithm>
 
 namespace tactus::nodes {
+
+/// What a coupling shows: the body that it holds in a scene, in the hand at `device`.
+inline Visual held_visual(double held, const Vec3& grip_at = Vec3(0.0)) {
+    return {.kind = VisualKind::held,
+            .scene = "scene",
+            .place = "held",
+            .pose = "pose",
+            .hand = "device",
+            .grip = "grip",
+            .force = "wrench",
+            .at = grip_at,
+            .held = held};
+}
 
 /// Follows `grasp`: the place of the held body, whether it is still held, and the strength of its force.
 struct Hold {

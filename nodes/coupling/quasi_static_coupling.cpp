@@ -50,15 +50,7 @@ struct QuasiStaticCoupling {
     ContactParameters contact;
 
     std::vector<Visual> visuals() const {
-        return {{.kind = VisualKind::held,
-                 .scene = "scene",
-                 .place = "held",
-                 .pose = "pose",
-                 .hand = "device",
-                 .grip = "grip",
-                 .force = "wrench",
-                 .at = grip_at,
-                 .held = held},
+        return {held_visual(held, grip_at),
                 {.kind = VisualKind::led, .pose = "pose", .target = "target", .when = "guided"}};
     }
 

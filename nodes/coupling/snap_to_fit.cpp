@@ -51,16 +51,7 @@ struct SnapToFit {
     SolverParameters solver;
     ContactParameters contact;
 
-    std::vector<Visual> visuals() const {
-        return {{.kind = VisualKind::held,
-                 .scene = "scene",
-                 .place = "held",
-                 .pose = "pose",
-                 .hand = "device",
-                 .grip = "grip",
-                 .force = "wrench",
-                 .held = held}};
-    }
+    std::vector<Visual> visuals() const { return {held_visual(held)}; }
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());

@@ -166,6 +166,12 @@ private:
         return static_cast<int>(ports.size()) - 1;
     }
 
+    /// A port of a closed sub-patch that shows because a wire ends there.
+    static PicturePort wired_port(const auto& end) {
+        return {end.name, std::string(end.port->about), std::string(end.port->unit), end.port->type, true, true, false,
+                {}};
+    }
+
     void add_wires() {
         const compile::Plan& plan = *matter_.plan;
         for (const compile::PlanWire& wire : plan.wires) {
@@ -187,15 +193,7 @@ private:
                     {name, std::string(wire.param->about), wire.param->unit, &value::number, true, true, true, {}});
             } else if (picture_.nodes[static_cast<std::size_t>(shown_to)].is_part) {
                 const compile::PlanInput& end = target.inputs[static_cast<std::size_t>(wire.to_input)];
-                input = port_named(inputs, shown_name(to, end.name),
-                                   {end.name,
-                                    std::string(end.port->about),
-                                    std::string(end.port->unit),
-                                    end.port->type,
-                                    true,
-                                    true,
-                                    false,
-                                    {}});
+                input = port_named(inputs, shown_name(to, end.name), wired_port(end));
             }
             inputs[static_cast<std::size_t>(input)].is_connected = true;
             if (wire.from_node < 0) continue;
@@ -205,15 +203,7 @@ private:
             int output = wire.from_output;
             if (shown_from.is_part) {
                 const compile::PlanOutput& end = source.outputs[static_cast<std::size_t>(wire.from_output)];
-                output = port_named(shown_from.outputs, shown_name(from, end.name),
-                                    {end.name,
-                                     std::string(end.port->about),
-                                     std::string(end.port->unit),
-                                     end.port->type,
-                                     true,
-                                     true,
-                                     false,
-                                     {}});
+                output = port_named(shown_from.outputs, shown_name(from, end.name), wired_port(end));
             }
             shown_from.outputs[static_cast<std::size_t>(output)].is_connected = true;
             const compile::PlanGroup& group = plan.groups[static_cast<std::size_t>(source.group)];
