@@ -39,7 +39,8 @@ double scale_of_screen(GLFWwindow* window) {
 Window::Library::Library() {
     glfwSetErrorCallback(keep_error);
     if (!glfwInit())
-        throw Error(fmt::format("no window can be opened: {}; set DISPLAY, or leave out --view", last_error));
+        throw Error(
+            fmt::format("no window can be opened: {}; set DISPLAY; a run without --view needs none", last_error));
 }
 
 Window::Library::~Library() { glfwTerminate(); }
