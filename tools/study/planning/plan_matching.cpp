@@ -2,8 +2,8 @@
 #include "tools/study/planning/plan_matching.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 #include "dsp/fit/as_scanned.hpp"
-#include "dsp/fit/assemblies.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "tools/study/bones/intact_side.hpp"
 

@@ -34,7 +34,7 @@ enum class Partners : std::uint8_t { standing_first, all };
 /// What fits take into account beside the faces.
 struct FitWay {
     double kerf = 0.0;  ///< m, width of the bone that was lost along the faces, which fits leave open
-    bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/healthy_pull.hpp
+    bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/registration/healthy_pull.hpp
 };
 
 /// The fragments of a plan and a matcher for them. Does not change the plan.
