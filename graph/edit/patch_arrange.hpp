@@ -4,6 +4,7 @@
 #pragma once
 
 #include "graph/edit/patch_edit.hpp"
+#include "graph/patch/patch.hpp"
 #include "graph/patch/patch_window.hpp"
 
 #include <filesystem>
@@ -33,14 +34,19 @@ std::string with_device(std::string_view text, std::string_view name, std::strin
 std::string with_device_setting(std::string_view text, std::string_view device, std::string_view name,
                                 std::string_view value);
 
+/// How a wire is delivered, as it is written behind "as"; empty: nothing is written.
+std::string mode_text(const patch::PatchWire& wire);
+
 std::string without_nodes(std::string_view text, std::span<const std::string> names);
 
 /// A patch's text with those nodes, the wires between them, their groups, assets and places: for a clipboard. Relative
 /// paths of assets start at `folder`.
 std::string copied(std::string_view text, std::span<const std::string> names, const std::filesystem::path& folder);
-/// Adds what `copied` gave, or any patch's nodes. `names`: what each is called here. Places move by `by`.
+/// Adds what `copied` gave, or any patch's nodes. `names`: what each is called here. Places move by `by`. A group of
+/// another rate, or an asset of another file, with a name of this patch gets a new name; relative paths of this patch
+/// start at `folder` (empty: an asset with a name of this patch is taken for the same).
 std::string with_pasted(std::string_view text, std::string_view copy, const std::map<std::string, std::string>& names,
-                        patch::PatchPlace by);
+                        patch::PatchPlace by, const std::filesystem::path& folder = {});
 
 /// Nodes moved into a patch of their own.
 struct SubPatch {

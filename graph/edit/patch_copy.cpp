@@ -30,14 +30,8 @@ NewNode node_of(const patch::PatchNode& node) {
 }
 
 WireText text_of(const patch::PatchWire& wire) {
-    static constexpr std::string_view modes[] = {"hold", "linear", "batch", "delay"};
-    WireText made{wire.from_port.empty() ? wire.from_node : wire.from_node + "." + wire.from_port,
-                  wire.to_node + "." + wire.to_port,
-                  {}};
-    if (!wire.mode_given) return made;
-    made.mode = modes[static_cast<std::size_t>(wire.mode)];
-    if (wire.mode == patch::WireMode::delay) made.mode += fmt::format(" {}", wire.delay);
-    return made;
+    return {wire.from_port.empty() ? wire.from_node : wire.from_node + "." + wire.from_port,
+            wire.to_node + "." + wire.to_port, mode_text(wire)};
 }
 
 bool is_asset(const patch::PatchWire& wire) { return wire.from_port.empty(); }
@@ -96,36 +90,100 @@ patch::Patch read_in(std::string_view text, const fs::path& folder) {
     return patch::read_patch(text, folder / "copy.toml", ignored);
 }
 
-}  // namespace
+/// The colours of some nodes, each under the name that it has in `text`.
+std::string with_colours_of(std::string text, const patch::PatchWindow& window,
+                            const std::map<std::string, std::string>& names) {
+    for (const auto& [node, name] : names)
+        if (const auto found = window.colours.find(node); found != window.colours.end())
+            text = with_colours(text, std::span(&name, 1), found->second);
+    return text;
+}
 
-std::string copied(std::string_view text, std::span<const std::string> names, const fs::path& folder) {
-    const patch::PatchWindow window = patch::window_of(text);
+std::map<std::string, patch::PatchPlace> places_of(const patch::PatchWindow& window,
+                                                   std::span<const std::string> names) {
     std::map<std::string, patch::PatchPlace> places;
     for (const std::string& name : names)
         if (const auto found = window.places.find(name); found != window.places.end()) places.insert(*found);
-    return with_places(part_of(read_in(text, folder), set_of(names), folder), places);
+    return places;
+}
+
+/// What groups or assets of a copy are called in the patch that takes them: their own name, unless that is something
+/// else there.
+template <class Named, class Same>
+std::map<std::string, std::string> names_here(const std::vector<Named>& copied, const std::vector<Named>& here,
+                                              Same&& are_same) {
+    std::map<std::string, std::string> names;
+    for (const Named& one : copied) {
+        std::string name = one.name;
+        for (int i = 2;; ++i) {
+            const auto known = std::ranges::find(here, name, &Named::name);
+            if (known == here.end() || are_same(one, *known)) break;
+            name = fmt::format("{}_{}", one.name, i);
+        }
+        names[one.name] = name;
+    }
+    return names;
+}
+
+std::map<std::string, std::string> same_names(std::span<const std::string> nodes) {
+    std::map<std::string, std::string> names;
+    for (const std::string& node : nodes) names[node] = node;
+    return names;
+}
+
+}  // namespace
+
+std::string mode_text(const patch::PatchWire& wire) {
+    static constexpr std::string_view modes[] = {"hold", "linear", "batch", "delay"};
+    if (!wire.mode_given) return {};
+    std::string mode(modes[static_cast<std::size_t>(wire.mode)]);
+    if (wire.mode == patch::WireMode::delay) mode += fmt::format(" {}", wire.delay);
+    return mode;
+}
+
+std::string copied(std::string_view text, std::span<const std::string> names, const fs::path& folder) {
+    const patch::PatchWindow window = patch::window_of(text);
+    const std::string part = part_of(read_in(text, folder), set_of(names), folder);
+    return with_colours_of(with_places(part, places_of(window, names)), window, same_names(names));
 }
 
 std::string with_pasted(std::string_view text, std::string_view copy, const std::map<std::string, std::string>& names,
-                        patch::PatchPlace by) {
-    const patch::Patch patch = read(copy), here = read_in(text, {});
+                        patch::PatchPlace by, const fs::path& folder) {
+    const patch::Patch patch = read(copy), here = read_in(text, folder);
     const patch::PatchWindow window = patch::window_of(copy);
     const auto name_of = [&](const std::string& name) {
         const auto found = names.find(name);
         return found == names.end() ? name : found->second;
     };
     Editing editing(text);
+    // A name that means something else here becomes a new one.
+    const auto path_of = [&](const patch::PatchAsset& asset) { return (folder / asset.path).lexically_normal(); };
+    const auto groups =
+        names_here(patch.groups, here.groups,
+                   [](const patch::PatchGroup& a, const patch::PatchGroup& b) { return a.rate == b.rate; });
+    const auto assets =
+        names_here(patch.assets, here.assets, [&](const patch::PatchAsset& a, const patch::PatchAsset& b) {
+            return folder.empty() || path_of(a) == path_of(b);
+        });
     for (const patch::PatchGroup& group : patch.groups)
-        if (std::ranges::find(here.groups, group.name, &patch::PatchGroup::name) == here.groups.end())
-            editing.put({"groups", group.name}, "rate", toml_quoted(group.rate));
+        if (std::ranges::find(here.groups, groups.at(group.name), &patch::PatchGroup::name) == here.groups.end())
+            editing.put({"groups", groups.at(group.name)}, "rate", toml_quoted(group.rate));
     for (const patch::PatchAsset& asset : patch.assets)
-        if (std::ranges::find(here.assets, asset.name, &patch::PatchAsset::name) == here.assets.end())
-            editing.put({"assets"}, asset.name, toml_quoted(asset.path.string()));
+        if (std::ranges::find(here.assets, assets.at(asset.name), &patch::PatchAsset::name) == here.assets.end())
+            editing.put({"assets"}, assets.at(asset.name), toml_quoted(asset.path.string()));
     std::vector<NewNode> added;
-    for (const patch::PatchNode& node : patch.nodes) added.emplace_back(node_of(node)).name = name_of(node.name);
+    for (const patch::PatchNode& node : patch.nodes) {
+        NewNode& made = added.emplace_back(node_of(node));
+        made.name = name_of(node.name);
+        if (const auto group = groups.find(made.group); group != groups.end()) made.group = group->second;
+        for (auto& [param, value] : made.settings)
+            if (const auto asset = assets.find(value); asset != assets.end()) value = asset->second;
+    }
     for (const patch::PatchWire& wire : patch.wires) {
         patch::PatchWire renamed = wire;
         if (!is_asset(wire)) renamed.from_node = name_of(wire.from_node);
+        else if (const auto asset = assets.find(wire.from_node); asset != assets.end())
+            renamed.from_node = asset->second;
         renamed.to_node = name_of(wire.to_node);
         if (!added.empty()) added.back().wires.push_back(text_of(renamed));
     }
@@ -133,7 +191,9 @@ std::string with_pasted(std::string_view text, std::string_view copy, const std:
     for (const NewNode& node : added) made = with_node(made, node);
     std::map<std::string, patch::PatchPlace> places;
     for (const auto& [node, place] : window.places) places[name_of(node)] = {place.x + by.x, place.y + by.y};
-    return with_places(made, places);
+    std::map<std::string, std::string> coloured;
+    for (const patch::PatchNode& node : patch.nodes) coloured[node.name] = name_of(node.name);
+    return with_colours_of(with_places(made, places), window, coloured);
 }
 
 SubPatch with_sub_patch(std::string_view text, std::span<const std::string> nodes, std::string_view name,
@@ -165,9 +225,16 @@ SubPatch with_sub_patch(std::string_view text, std::span<const std::string> node
         else crossing.from = fmt::format("{}.{}", name, end_of(outputs, "outputs", wire.from_node, wire.from_port));
         wires.push_back(std::move(crossing));
     }
-    made.inner = inner.result();
+    // Inside, the nodes stand as they stood; the sub-patch takes the place of the first of them.
+    const patch::PatchWindow window = patch::window_of(text);
+    const std::map<std::string, patch::PatchPlace> places = places_of(window, nodes);
+    made.inner = with_colours_of(with_places(inner.result(), places), window, same_names(nodes));
     made.outer = with_node(made.outer,
                            {std::string(name), fmt::format("{}{}", patch::sub_patch_prefix, file), {}, {}, {}, wires});
+    if (places.empty()) return made;
+    patch::PatchPlace first = places.begin()->second;
+    for (const auto& [node, place] : places) first = {std::min(first.x, place.x), std::min(first.y, place.y)};
+    made.outer = with_places(made.outer, {{std::string(name), first}});
     return made;
 }
 

@@ -196,7 +196,7 @@ bool Script::perform(const ScriptLine& line, Desk& desk, Window& window) {
     else if (is("clip")) desk.scene().clip(static_cast<int>(line.number(1)), line.number(2));
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
-    else if (is("spots")) file::write_whole_file(line.word(1), spot_list());
+    else if (is("spots")) file::write_whole_file(line.word(1), spot_list() + desk.patch().place_list());
     else if (is("say")) bench.tell(line.word(1));
     else if (is("layout")) {
         const auto layout = layout_of_name(line.word(1));

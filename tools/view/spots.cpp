@@ -30,6 +30,8 @@ void mark_spot(const std::string& name) {
     spots().first[name] = {low.x, low.y, high.x, high.y};
 }
 
+void set_spot(const std::string& name, const Box& box) { spots().first[name] = box; }
+
 std::optional<Box> spot(const std::string& name) {
     const Spots& drawn = spots().second;
     const auto found = drawn.find(name);

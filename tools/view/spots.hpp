@@ -11,6 +11,8 @@ namespace tactus::view {
 
 /// Registers the control drawn last. Only on the window's thread.
 void mark_spot(const std::string& name);
+/// Registers a place that is no item, in pixels.
+void set_spot(const std::string& name, const Box& box);
 /// Position in the last frame; none: not drawn.
 std::optional<Box> spot(const std::string& name);
 /// Called before each frame.

@@ -7,6 +7,7 @@
 #include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/patch/patch_change.hpp"
+#include "tools/view/unsaved.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -235,9 +236,19 @@ edit::InputTakes Workbench::taken_by(const std::string& to) const {
 }
 
 bool Workbench::reconnect(const std::string& from, const std::string& old_to, const std::string& to) {
-    return edit(
-        [&](std::string_view text) { return edit::with_wire(edit::without_wire(text, old_to), {from, to, {}}); },
-        fmt::format("{} -> {} in place of {}", from, to, old_to));
+    const std::string one = taken_by(old_to) == edit::InputTakes::many_wires ? from : "";
+    const auto led = [&](std::string_view text, const std::string& mode) {
+        return edit::with_wire(edit::without_wire(text, old_to, one), {from, to, mode}, taken_by(to));
+    };
+    // How it is delivered stays, where the new input takes that.
+    std::string mode;
+    for (const patch::PatchWire& wire : written_.wires)
+        if (wire.mode_given && wire.from_node + "." + wire.from_port == from &&
+            wire.to_node + "." + wire.to_port == old_to)
+            mode = edit::mode_text(wire);
+    if (!mode.empty() && !judge(led(editor_->text(), mode)).problem.empty()) mode.clear();
+    return edit([&](std::string_view text) { return led(text, mode); },
+                fmt::format("{} -> {} in place of {}", from, to, old_to));
 }
 
 bool Workbench::undo() {
@@ -336,9 +347,26 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 }
 
 void Workbench::tend() {
-    if (!run_) return;
+    if (!run_) return look_at_file();
     for (std::string& text : run_->messages()) tell(std::move(text));
     if (run_->file_was_saved()) take_over_file();
+    else if (run_->is_over()) look_at_file();
+}
+
+/// A run watches the file; without one it is looked at twice a second.
+void Workbench::look_at_file() {
+    constexpr auto between = std::chrono::milliseconds(500);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < between) return;
+    looked_ = now;
+    std::error_code none;
+    const auto written = fs::last_write_time(editor_->file(), none);
+    if (none || std::exchange(written_at_, written) == written) return;
+    try {
+        if (editor_->is_changed_elsewhere()) take_over_file();
+    } catch (const Error& error) {
+        tell(error.what(), true);
+    }
 }
 
 bool Workbench::has_same_parts() {
@@ -346,10 +374,15 @@ bool Workbench::has_same_parts() {
     return checked_.plan && checked_.plan->patch.parts == plan_->patch.parts;
 }
 
-/// Applied as an edit, which can be undone.
+/// Applied as an edit, which can be undone. Edits that are not saved are kept beside the patch as well: who saves what
+/// was taken over, or closes the window, still has them.
 void Workbench::take_over_file() {
     try {
+        const std::string mine = editor_->is_saved() ? std::string() : editor_->text();
         const bool is_new = editor_->reload();
+        if (is_new && !mine.empty())
+            tell(fmt::format("your edits that were not saved are kept in {}; undo shows them again",
+                             keep_unsaved(editor_->file(), mine).string()));
         // A sub-patch may have been saved instead.
         const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
         if (is_known) return;

@@ -12,6 +12,7 @@
 #include "tools/view/patch/unfinished.hpp"
 #include "tools/view/viewed_run.hpp"
 
+#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -183,6 +184,7 @@ private:
     void adopt_text();
     void follow();
     void take_over_file();
+    void look_at_file();
     void drop_restored();
     std::filesystem::path keep_text() const;
     bool has_same_parts();
@@ -209,6 +211,8 @@ private:
     std::vector<std::filesystem::path> offers_;
     std::filesystem::path restored_;  // file of restored edits, removed when the patch is saved
     std::int64_t dropped_version_ = -1;
+    std::chrono::steady_clock::time_point looked_{};
+    std::filesystem::file_time_type written_at_{};
 };
 
 }  // namespace tactus::view

@@ -136,7 +136,8 @@ std::vector<std::string> Workbench::paste(const std::string& copied, patch::Patc
         for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
         names[node.name] = name;
     }
-    if (!edit([&](std::string_view text) { return edit::with_pasted(text, copied, names, by); },
+    const fs::path folder = fs::absolute(editor_->file()).parent_path();
+    if (!edit([&](std::string_view text) { return edit::with_pasted(text, copied, names, by, folder); },
               fmt::format("added {}", count_of(names.size()))))
         return {};
     std::vector<std::string> made;

@@ -32,7 +32,10 @@ bool Workbench::save() {
         }
         if (editor_->is_changed_elsewhere()) {
             take_over_file();
-            tell("not saved: the text does not compile; undo to your own text and save again", true);
+            tell(
+                "not saved: another program has saved this file, and its text is shown now; undo to your own text and "
+                "save again",
+                true);
             return false;
         }
         editor_->save();

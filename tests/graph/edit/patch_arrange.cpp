@@ -120,6 +120,43 @@ TEST_CASE("copied nodes keep their settings, wires between them, groups and asse
     CHECK_THROWS_AS(with_pasted(ball, "no patch at all", {}, {}), Error);
 }
 
+TEST_CASE("a copy from another patch brings its own files and rates where their names mean others") {
+    const std::vector<std::string> one{"ball"};
+    const std::string copy = copied(ball, one, "/home/x");
+    std::string here = ball;
+    here.replace(here.find("\"60 Hz\""), 7, "\"30 Hz\"");
+    const std::map<std::string, std::string> names{{"ball", "ball_2"}};
+    const patch::Patch all = read(with_pasted(here, copy, names, {}, "/home/y"));
+    REQUIRE(all.assets.size() == 2);
+    CHECK(std::ranges::find(all.assets, "bone_2", &patch::PatchAsset::name)->path == "/home/x/parts/bone.vdb");
+    const auto pasted = std::ranges::find(all.nodes, "ball_2", &patch::PatchNode::name);
+    REQUIRE(pasted != all.nodes.end());
+    CHECK(pasted->group == "slow_2");
+    const auto group = std::ranges::find(all.groups, "slow_2", &patch::PatchGroup::name);
+    REQUIRE(group != all.groups.end());
+    CHECK(group->rate == "60 Hz");
+    // In its own folder the file is the same.
+    CHECK(read(with_pasted(ball, copy, names, {}, "/home/x")).assets.size() == 1);
+}
+
+TEST_CASE("colours go along with copies, and a sub-patch keeps how its nodes stood") {
+    const std::vector<std::string> both{"hand", "ball"};
+    const std::string dressed = with_colours(with_places(ball, {{"hand", {20.0, 90.0}}, {"ball", {100.0, 50.0}}}),
+                                             std::vector{both[1]}, "green");
+    const std::string pasted =
+        with_pasted(dressed, copied(dressed, both, "/home/x"), {{"hand", "hand_2"}, {"ball", "ball_2"}}, {});
+    CHECK(patch::window_of(pasted).colours.at("ball_2") == "green");
+    CHECK_FALSE(patch::window_of(pasted).colours.contains("hand_2"));
+    const SubPatch made = with_sub_patch(dressed, both, "part", "part.toml", "/home/x");
+    const patch::PatchWindow inner = patch::window_of(made.inner), outer = patch::window_of(made.outer);
+    CHECK(inner.places.at("ball").x == 100.0);
+    CHECK(inner.places.at("hand").y == 90.0);
+    CHECK(inner.colours.at("ball") == "green");
+    CHECK(outer.places.at("part").x == 20.0);
+    CHECK(outer.places.at("part").y == 50.0);
+    CHECK_FALSE(outer.places.contains("ball"));
+}
+
 TEST_CASE("chosen nodes become a patch of their own, and wires across its border its ends") {
     const std::vector<std::string> inner{"ball"};
     const SubPatch made = with_sub_patch(ball, inner, "contact", "contact.toml", "/home/x");

@@ -158,3 +158,20 @@ screenshot {0}-take.png
         CHECK(on(display, folder, "check library/patches/" + name + ".toml").code == 0);
     }
 }
+
+TEST_CASE("a name that is typed belongs to its node when another one is pressed before Enter", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("p.toml", tactus::test::voice);
+    folder.write("script",
+                 "size 1280 800\nlayout patch\nframes 10\npress tone\nframes 5\npress name\ntype \"x\"\nframes 5\n"
+                 "press loud\nframes 5\ntext after.toml\nundo all\ntext before.toml\nclose\n");
+    const Outcome seen = on(display, folder, "view p.toml --view-scale 1 --view-script script");
+    INFO(seen.err);
+    REQUIRE(seen.code == 0);
+    const std::string after = slurp(folder.path / "after.toml");
+    INFO(after);
+    CHECK(after.find("[nodes.tone]") == std::string::npos);
+    CHECK(after.find("[nodes.loud]") != std::string::npos);
+    CHECK(slurp(folder.path / "before.toml") == tactus::test::voice);
+}

@@ -8,6 +8,7 @@
 #include "tools/session/load_plan.hpp"
 #include "tools/view/signal/feed.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -80,6 +81,50 @@ count = { type = "event_counter", rate = "1 kHz" }
     // A number's input still has one wire.
     REQUIRE(bench.connect("slow.out", "b.in"));
     CHECK(bench.plan()->wires.size() == 3);
+}
+
+TEST_CASE("a wire led to another input by hand keeps how it is delivered, and takes no other wire along") {
+    const Folder folder;
+    RunChoice choice = choice_in(folder);
+    choice.patch = folder
+                       .write("events.toml", R"(title = "Events"
+wires = [
+  "slow.out -> a.in",
+  "fast.out -> b.in",
+  "a.events -> count.in",
+  "b.events -> count.in",
+  "a.events -> other.in",
+  "level.value -> loud.factor as linear",
+]
+[nodes]
+slow = { type = "clock", rate = "1 kHz" }
+fast = { type = "clock", rate = "1 kHz" }
+a = { type = "button_events", rate = "1 kHz" }
+b = { type = "button_events", rate = "1 kHz" }
+count = { type = "event_counter", rate = "1 kHz" }
+other = { type = "event_counter", rate = "1 kHz" }
+level = { type = "constant", rate = "1 kHz" }
+tone = { type = "sine", rate = "48 kHz" }
+loud = { type = "gain", rate = "48 kHz" }
+)")
+                       .string();
+    Workbench bench(choice);
+    REQUIRE_FALSE(bench.is_broken());
+    const auto has = [&](const std::string& wire) {
+        std::string text = bench.editor().text();
+        // Arrows stand below each other.
+        text.erase(std::unique(text.begin(), text.end(), [](char a, char b) { return a == ' ' && b == ' '; }),
+                   text.end());
+        return text.find(wire) != std::string::npos;
+    };
+    // Of two wires to one input of events the one that is led away goes, and the one that is there stays.
+    REQUIRE(bench.reconnect("b.events", "count.in", "other.in"));
+    CHECK(has("a.events -> count.in"));
+    CHECK(has("a.events -> other.in"));
+    CHECK(has("b.events -> other.in"));
+    CHECK_FALSE(has("b.events -> count.in"));
+    REQUIRE(bench.reconnect("level.value", "loud.factor", "tone.amplitude"));
+    CHECK(has("level.value -> tone.amplitude as linear"));
 }
 
 TEST_CASE("a new node stands in the patch without its wires, and runs when it has them") {
@@ -273,6 +318,53 @@ TEST_CASE(
     CHECK(bench.editor().text() == mine);
     CHECK(bench.save());
     CHECK(slurp(choice.patch) == mine);
+}
+
+TEST_CASE("a bench without a run sees that the file was saved elsewhere, and keeps its own edits beside it") {
+    const Folder folder;
+    const RunChoice choice = choice_in(folder);
+    Workbench bench(choice);
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    const std::string mine = bench.editor().text(), theirs = voice + "# from elsewhere\n";
+    bench.tend();
+    CHECK(bench.editor().text() == mine);
+    folder.write("voice.toml", theirs);
+    REQUIRE(come_about([&] { return bench.tend(), bench.editor().text() == theirs; }));
+    CHECK(bench.editor().is_saved());
+    const std::size_t told = bench.messages().size();
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    bench.tend();
+    CHECK(bench.messages().size() == told);
+    // A window that is closed now has lost nothing.
+    CHECK_FALSE(bench.has_unsaved_edits());
+    Workbench next(choice);
+    next.find_kept_edits();
+    REQUIRE(next.offer());
+    CHECK(slurp(*next.offer()) == mine);
+    REQUIRE(bench.undo());
+    CHECK(bench.editor().text() == mine);
+    REQUIRE(bench.save());
+    // What was saved needs no copy any more.
+    Workbench last(choice);
+    last.find_kept_edits();
+    CHECK_FALSE(last.offer());
+}
+
+TEST_CASE("two windows on one file: who saves second is told, and both texts are there") {
+    const Folder folder;
+    const RunChoice choice = choice_in(folder);
+    Workbench first(choice), second(choice);
+    REQUIRE(first.set("tone", "frequency", "220 Hz"));
+    REQUIRE(second.set("tone", "frequency", "330 Hz"));
+    const std::string of_first = first.editor().text(), of_second = second.editor().text();
+    REQUIRE(first.save());
+    CHECK_FALSE(second.save());
+    CHECK(slurp(choice.patch) == of_first);
+    CHECK(second.editor().text() == of_first);
+    REQUIRE(second.undo());
+    CHECK(second.editor().text() == of_second);
+    REQUIRE(second.save());
+    REQUIRE(come_about([&] { return first.tend(), first.editor().text() == of_second; }));
 }
 
 TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[live]") {

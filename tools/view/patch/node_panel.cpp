@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
@@ -87,7 +88,8 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     if (moved) {
         turning_ = id;
         turned_to_ = std::clamp(value, field.least, field.most);
-        if (field.is_live) bench_.turn(node, field.name, quantity_text(turned_to_, field.unit));
+        turned_ = quantity_text(turned_to_, field.unit);
+        if (field.is_live) bench_.turn(node, field.name, turned_);
     }
     const bool ended = ImGui::IsItemDeactivatedAfterEdit();
     tip(explanation(field) +
@@ -95,7 +97,7 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     if (!speed) mark_default(field);
     if (ended && turning_ == id) {
         turning_.clear();
-        bench_.set(node, field.name, quantity_text(turned_to_, field.unit));
+        bench_.set(node, field.name, turned_);
     }
 }
 
@@ -133,7 +135,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
             std::string text = turning_ == id ? typed_ : field.text;
             if (ImGui::InputText("##value", &text)) {
                 turning_ = id;
-                typed_ = text;
+                turned_ = typed_ = text;
             }
             mark_spot(field.name);
             const bool ended = ImGui::IsItemDeactivatedAfterEdit();
@@ -174,21 +176,31 @@ void NodePanel::read_fields(const PictureNode& node) {
         fields_ = parameters_of(**type, bench_.written(), *known);
 }
 
+void NodePanel::leave() {
+    const std::string node = std::exchange(shown_, {}), param = std::exchange(turning_, {});
+    const bool renames = std::exchange(is_renaming_, false);
+    if (is_read_only || bench_.picture().find(node) < 0) return;
+    if (param.starts_with(node + ".")) bench_.set(node, param.substr(node.size() + 1), turned_);
+    if (renames && renaming_ != node) bench_.rename(node, renaming_);
+}
+
 void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
+    if (shown_ != selected) leave();
     const int index = bench_.picture().find(selected);
     if (index < 0) return dim("Click a node of the patch to show its parameters here.");
     if (version_ != bench_.plan_version() || shown_ != selected) {
         read_fields(bench_.picture().nodes[static_cast<std::size_t>(index)]);
         version_ = bench_.plan_version();
-        if (shown_ != selected) turning_.clear();
         shown_ = renaming_ = selected;
     }
     const PictureNode node = bench_.picture().nodes[static_cast<std::size_t>(index)];
     const auto type = std::ranges::find(nodes::catalogue(), node.type, [](const NodeType* t) { return t->name; });
     ImGui::PushFont(fonts.bold);
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
-    ImGui::InputText("##name", &renaming_, is_read_only ? ImGuiInputTextFlags_ReadOnly : 0);
-    const bool renamed = ImGui::IsItemDeactivatedAfterEdit() && renaming_ != selected;
+    if (ImGui::InputText("##name", &renaming_, is_read_only ? ImGuiInputTextFlags_ReadOnly : 0)) is_renaming_ = true;
+    const bool ended = ImGui::IsItemDeactivatedAfterEdit();
+    if (ended) is_renaming_ = false;
+    const bool renamed = ended && renaming_ != selected;
     mark_spot("name");
     ImGui::PopFont();
     ImGui::SameLine();

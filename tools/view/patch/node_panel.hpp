@@ -35,6 +35,8 @@ private:
     void asset(const ParameterField& field, const std::string& node);
     void draw_device(const PictureNode& node);
     void read_fields(const PictureNode& node);
+    /// Another node is chosen: what was being typed or turned for the one before is set there.
+    void leave();
     void quantity(const ParameterField& field, const std::string& node);
 
     Workbench& bench_;
@@ -42,8 +44,10 @@ private:
     std::string shown_, typed_, renaming_;
     std::int64_t version_ = -1;
     int group_ = 0;
-    std::string turning_;  ///< the slider being dragged
+    std::string turning_;  ///< the parameter being dragged or typed, "node.param"
+    std::string turned_;   ///< its value so far, as it would be set
     double turned_to_ = 0.0;
+    bool is_renaming_ = false;
     std::string device_option_, device_value_;
 };
 

@@ -69,6 +69,20 @@ std::optional<Point> PatchPanel::place_of(const std::string& name) const {
     return seen + corner_;
 }
 
+std::string PatchPanel::place_list() const {
+    std::string text;
+    const auto add = [&](const std::string& name) {
+        if (const auto at = place_of(name))
+            text += fmt::format("{}\t{:.0f}\t{:.0f}\t{:.0f}\t{:.0f}\n", name, at->x, at->y, at->x, at->y);
+    };
+    for (const PictureNode& node : bench_.picture().nodes) {
+        add(node.name);
+        for (const auto* ports : {&node.inputs, &node.outputs})
+            for (const PicturePort& port : *ports) add(node.name + "." + port.name);
+    }
+    return text;
+}
+
 void PatchPanel::notice_new_plan() {
     if (plan_version_ == bench_.plan_version()) return;
     // Indices refer to the previous picture.
@@ -155,6 +169,7 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     if (ImGui::IsItemHovered() && dragging_.what == Dragging::What::nothing) explain(hovered_);
     menus();
     edit_comment();
+    name_sub_patch();
     if (const std::string made = palette_.draw(fonts); !made.empty()) choose_only(made);
 }
 

@@ -47,6 +47,8 @@ public:
     void look_at(const std::string& node);
     /// Position of "node", "node.output" or "node.input"; none: not visible.
     std::optional<Point> place_of(const std::string& name) const;
+    /// Positions of all visible nodes and ports, as spot_list() writes controls.
+    std::string place_list() const;
 
 private:
     static constexpr double text_size = 13.0, small_size = 10.5;  ///< at a zoom of one
@@ -84,8 +86,13 @@ private:
     void draw_wiring(const Painter& paint);
     void draw_comments(const Painter& paint);
     void draw_dragging(const Painter& paint);
+    std::optional<Box> minimap() const;  ///< on the screen; none: it is not shown
+    bool press_minimap();
     void draw_minimap(const Painter& paint);
     void edit_comment();
+    void keep_comment(const std::string& colour);
+    const patch::PatchComment* comment_named(const std::string& name) const;
+    void name_sub_patch();
     void handle_mouse();
     void press(const Hit& over, Point world);
     void press_node(const std::string& name);
@@ -123,7 +130,9 @@ private:
     std::string new_name_;
     NodePalette palette_;
     Dragging dragging_;
-    std::string commented_, comment_text_;
+    std::string commented_;  ///< the comment to be written next
+    std::string writing_, comment_text_;  ///< the one being written
+    bool is_on_map_ = false;
     bool wants_part_name_ = false;
     mutable int pastes_ = 0;
     Point mouse_;  ///< in units of the picture

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is done with the chosen nodes, and comments, frames and the small map.
+#include "graph/patch/sub_patch.hpp"
 #include "tools/view/patch/patch_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -48,8 +49,18 @@ void PatchPanel::cut() {
     remove_chosen();
 }
 
+/// A node within an open sub-patch stands in the file of that; it does not take the sub-patch along.
 void PatchPanel::remove_chosen() {
-    if (!is_read_only && !chosen.empty()) bench_.remove(chosen_nodes());
+    if (is_read_only || chosen.empty()) return;
+    std::vector<std::string> whole;
+    for (const std::string& name : chosen)
+        if (name.find(patch::within_node) == std::string::npos) whole.push_back(name);
+    if (!whole.empty()) bench_.remove(whole);
+    else
+        bench_.tell(fmt::format("{} stands within a sub-patch: open the file of that to remove it, or close the "
+                                "sub-patch to remove it as a whole",
+                                *chosen.begin()),
+                    true);
 }
 
 void PatchPanel::choose_all() {
@@ -206,93 +217,115 @@ void PatchPanel::draw_dragging(const Painter& paint) {
 }
 
 /// Shown while a part of the patch is outside of the panel.
-void PatchPanel::draw_minimap(const Painter& paint) {
+std::optional<Box> PatchPanel::minimap() const {
     const Box& all = bench_.picture().bounds;
     const Box seen = canvas_.visible(width_, height_);
     const double wide = 150.0 * unit_, least = 320.0 * unit_;
     const bool is_all =
         seen.left <= all.left && seen.top <= all.top && seen.right >= all.right && seen.bottom >= all.bottom;
-    if (!has_minimap || is_all || width_ < least || height_ < 0.7 * least || bench_.picture().nodes.empty()) return;
+    if (!has_minimap || is_all || width_ < least || height_ < 0.7 * least || bench_.picture().nodes.empty())
+        return std::nullopt;
     const double scale = std::min(wide / std::max(all.width(), 1.0), 0.3 * height_ / std::max(all.height(), 1.0));
-    const Point corner =
-        corner_ + Point{width_ - all.width() * scale - 8.0 * unit_, height_ - all.height() * scale - 8.0 * unit_};
+    const Point far = corner_ + Point{width_ - 8.0 * unit_, height_ - 8.0 * unit_};
+    return Box{far.x - all.width() * scale, far.y - all.height() * scale, far.x, far.y};
+}
+
+/// A press on the small map goes there, and means nothing else. True: it was one.
+bool PatchPanel::press_minimap() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto map = minimap();
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+        is_on_map_ = map && ImGui::IsItemHovered() && map->contains(point(io.MousePos));
+    if (!is_on_map_ || !map) return is_on_map_ = false;
+    const Box& all = bench_.picture().bounds;
+    const double x = std::clamp((io.MousePos.x - map->left) / map->width(), 0.0, 1.0),
+                 y = std::clamp((io.MousePos.y - map->top) / map->height(), 0.0, 1.0);
+    const Point world{all.left + x * all.width(), all.top + y * all.height()};
+    canvas_.origin = world - Point{width_, height_} * (0.5 / canvas_.zoom);
+    follows_size_ = false;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) is_on_map_ = false;
+    return true;
+}
+
+void PatchPanel::draw_minimap(const Painter& paint) {
+    const auto found = minimap();
+    if (!found) return;
+    const Box& map = *found;
+    const Box& all = bench_.picture().bounds;
+    const double scale = map.width() / std::max(all.width(), 1.0);
     const auto on_map = [&](const Box& b) {
-        return Box{corner.x + (b.left - all.left) * scale, corner.y + (b.top - all.top) * scale,
-                   corner.x + (b.right - all.left) * scale, corner.y + (b.bottom - all.top) * scale};
+        return Box{map.left + (b.left - all.left) * scale, map.top + (b.top - all.top) * scale,
+                   map.left + (b.right - all.left) * scale, map.top + (b.bottom - all.top) * scale};
     };
-    const Box map = on_map(all);
     paint.box({map.left - 3.0, map.top - 3.0, map.right + 3.0, map.bottom + 3.0}, colour(0x0c1015, 235), 3.0);
     paint.list()->PushClipRect(vec({map.left - 2.0, map.top - 2.0}), vec({map.right + 2.0, map.bottom + 2.0}), true);
     for (const Box& stack : bench_.picture().stacks) paint.box(on_map(stack), tone::node_edge);
     for (const PictureNode& node : bench_.picture().nodes)
         if (chosen.contains(node.name)) paint.box(on_map(node.box), tone::chosen);
-    paint.frame(on_map(seen), tone::text);
+    paint.frame(on_map(canvas_.visible(width_, height_)), tone::text);
     paint.list()->PopClipRect();
-    // A click there goes there.
-    const Point mouse = point(ImGui::GetIO().MousePos);
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDown(ImGuiMouseButton_Left) && map.contains(mouse)) {
-        dragging_ = {};
-        wiring_ = {};
-        const Point world{all.left + (mouse.x - map.left) / scale, all.top + (mouse.y - map.top) / scale};
-        canvas_.origin = world - Point{width_, height_} * (0.5 / canvas_.zoom);
-        follows_size_ = false;
-    }
+    set_spot("small map", map);
+}
+
+const patch::PatchComment* PatchPanel::comment_named(const std::string& name) const {
+    const auto& all = bench_.window().comments;
+    const auto found = std::ranges::find(all, name, &patch::PatchComment::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+void PatchPanel::keep_comment(const std::string& colour) {
+    const patch::PatchComment* found = comment_named(writing_);
+    if (!found || (found->text == comment_text_ && colour.empty())) return;
+    patch::PatchComment changed = *found;
+    changed.text = comment_text_;
+    if (!colour.empty()) changed.colour = colour;
+    bench_.comment(changed);
 }
 
 void PatchPanel::edit_comment() {
-    constexpr const char *title = "comment", *part = "name of the sub-patch";
-    if (!commented_.empty() && !ImGui::IsPopupOpen(title)) {
-        const auto& all = bench_.window().comments;
-        const auto found = std::ranges::find(all, commented_, &patch::PatchComment::name);
-        if (found == all.end()) return commented_.clear();
-        comment_text_ = found->text;
-        ImGui::OpenPopup(title);
+    constexpr const char* title = "comment";
+    if (!commented_.empty()) {
+        writing_ = std::exchange(commented_, {});
+        if (const patch::PatchComment* found = comment_named(writing_)) {
+            comment_text_ = found->text;
+            ImGui::OpenPopup(title);
+        }
     }
-    if (ImGui::BeginPopup(title)) {
-        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        ImGui::InputTextMultiline("##text", &comment_text_,
-                                  ImVec2(26.0f * ImGui::GetFontSize(), 6.0f * ImGui::GetFontSize()));
-        mark_spot("comment text");
-        bool ends = ImGui::Button("Done");
-        mark_spot("comment done");
-        ImGui::SameLine();
-        const auto& all = bench_.window().comments;
-        const auto found = std::ranges::find(all, commented_, &patch::PatchComment::name);
-        std::optional<patch::PatchComment> changed;
-        for (const std::string& colour : patch::colour_names()) {
-            const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(colour_named(colour));
-            if (ImGui::ColorButton(colour.c_str(), ink) && found != all.end()) {
-                changed = *found;
-                changed->colour = colour;
-                changed->text = comment_text_;
-            }
-            ImGui::SameLine();
-        }
-        if (ends && found != all.end() && found->text != comment_text_) {
-            changed = *found;
-            changed->text = comment_text_;
-        }
-        if (changed) bench_.comment(*changed);
-        if (ends) {
-            commented_.clear();
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndPopup();
-    } else commented_.clear();
-    if (std::exchange(wants_part_name_, false)) ImGui::OpenPopup(part);
-    if (ImGui::BeginPopup(part)) {
-        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        const bool typed =
-            ImGui::InputTextWithHint("##name", "its name", &new_name_, ImGuiInputTextFlags_EnterReturnsTrue);
-        mark_spot("part name");
-        ImGui::SameLine();
-        const bool pressed = ImGui::Button("Make it");
-        if (typed || pressed) {
-            if (bench_.make_sub_patch(chosen_nodes(), new_name_)) choose_only(new_name_);
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndPopup();
+    if (!ImGui::BeginPopup(title)) {
+        // A click beside it ends the writing and keeps the words.
+        keep_comment("");
+        return writing_.clear();
     }
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::InputTextMultiline("##text", &comment_text_,
+                              ImVec2(26.0f * ImGui::GetFontSize(), 6.0f * ImGui::GetFontSize()));
+    mark_spot("comment text");
+    const bool ends = ImGui::Button("Done");
+    mark_spot("comment done");
+    for (const std::string& colour : patch::colour_names()) {
+        ImGui::SameLine();
+        if (ImGui::ColorButton(colour.c_str(), ImGui::ColorConvertU32ToFloat4(colour_named(colour))))
+            keep_comment(colour);
+        mark_spot("comment " + colour);
+    }
+    if (ends) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+void PatchPanel::name_sub_patch() {
+    constexpr const char* title = "name of the sub-patch";
+    if (std::exchange(wants_part_name_, false)) ImGui::OpenPopup(title);
+    if (!ImGui::BeginPopup(title)) return;
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool typed = ImGui::InputTextWithHint("##name", "its name", &new_name_, ImGuiInputTextFlags_EnterReturnsTrue);
+    mark_spot("part name");
+    ImGui::SameLine();
+    const bool pressed = ImGui::Button("Make it");
+    if (typed || pressed) {
+        if (bench_.make_sub_patch(chosen_nodes(), new_name_)) choose_only(new_name_);
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
 }
 
 }  // namespace tactus::view

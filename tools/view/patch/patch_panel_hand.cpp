@@ -109,6 +109,10 @@ void PatchPanel::handle_mouse() {
         canvas_.zoom_at(mouse, std::pow(1.15, static_cast<double>(io.MouseWheel)));
         follows_size_ = false;
     }
+    if (press_minimap()) {
+        hovered_ = {};
+        return;
+    }
     const Point world = mouse_ = canvas_.to_world(mouse);
     if (inside || wiring_.node >= 0) hovered_ = hit(bench_.picture(), world, 7.0 / std::max(canvas_.zoom, 0.3));
     else hovered_ = {};
@@ -159,7 +163,7 @@ void PatchPanel::finish_wire(const Hit& over) {
         return;
     }
     if (!wiring.taken_off.empty()) {
-        bench_.disconnect(wiring.taken_off);
+        bench_.disconnect(wiring.taken_off, name);
         return;
     }
     if (over.what == Hit::What::node && over.index != wiring.node) {
