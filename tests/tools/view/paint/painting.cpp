@@ -361,7 +361,9 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
                                                         at[2] + scene.scan.box_at[2]);
             if (whole.map.label[v] != fresh.label[n]) FAIL("voxel " << v);
         }
-        // In one step to a plan.
+        // In one step to a plan, also with a name that divides a file from its bone.
+        REQUIRE(bench.painting().rename(1, "wing ##2, 50 % s"));
+        settle(bench);
         bench.make_plan();
         settle(bench);
         INFO(bench.message());
@@ -370,6 +372,8 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
     const auto plan = cases::load_case_plan(scene.folder.path / "case.plan.json");
     REQUIRE(plan.fragments.size() == 2);
     CHECK(plan.fragments[0].name == "fragment 1");
+    CHECK(plan.fragments[1].name == "wing ##2, 50 % s");
+    CHECK(cases::changed_files(plan, scene.folder.path).empty());
     CHECK(bone::load_bones(scene.folder.path / "case.vdb").size() == 2);
 }
 
