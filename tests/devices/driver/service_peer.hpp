@@ -25,6 +25,8 @@ public:
     int port = 0;
     std::atomic<std::uint32_t> buttons{0};
     std::atomic<bool> is_silent{false}, is_away{false}, is_nan{false};
+    std::atomic<bool> is_impostor{false};     ///< answers a greeting that nobody sent
+    std::atomic<bool> slow_greeting{false};  ///< of the next connection: its answer never ends
     std::atomic<Trouble> trouble{Trouble::none};  ///< of the next answer
     std::atomic<std::uint64_t> texts{0}, greetings{0};
     std::string version = "3.5.0", basis = "XYZ";  ///< before the driver opens it
