@@ -103,3 +103,18 @@ TEST_CASE("what one program sends another follows", "[live]") {
         return sample.valid && glm::length(sample.pose.position - at(0.25).position) < 1e-7;
     }));
 }
+
+TEST_CASE("a server that too many connect to hangs up on the rest, and goes on to serve the first ones") {
+    const auto server = TransformServer::at("127.0.0.1", 0);
+    const auto message = openigtlink::transform_message("Needle", at(0.1), 0.0);
+    std::vector<int> files;
+    for (std::size_t i = 0; i < TransformServer::most_clients + 8; ++i) {
+        files.push_back(connected(server->port()));
+        server->send(message);
+    }
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        std::uint8_t bytes[4096];
+        CHECK((::recv(files[i], bytes, sizeof bytes, 0) > 0) == (i < TransformServer::most_clients));
+        ::close(files[i]);
+    }
+}
