@@ -73,6 +73,11 @@ TEST_CASE("a server that answers another greeting, or never to the end, is no se
     CHECK(hosted::steady_ns() - begin < 4000 * ms);
 }
 
+TEST_CASE("a port that is no whole number is refused, not rounded") {
+    Options options = options_of({{"port", "10001.5", {}}});
+    CHECK_THROWS_WITH(haply::make_inverse3(options), ContainsSubstring("'port' is a whole number"));
+}
+
 TEST_CASE("messages of a WebSocket are put together from any pieces and any parts") {
     const std::string all =
         frame(0x01, "one ") + frame(0x89, "ping") + frame(0x00, "two ") + frame(0x80, "three") + frame(0x81, "next");
