@@ -16,7 +16,8 @@ class HaplyService {
 public:
     enum class Trouble { none, huge, bad_json, half, flood };
 
-    HaplyService();
+    /// `wanted`: a port, or 0 for any. Throws when another program has it.
+    explicit HaplyService(int wanted = 0);
     ~HaplyService();
 
     void move(const Vec3& position, const Quat& orientation);

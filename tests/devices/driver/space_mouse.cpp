@@ -4,6 +4,7 @@
 
 #include "devices/spacenav/events.hpp"
 #include "tests/devices/driver/peer.hpp"
+#include "tests/devices/driver/space_daemon.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
@@ -12,12 +13,10 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <thread>
 
 using namespace tactus;
@@ -25,46 +24,7 @@ using namespace tactus::test;
 
 namespace {
 
-using Event = std::array<std::int32_t, 8>;
-
-Event motion(int x, int y, int z, int rx, int ry, int rz) { return {0, x, y, z, rx, ry, rz, 16}; }
-
-class Daemon {
-public:
-    Daemon() {
-        path = (std::filesystem::temp_directory_path() / ("tactus_spnav_" + std::to_string(::getpid()))).string();
-        listen();
-    }
-    ~Daemon() { leave(); }
-    void listen() {
-        listener_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        std::memcpy(address.sun_path, path.data(), path.size());
-        ::unlink(path.c_str());
-        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address);
-        ::listen(listener_, 4);
-    }
-    void leave() {
-        if (client_ >= 0) ::close(client_);
-        if (listener_ >= 0) ::close(listener_);
-        client_ = listener_ = -1;
-        ::unlink(path.c_str());
-    }
-    void accept() { client_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC); }
-    void send(const Event& event) { send_bytes(event.data(), sizeof event); }
-    void send_bytes(const void* bytes, std::size_t size) {
-        [[maybe_unused]] const auto sent = ::send(client_, bytes, size, MSG_NOSIGNAL);
-    }
-    int client() const { return client_; }
-
-    std::string path;
-
-private:
-    int listener_ = -1, client_ = -1;
-};
-
-std::unique_ptr<driver::ThreadedDevice> open(Daemon& daemon) {
+std::unique_ptr<driver::ThreadedDevice> open(SpaceDaemon& daemon) {
     Options options = options_of({{"socket", daemon.path, {}}, {"speed", "100 mm/s", {}}});
     driver::DeviceOptions how{.driver = "space_mouse"};
     how.reopen_every = std::chrono::milliseconds(20);
@@ -133,7 +93,7 @@ TEST_CASE("a cap that nothing is heard of, or whose device came or went, deflect
 }
 
 TEST_CASE("a 3D mouse that is pulled out while its cap is deflected stops the hand", "[live]") {
-    Daemon daemon;
+    SpaceDaemon daemon;
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
     std::int32_t asked = 0;
@@ -154,7 +114,7 @@ TEST_CASE("a 3D mouse that is pulled out while its cap is deflected stops the ha
 }
 
 TEST_CASE("the cap steers the hand: right, up, and away from the user, turns with the right sign", "[live]") {
-    Daemon daemon;
+    SpaceDaemon daemon;
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
     CHECK_FALSE(device->is_capped());
@@ -188,7 +148,7 @@ TEST_CASE("the cap steers the hand: right, up, and away from the user, turns wit
 }
 
 TEST_CASE("a daemon that is gone, floods or sends pieces neither delays nor moves the hand by itself", "[live]") {
-    Daemon daemon;
+    SpaceDaemon daemon;
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
     ::fcntl(daemon.client(), F_SETFL, O_NONBLOCK);
@@ -207,7 +167,7 @@ TEST_CASE("a daemon that is gone, floods or sends pieces neither delays nor move
 TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[live]") {
     void* const library = ::dlopen("libspnav.so.0", RTLD_NOW | RTLD_LOCAL);
     if (!library) return skip("libspnav is not installed");
-    Daemon daemon;
+    SpaceDaemon daemon;
     ::setenv("SPNAV_SOCKET", daemon.path.c_str(), 1);
     std::thread answer([&] {
         daemon.accept();
