@@ -126,7 +126,7 @@ void Rope::measure() noexcept {
 }
 
 /// A point that is far from the bone is not looked at again before it may have come near: the bone stands still within
-/// a tick, and distance changes by no more than the way.
+/// a tick.
 void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
     measure();
     if (!bone) return;
@@ -140,7 +140,8 @@ void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
             if (glm::dot(way, way) < clear_[n] * clear_[n]) continue;
         }
         depth_[n] = material_.radius - bone->distance(x_[n], normal_[n]);
-        clear_[n] = -depth_[n] - near_bone;
+        clear_[n] =
+            depth_[n] < -near_bone ? bone->free_way(x_[n], material_.radius - depth_[n], material_.radius) : 0.0;
         if (clear_[n] > 0.0) {
             seen_[n] = x_[n];
             normal_[n] = Vec3(0.0);
