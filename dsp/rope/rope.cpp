@@ -51,7 +51,7 @@ Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMateria
     const bool is_setting = settings.substeps > 0 && settings.most_iterations > 0 && settings.tolerance > 0.0 &&
                             settings.contact_stiffness > 0.0 && settings.stick_stiffness > 0.0;
     if (!is_material || !is_setting) throw Error("a rope's stiffness and drag must be positive, nothing negative");
-    before_ = trial_ = seen_ = move_ = rest_of_gradient_ = target_ = x_;
+    before_ = trial_ = seen_ = normal_before_ = move_ = rest_of_gradient_ = target_ = x_;
     resists_.assign(rest_.size(), 0);
     touching_.assign(x_.size(), 0);
     load_.assign(x_.size(), Vec3(0.0));
@@ -59,6 +59,7 @@ Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMateria
     depth_.assign(x_.size(), 0.0);
     held_.assign(x_.size(), false);
     stick_.assign(x_.size(), {});
+    curve_.assign(x_.size(), {});
     length_.assign(rest_.size(), 0.0);
     share_.assign(x_.size(), 0.0);
     bend_.assign(x_.size(), 0.0);

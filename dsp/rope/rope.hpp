@@ -89,11 +89,17 @@ private:
         double limit = 0.0;  ///< N; 0: the point did not touch
     };
 
+    struct Curve {
+        Vec3 along{0.0};  // unit
+        double bend = 0.0;  // 1/m, by the change of the normal along the last way
+    };
+
     double potential(double drag) const noexcept;
     double gradient(double drag) noexcept;
     void assemble_base(double drag) noexcept;
-    void assemble(double damping) noexcept;
-    bool find_move(double damping) noexcept;
+    void assemble(double damping, bool with_curves) noexcept;
+    void learn_curves() noexcept;
+    bool find_move(double damping, int most_rounds) noexcept;
     void measure() noexcept;
     void look_at(const Obstacle* bone, bool is_anew) noexcept;
     bool substep(double h, const Obstacle* bone, RopeStep& report) noexcept;
@@ -105,7 +111,7 @@ private:
 
     RopeMaterial material_;
     RopeSettings settings_;
-    std::vector<Vec3> x_, before_, trial_, move_, rest_of_gradient_, load_, target_, normal_, seen_;
+    std::vector<Vec3> x_, before_, trial_, move_, rest_of_gradient_, load_, target_, normal_, normal_before_, seen_;
     std::vector<double> rest_, depth_;
     std::vector<double> length_;  // of the segments at the present points
     std::vector<double> share_;  // m of rope that belong to a point
@@ -114,6 +120,7 @@ private:
     std::vector<bool> held_;
     std::vector<char> resists_, touching_;  // the active set
     std::vector<Stick> stick_;
+    std::vector<Curve> curve_;
     std::array<std::optional<Vec3>, 2> clamp_;
     BlockBand band_, base_;  // base: what does not change within a substep
 };

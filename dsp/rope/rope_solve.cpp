@@ -12,7 +12,7 @@ namespace tactus::rope {
 
 namespace {
 
-constexpr int most_rounds = 4;  // of the active set, per iteration
+constexpr int many_rounds = 4;  // of the active set, per iteration
 constexpr double least_damping = 1e-2;  // N/m
 
 }  // namespace
@@ -78,7 +78,7 @@ void Rope::assemble_base(double drag) noexcept {
 
 /// The quadratic model at the present points: its matrix, and the right side in move_. Flagged segments resist, flagged
 /// points touch, whether they do so now or not.
-void Rope::assemble(double damping) noexcept {
+void Rope::assemble(double damping, bool with_curves) noexcept {
     band_.copy(base_);
     for (std::size_t n = 0; n < x_.size(); ++n) move_[n] = -rest_of_gradient_[n];
     for (std::size_t n = 0; n < rest_.size(); ++n) {
@@ -102,6 +102,8 @@ void Rope::assemble(double damping) noexcept {
         if (held_[n]) continue;
         if (touching_[n]) {
             band_.add(n, n, glm::outerProduct(hard * normal_[n], normal_[n]));
+            if (with_curves && depth_[n] > 0.0 && curve_[n].bend != 0.0)
+                band_.add(n, n, glm::outerProduct(-hard * depth_[n] * curve_[n].bend * curve_[n].along, curve_[n].along));
             move_[n] += hard * depth_[n] * normal_[n];
         }
         if (const Stick& s = stick_[n]; s.limit > 0.0) {
@@ -122,12 +124,15 @@ void Rope::assemble(double damping) noexcept {
 }
 
 /// The step to the minimum of the model. Its active set is what resists and touches at that minimum.
-bool Rope::find_move(double damping) noexcept {
+bool Rope::find_move(double damping, int most_rounds) noexcept {
     for (std::size_t n = 0; n < rest_.size(); ++n) resists_[n] = length_[n] > rest_[n];
     for (std::size_t n = 0; n < x_.size(); ++n) touching_[n] = depth_[n] > 0.0;
     for (int round = 0; round < most_rounds; ++round) {
-        assemble(damping);
-        if (!band_.solve(move_)) return false;
+        assemble(damping, true);
+        if (!band_.solve(move_)) {
+            assemble(damping, false);
+            if (!band_.solve(move_)) return false;
+        }
         bool is_same = true;
         for (std::size_t n = 0; n < rest_.size(); ++n) {
             const Vec3 d = x_[n + 1] - x_[n];
@@ -147,25 +152,43 @@ bool Rope::find_move(double damping) noexcept {
     return true;
 }
 
+/// How the surface bends along the way of each point that touches it.
+void Rope::learn_curves() noexcept {
+    for (std::size_t n = 0; n < x_.size(); ++n) {
+        if (!(depth_[n] > 0.0)) {
+            curve_[n].bend = 0.0;
+            continue;
+        }
+        if (normal_before_[n] == Vec3(0.0)) continue;
+        const Vec3 way = x_[n] - trial_[n], along = way - glm::dot(way, normal_[n]) * normal_[n];
+        const double length_of = glm::length(along);
+        if (!(length_of > 1e-8)) continue;
+        const double bend = glm::dot(normal_[n] - normal_before_[n], along) / (length_of * length_of);
+        curve_[n] = {along / length_of, std::clamp(bend, -1e3, 1e3)};
+    }
+}
+
 bool Rope::substep(double h, const Obstacle* bone, RopeStep& report) noexcept {
     const double drag = material_.drag / h;
     assemble_base(drag);
     double now = potential(drag), damping = 0.0;
+    bool is_plain = false;
     for (int iteration = 0;; ++iteration) {
         const double residual = gradient(drag);
-        if (residual <= settings_.tolerance || iteration == settings_.most_iterations) {
+        if (residual <= settings_.tolerance || iteration >= settings_.most_iterations) {
             report.residual = std::max(report.residual, residual);
             return residual <= settings_.tolerance;
         }
         ++report.iterations;
         bool is_less = false;
-        if (find_move(damping)) {
+        if (find_move(damping, is_plain ? 1 : many_rounds)) {
             // A point moves by at most two segments.
             double scale = 1.0;
             for (std::size_t n = 0; n < x_.size(); ++n)
                 scale = std::min(scale, 2.0 * share_[n] / std::max(glm::length(move_[n]), 1e-12));
             trial_ = x_;
-            for (int halving = 0; halving < 6 && !is_less; ++halving, scale *= 0.5) {
+            normal_before_ = normal_;
+            for (int halving = 0; halving < (is_plain ? 12 : 4) && !is_less; ++halving, scale *= 0.5) {
                 for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = trial_[n] + scale * move_[n];
                 look_at(bone, false);
                 const double then = potential(drag);
@@ -178,6 +201,12 @@ bool Rope::substep(double h, const Obstacle* bone, RopeStep& report) noexcept {
                 look_at(bone, false);
             }
         }
+        if (is_less) learn_curves();
+        if (!is_less && !is_plain) {
+            is_plain = true;
+            continue;
+        }
+        is_plain = false;
         damping = is_less ? 0.1 * damping : std::max(10.0 * damping, least_damping);
         if (damping < least_damping) damping = 0.0;
     }
