@@ -235,7 +235,10 @@ RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
     for (std::size_t p = 0; p < x_.size(); ++p)
         if (held_[p]) most_parts = std::max(most_parts, glm::length(target_[p] - x_[p]) / settings_.way);
     const int substeps = static_cast<int>(std::ceil(std::min(most_parts, static_cast<double>(settings_.substeps))));
-    if (!bone) std::ranges::fill(depth_, 0.0);
+    if (!bone) {
+        std::ranges::fill(depth_, 0.0);
+        std::ranges::fill(normal_, Vec3(0.0));
+    }
     for (int n = 0; n < substeps; ++n) {
         before_ = x_;
         report.lag = 0.0;
@@ -249,7 +252,8 @@ RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
         }
         begin_friction();
         look_at(bone, n == 0);
-        report.is_solved = substep(h / substeps, bone, report) && report.is_solved;
+        const int most = settings_.most_iterations * (n + 1) - report.iterations;
+        report.is_solved = substep(h / substeps, bone, most, report) && report.is_solved;
         end_friction();
     }
     for (const double depth : depth_) report.contacts += depth > 0.0;

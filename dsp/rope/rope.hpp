@@ -32,7 +32,7 @@ inline constexpr double free_over_in_situ = 0.89;
 struct RopeSettings {
     int substeps = 4;  ///< of a tick, at most
     double way = 0.1e-3;  ///< m per substep of the fastest held point: slower ones need fewer substeps
-    int most_iterations = 8;  ///< Newton steps per substep
+    int most_iterations = 8;  ///< Newton steps per substep; what one leaves, later ones of the tick may use
     double tolerance = 1e-5;  ///< N: largest unbalanced force at a point at which a substep ends
     double contact_stiffness = 4e3;  ///< N/m per point in contact; implicit, so it may be high
     double stick_stiffness = 4e3;  ///< N/m per point that sticks
@@ -98,11 +98,12 @@ private:
     double gradient(double drag) noexcept;
     void assemble_base(double drag) noexcept;
     void assemble(double damping, bool with_curves) noexcept;
+    bool go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept;
     void learn_curves() noexcept;
     bool find_move(double damping, int most_rounds) noexcept;
     void measure() noexcept;
     void look_at(const Obstacle* bone, bool is_anew) noexcept;
-    bool substep(double h, const Obstacle* bone, RopeStep& report) noexcept;
+    bool substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept;
     void begin_friction() noexcept;
     void end_friction() noexcept;
     double clamped_weight(double l, bool is_clamped) const noexcept;

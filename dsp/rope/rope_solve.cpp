@@ -103,7 +103,8 @@ void Rope::assemble(double damping, bool with_curves) noexcept {
         if (touching_[n]) {
             band_.add(n, n, glm::outerProduct(hard * normal_[n], normal_[n]));
             if (with_curves && depth_[n] > 0.0 && curve_[n].bend != 0.0)
-                band_.add(n, n, glm::outerProduct(-hard * depth_[n] * curve_[n].bend * curve_[n].along, curve_[n].along));
+                band_.add(n, n,
+                          glm::outerProduct(-hard * depth_[n] * curve_[n].bend * curve_[n].along, curve_[n].along));
             move_[n] += hard * depth_[n] * normal_[n];
         }
         if (const Stick& s = stick_[n]; s.limit > 0.0) {
@@ -168,45 +169,45 @@ void Rope::learn_curves() noexcept {
     }
 }
 
-bool Rope::substep(double h, const Obstacle* bone, RopeStep& report) noexcept {
+/// Goes along the move, or a part of it, when the sum gets less.
+bool Rope::go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept {
+    if (!has_move) return false;
+    // A point moves by at most two segments.
+    double scale = 1.0;
+    for (std::size_t n = 0; n < x_.size(); ++n)
+        scale = std::min(scale, 2.0 * share_[n] / std::max(glm::length(move_[n]), 1e-12));
+    trial_ = x_;
+    normal_before_ = normal_;
+    for (int halving = 0; halving < most_halvings; ++halving, scale *= 0.5) {
+        for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = trial_[n] + scale * move_[n];
+        look_at(bone, false);
+        const double then = potential(drag);
+        // Near the minimum the decrease is below rounding.
+        if (then <= now + 1e-14 * (std::abs(now) + 1e-6)) {
+            now = then;
+            return true;
+        }
+    }
+    x_ = trial_;
+    look_at(bone, false);
+    return false;
+}
+
+bool Rope::substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept {
     const double drag = material_.drag / h;
     assemble_base(drag);
     double now = potential(drag), damping = 0.0;
-    bool is_plain = false;
     for (int iteration = 0;; ++iteration) {
         const double residual = gradient(drag);
-        if (residual <= settings_.tolerance || iteration >= settings_.most_iterations) {
+        if (residual <= settings_.tolerance || iteration >= most_iterations) {
             report.residual = std::max(report.residual, residual);
             return residual <= settings_.tolerance;
         }
         ++report.iterations;
-        bool is_less = false;
-        if (find_move(damping, is_plain ? 1 : many_rounds)) {
-            // A point moves by at most two segments.
-            double scale = 1.0;
-            for (std::size_t n = 0; n < x_.size(); ++n)
-                scale = std::min(scale, 2.0 * share_[n] / std::max(glm::length(move_[n]), 1e-12));
-            trial_ = x_;
-            normal_before_ = normal_;
-            for (int halving = 0; halving < (is_plain ? 12 : 4) && !is_less; ++halving, scale *= 0.5) {
-                for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = trial_[n] + scale * move_[n];
-                look_at(bone, false);
-                const double then = potential(drag);
-                // Near the minimum the decrease is below rounding.
-                is_less = then <= now + 1e-14 * (std::abs(now) + 1e-6);
-                if (is_less) now = then;
-            }
-            if (!is_less) {
-                x_ = trial_;
-                look_at(bone, false);
-            }
-        }
+        // Where the active set does not settle, its move may lead uphill. That of the present one never does.
+        const bool is_less =
+            go(find_move(damping, many_rounds), 4, drag, bone, now) || go(find_move(damping, 1), 12, drag, bone, now);
         if (is_less) learn_curves();
-        if (!is_less && !is_plain) {
-            is_plain = true;
-            continue;
-        }
-        is_plain = false;
         damping = is_less ? 0.1 * damping : std::max(10.0 * damping, least_damping);
         if (damping < least_damping) damping = 0.0;
     }
