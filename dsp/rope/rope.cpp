@@ -252,7 +252,8 @@ RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
         }
         begin_friction();
         look_at(bone, n == 0);
-        const int most = settings_.most_iterations * (n + 1) - report.iterations;
+        const int left = settings_.most_iterations * settings_.substeps - report.iterations;
+        const int most = left - settings_.most_iterations / 2 * (substeps - 1 - n);
         report.is_solved = substep(h / substeps, bone, most, report) && report.is_solved;
         end_friction();
     }

@@ -32,7 +32,7 @@ inline constexpr double free_over_in_situ = 0.89;
 struct RopeSettings {
     int substeps = 4;  ///< of a tick, at most
     double way = 0.1e-3;  ///< m per substep of the fastest held point: slower ones need fewer substeps
-    int most_iterations = 8;  ///< Newton steps per substep; what one leaves, later ones of the tick may use
+    int most_iterations = 8;  ///< Newton steps of a tick per substep allowed; half of them are kept for each later one
     double tolerance = 1e-5;  ///< N: largest unbalanced force at a point at which a substep ends
     double contact_stiffness = 4e3;  ///< N/m per point in contact; implicit, so it may be high
     double stick_stiffness = 4e3;  ///< N/m per point that sticks
