@@ -50,9 +50,9 @@ close
     person.key("t", true);
     // Pressed anew now and then: a busy machine's window lets go of what is held when it is silent for 1 s.
     for (int i = 0; i < 6; ++i) {
-        Person::wait(1.1);
         person.key("t", false);
         person.key("t", true);
+        Person::wait(1.1);
     }
     // Over the edge and back, the key still held.
     person.move(1500.0, 1000.0);
