@@ -85,7 +85,8 @@ public:
         const std::int64_t silence = now_ns_() - heard_ns_;
         const bool is_silent = silence > (has_heard_ ? longest_silence_of_window_ns : longest_start_ns);
         tell(is_silent);
-        DeviceSample sample{hand_.pose, hand_.twist, is_silent ? 0u : buttons_, ++counter_, is_valid(hand_.pose)};
+        DeviceSample sample{hand_.pose, hand_.twist, is_silent && silence > longest_hold_of_window_ns ? 0u : buttons_,
+                            ++counter_, is_valid(hand_.pose)};
         sample.late = is_silent;
         return sample;
     }

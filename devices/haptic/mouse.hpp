@@ -11,9 +11,10 @@
 
 namespace tactus::haptic {
 
-/// A window that says nothing for this long has lost the hand: samples are late, which fades the force, and its buttons
-/// are let go until it speaks again.
+/// A window that says nothing for this long has lost the hand: samples are late, which fades the force.
 inline constexpr std::int64_t longest_silence_of_window_ns = 100'000'000;
+/// After this long its buttons are let go, too. A single slow picture must not drop what is held.
+inline constexpr std::int64_t longest_hold_of_window_ns = 1'000'000'000;
 
 /// Options: those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. `link` must outlive the device;
 /// `now_ns` is the clock of its stamps. Throws Error.

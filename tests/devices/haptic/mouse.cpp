@@ -107,16 +107,18 @@ TEST_CASE("no hand jumps: a cursor that is thrown across the scene is followed a
     CHECK(rig.felt.pose.position.x < 0.06);
 }
 
-TEST_CASE("a window that is silent for 100 ms has lost the hand and its buttons, until it speaks again") {
+TEST_CASE("a window that is silent for 100 ms has lost the hand, until it speaks again, and after 1 s its buttons") {
     Rig rig;
     rig.say({0.0, 0.0, 0.0}, 0.016, button_trigger);
     CHECK((rig.ticks(99).buttons & button_trigger) != 0);
     DeviceSample sample = rig.ticks(2);
     CHECK(sample.late);
-    CHECK(sample.buttons == 0);
+    // A slow picture does not drop what is held.
+    CHECK((sample.buttons & button_trigger) != 0);
     CHECK(sample.valid);
     CHECK(rig.felt.is_silent == 1);
-    sample = rig.ticks(900);
+    CHECK((rig.ticks(898).buttons & button_trigger) != 0);
+    sample = rig.ticks(2);
     CHECK(sample.late);
     CHECK(sample.buttons == 0);
     rig.say({0.0, 0.0, 0.0}, 0.6, button_trigger);

@@ -53,11 +53,12 @@ void SceneHand::let_go() {
 void SceneHand::beat() {
     haptic::WindowHand& link = haptic::window_hand();
     const std::int64_t now = hosted::steady_ns();
-    if (spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns) let_go();
+    const bool was_silent = spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns;
     spoke_ns_ = now;
     std::uint64_t number = 0;
     if (!link.felt.read(felt_, number)) return;
     is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
+    if (was_silent) let_go();
     if (!is_there_) return;
     if (felt_.run != run_) {
         run_ = felt_.run;

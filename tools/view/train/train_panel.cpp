@@ -223,9 +223,12 @@ void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, bool h
     figures(fonts);
     if (!has_mouse) return;
     ImGui::Separator();
-    ImGui::PushTextWrapPos(0.0f);
+    // A low window keeps its room for the warnings.
+    ImGui::TextDisabled("how to move the hand");
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
     how_to_move();
-    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
 }
 
 }  // namespace tactus::view
