@@ -50,7 +50,11 @@ TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wron
 }
 
 TEST_CASE("dsp: a wide kerf across rough faces is not known to half a millimetre") {
-    CHECK(Oblique(3.0 * mm, 0.6 * mm).check(3.0 * mm).is_too_wide);
+    const Oblique rough(3.0 * mm, 0.6 * mm);
+    const double cosine = glm::length(0.5 * (rough.fixed.mean_normal - rough.moving.mean_normal));
+    const double limit = 0.5 * mm / (1.0 / cosine - 1.0);
+    CHECK(rough.check(1.05 * limit).is_too_wide);
+    CHECK_FALSE(rough.check(0.95 * limit).is_too_wide);
     CHECK_FALSE(Oblique(3.0 * mm, 0.02 * mm).check(3.0 * mm).is_too_wide);
     CHECK_FALSE(Oblique(0.8 * mm, 0.6 * mm).check(0.8 * mm).is_too_wide);
 }
