@@ -132,3 +132,46 @@ TEST_CASE("cuts that miss a bone or do not separate it are refused") {
     REQUIRE(is_closed(ring));
     CHECK_THROWS_WITH(cut_between(ring, {Vec3(0.0, 40.0 * mm, 0.0), x}, {}), ContainsSubstring("do not separate"));
 }
+
+TEST_CASE("a cut whose origin lies in the wall of a hollow bone or beside it also cuts the marrow cavity") {
+    const Vec3 z(0.0, 0.0, 1.0);
+    geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    geometry::TriangleSurface cavity =
+        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
+    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
+    append(bone, cavity);
+    const double area = 30.0 * std::sin(2.0 * pi / 60.0) * (49.0 - 9.0) * mm * mm;
+    for (const double aside : {0.0, 5.0 * mm, 12.0 * mm}) {
+        const CutPieces pieces =
+            cut_between(bone, {Vec3(aside, 0.0, 30.0 * mm), z}, Plane{Vec3(0.0, aside, 50.0 * mm), z});
+        CHECK(is_closed(pieces.between));
+        CHECK(enclosed(pieces.between) == Approx(area * 20.0 * mm).epsilon(1e-6));
+        CHECK(pieces.rest.size() == 4);  // on each side the bone and its cavity, which are not connected
+    }
+}
+
+TEST_CASE("a plane whose origin does not tell which limb is meant is refused") {
+    using Catch::Matchers::ContainsSubstring;
+    const geometry::TriangleSurface jaw = half_ring();
+    const Vec3 forwards(0.0, -1.0, 0.0);
+    // Between the rami, and far to the left of both.
+    for (const double x : {2.0, 70.0})
+        CHECK_THROWS_WITH(cut_between(jaw, {Vec3(x, -10.0, 0.0) * mm, forwards}, {}),
+                          ContainsSubstring("does not tell which limb"));
+    CHECK_NOTHROW(cut_between(jaw, {Vec3(36.0, -10.0, 10.0) * mm, forwards}, {}));
+}
+
+TEST_CASE("planes that cross inside a bone are refused and planes that cross beside it are not") {
+    using Catch::Matchers::ContainsSubstring;
+    const geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    const auto tilted = [](double height, double slope) {
+        return Plane{Vec3(0.0, 0.0, height * mm), glm::normalize(Vec3(slope, 0.0, 1.0))};
+    };
+    CHECK_THROWS_WITH(cut_between(bone, tilted(45.0, 0.6), tilted(50.0, -0.6)), ContainsSubstring("cross inside"));
+    const CutPieces pieces = cut_between(bone, tilted(45.0, 0.6), tilted(55.0, -0.6));
+    CHECK(pieces.rest.size() == 2);
+    CHECK(enclosed(pieces.between) ==
+          Approx(30.0 * std::sin(2.0 * pi / 60.0) * 49.0 * 10.0 * mm * mm * mm).epsilon(1e-6));
+}

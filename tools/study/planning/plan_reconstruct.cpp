@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <limits>
+#include <map>
 #include <utility>
 
 namespace tactus::study {
@@ -50,6 +53,17 @@ struct NewFolder {
     NewFolder& operator=(const NewFolder&) = delete;
 };
 
+/// Edges that do not belong to two triangles of opposite direction.
+std::size_t open_edges(const TriangleSurface& surface) {
+    std::map<std::pair<int, int>, int> balance;
+    for (const auto& t : surface.triangles)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const int a = t[c], b = t[(c + 1) % 3];
+            balance[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return static_cast<std::size_t>(std::ranges::count_if(balance, [](const auto& edge) { return edge.second != 0; }));
+}
+
 /// A plane of the jaw, its normal along the order of the planes.
 Plane jaw_plane(const FibulaInputs& inputs, const FibulaPlan& plan, std::size_t segment, std::size_t end) {
     const reconstruct::FibulaSegment& s = plan.segments[segment];
@@ -59,26 +73,67 @@ Plane jaw_plane(const FibulaInputs& inputs, const FibulaPlan& plan, std::size_t 
     return plane;
 }
 
+void append(TriangleSurface& to, const TriangleSurface& more) {
+    const int first = static_cast<int>(to.vertices.size());
+    to.vertices.insert(to.vertices.end(), more.vertices.begin(), more.vertices.end());
+    for (const auto& t : more.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+/// m², between the middle of a surface and the nearest vertex of another one.
+double square_distance(const TriangleSurface& small, const TriangleSurface& large) {
+    Vec3 middle(0.0);
+    for (const Vec3& v : small.vertices) middle += v / static_cast<double>(small.vertices.size());
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& v : large.vertices) least = std::min(least, glm::dot(v - middle, v - middle));
+    return least;
+}
+
+/// The planes by which the jaw is cut, as of cut_between.
+reconstruct::CutPieces cut_jaw(const FibulaInputs& inputs, const FibulaPlan& plan) {
+    const Plane first = jaw_plane(inputs, plan, 0, 0);
+    Plane last = jaw_plane(inputs, plan, plan.segments.size() - 1, 1);
+    switch (inputs.resection) {
+        case reconstruct::Resection::between: return reconstruct::cut_between(*inputs.jaw, first, last);
+        case reconstruct::Resection::after_first: return reconstruct::cut_between(*inputs.jaw, first, {});
+        case reconstruct::Resection::before_last:
+            last.normal = -last.normal;
+            return reconstruct::cut_between(*inputs.jaw, last, {});
+        case reconstruct::Resection::none: break;
+    }
+    return {{}, {*inputs.jaw}, {true}};
+}
+
 void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const FibulaPlan& plan) {
+    if (const std::size_t open = open_edges(*inputs.jaw); open > 0)
+        throw Error(
+            fmt::format("the jaw: its mesh is open at {} edges, and pieces of an open mesh enclose nothing; "
+                        "close it first",
+                        open));
     reconstruct::CutPieces cut;
     try {
-        cut = reconstruct::cut_between(*inputs.jaw, jaw_plane(inputs, plan, 0, 0),
-                                       jaw_plane(inputs, plan, plan.segments.size() - 1, 1));
+        cut = cut_jaw(inputs, plan);
     } catch (const Error& error) {
         throw Error(fmt::format("the jaw: {}", error.message()));
     }
-    pieces.push_back({"resected", std::move(cut.between)});
     std::vector<Piece> kept;
-    for (TriangleSurface& part : cut.rest) {
-        if (kept.empty() || 100 * part.triangles.size() >= kept[0].surface.triangles.size()) {
+    std::vector<const TriangleSurface*> loose;  // teeth, say: each goes with what it stands in
+    for (std::size_t n = 0; n < cut.rest.size(); ++n) {
+        TriangleSurface& part = cut.rest[n];
+        if (cut.is_cut[n] || kept.empty() || 100 * part.triangles.size() >= kept[0].surface.triangles.size())
             kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part)});
-            continue;
-        }
-        TriangleSurface& largest = kept[0].surface;
-        const int first = static_cast<int>(largest.vertices.size());
-        largest.vertices.insert(largest.vertices.end(), part.vertices.begin(), part.vertices.end());
-        for (const auto& t : part.triangles) largest.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        else loose.push_back(&part);
     }
+    for (const TriangleSurface* part : loose) {
+        TriangleSurface* nearest = &kept[0].surface;
+        double least = square_distance(*part, *nearest);
+        const auto look = [&](TriangleSurface& other) {
+            if (const double away = square_distance(*part, other); away < least) least = away, nearest = &other;
+        };
+        for (std::size_t n = 1; n < kept.size(); ++n) look(kept[n].surface);
+        look(cut.between);
+        append(*nearest, *part);
+    }
+    if (!cut.between.triangles.empty()) pieces.push_back({"resected", std::move(cut.between)});
     for (Piece& piece : kept) pieces.push_back(std::move(piece));
 }
 
@@ -122,7 +177,7 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
         step.time = cases::time_of_day();
         cases::add_step(plan, std::move(step));
     };
-    if (inputs.jaw) {
+    if (inputs.jaw && inputs.resection != reconstruct::Resection::none) {
         cases::PlanStep hide;
         hide.kind = cases::StepKind::hide;
         hide.by = "command";

@@ -10,6 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -112,6 +114,55 @@ TEST_CASE("plan reconstruct makes a plan of the pieces with each segment in plac
     CHECK_THAT(again.err, Catch::Matchers::ContainsSubstring("exists already"));
 }
 
+TEST_CASE("plan reconstruct takes half a jaw with its end, and a jaw that is resected already stays whole", "[slow]") {
+    const Case made;
+    const double all = mesh::volume_of(half_ring());
+    json half = made.inputs();
+    half["resection"] = "after-first";
+    const test::Outcome done = made.run(half);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(made.volume("resected") == Approx(all * (pi - 0.8) / pi).epsilon(0.01));
+    CHECK(made.volume("jaw-1") == Approx(all * 0.8 / pi).epsilon(0.01));
+    CHECK_FALSE(fs::exists(made.folder.path / "case-pieces" / "jaw-2.stl"));
+    const Case other;
+    json whole = other.inputs();
+    whole["resection"] = "none";
+    REQUIRE(other.run(whole).code == 0);
+    CHECK(other.volume("jaw-1") == Approx(all).epsilon(1e-4));
+    CHECK_FALSE(fs::exists(other.folder.path / "case-pieces" / "resected.stl"));
+    CHECK(json::parse(test::slurp(other.plan))["steps"].size() == 2);
+}
+
+TEST_CASE("a tooth in the resected part of a jaw is resected with it", "[slow]") {
+    const Case made;
+    // Small separate bodies on the ring: one on each side and one in front.
+    geometry::TriangleSurface jaw = half_ring();
+    double tooth_volume = 0.0;
+    for (const double turn : {0.4, 1.5, 2.7}) {
+        const Vec3 at(-40.0 * mm * std::cos(turn), -40.0 * mm * std::sin(turn), 6.5 * mm);
+        geometry::TriangleSurface tooth =
+            reconstruct::closed_tube(at, Vec3(0.0, 0.0, 1.0), 5.0 * mm, 6, 2, [](double, double) { return 2.0 * mm; });
+        if (mesh::volume_of(tooth) < 0.0)
+            for (auto& t : tooth.triangles) std::swap(t[1], t[2]);
+        tooth_volume = mesh::volume_of(tooth);
+        reconstruct::append(jaw, tooth);
+    }
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{jaw, {}}}, made.folder.path / "jaw.stl");
+    const test::Outcome done = made.run(made.inputs());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    for (const char* piece : {"resected", "jaw-1", "jaw-2"}) {
+        double highest = 0.0;
+        const mesh::Mesh mesh = mesh::load_mesh(made.folder.path / "case-pieces" / (std::string(piece) + ".stl"));
+        for (const Vec3& v : mesh.vertices) highest = std::max(highest, v.z);
+        INFO(piece);
+        CHECK(highest == Approx(11.5).margin(0.01));
+    }
+    CHECK(made.volume("resected") + made.volume("jaw-1") + made.volume("jaw-2") ==
+          Approx(mesh::volume_of(half_ring()) + 3.0 * tooth_volume).epsilon(1e-4));
+}
+
 TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     using Catch::Matchers::ContainsSubstring;
     const Case made;
@@ -128,6 +179,18 @@ TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     json missing = made.inputs();
     missing["jaw"] = "none.stl";
     refused(missing, "none.stl");
+    json unknown = made.inputs();
+    unknown["resection"] = "all";
+    refused(unknown, "'resection' must be");
+    json middle = made.inputs();
+    middle["mandible_planes"][0]["origin"] = {-10, -28, 0};
+    refused(middle, "does not tell which limb");
+    geometry::TriangleSurface open = half_ring();
+    open.triangles.pop_back();
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{open, {}}}, made.folder.path / "open.stl");
+    json hole = made.inputs();
+    hole["jaw"] = "open.stl";
+    refused(hole, "the jaw: its mesh is open at 3 edges");
     json beside = made.inputs();
     for (json& plane : beside["mandible_planes"]) plane["origin"][2] = 300.0;
     beside["mandible_planes"][0]["normal"] = {0.0, 0.1, 1.0};
