@@ -183,7 +183,7 @@ geometry::TriangleSurface parts_near_line(const geometry::TriangleSurface& surfa
     }
     if (chosen.vertices.empty())
         throw Error(fmt::format(
-            "the donor's surface lies {:.1f} mm from the line on average, more than {:.1f} mm; the donor must be "
+            "the donor's surface lies {:.2f} mm from the line on average, farther than {:.2f} mm; the donor must be "
             "straight and the line must follow it",
             nearest * 1e3, farthest * 1e3));
     for (const auto& t : surface.triangles)

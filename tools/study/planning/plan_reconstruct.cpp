@@ -6,6 +6,7 @@
 #include "assets/cases/plan_lock.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/reconstruct/bodies.hpp"
 #include "dsp/reconstruct/cut.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
@@ -13,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -23,14 +25,21 @@ namespace {
 
 namespace fs = std::filesystem;
 using geometry::TriangleSurface;
+using reconstruct::CutBy;
 using reconstruct::FibulaInputs;
 using reconstruct::FibulaPlan;
 using reconstruct::Plane;
+using reconstruct::RestPiece;
 
 struct Piece {
     std::string name;
     TriangleSurface surface;
+    CutBy cut_by = CutBy::none;
 };
+
+/// m³. A separate body that is not larger goes with the piece in which it stands; a molar has about 1 cm³. An
+/// assumption, not from a source.
+constexpr double largest_tooth = 2e-6;
 
 /// Removes the folder unless told to keep it.
 struct NewFolder {
@@ -100,7 +109,7 @@ reconstruct::CutPieces cut_jaw(const FibulaInputs& inputs, const FibulaPlan& pla
             return reconstruct::cut_between(*inputs.jaw, last, {});
         case reconstruct::Resection::none: break;
     }
-    return {{}, {*inputs.jaw}, {true}};
+    return {{}, {{*inputs.jaw, CutBy::first}}};
 }
 
 void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const FibulaPlan& plan) {
@@ -116,24 +125,30 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
         throw Error(fmt::format("the jaw: {}", error.message()));
     }
     std::vector<Piece> kept;
-    std::vector<const TriangleSurface*> loose;  // teeth, say: each goes with what it stands in
-    for (std::size_t n = 0; n < cut.rest.size(); ++n) {
-        TriangleSurface& part = cut.rest[n];
-        if (cut.is_cut[n] || kept.empty() || 100 * part.triangles.size() >= kept[0].surface.triangles.size())
-            kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part)});
+    std::vector<const RestPiece*> loose;
+    for (RestPiece& part : cut.rest) {
+        // The rest comes by size: the first piece at a plane is the jaw itself, a small one after it is half a tooth.
+        const bool is_jaw = part.cut_by != CutBy::none &&
+                            std::ranges::none_of(kept, [&](const Piece& other) { return other.cut_by == part.cut_by; });
+        if (is_jaw || std::abs(reconstruct::signed_volume(part.surface)) > largest_tooth)
+            kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part.surface), part.cut_by});
         else loose.push_back(&part);
     }
-    for (const TriangleSurface* part : loose) {
-        TriangleSurface* nearest = &kept[0].surface;
-        double least = square_distance(*part, *nearest);
+    // Nearest before anything is joined: a tooth must not draw the next one to its piece.
+    std::vector<TriangleSurface*> goes_to;
+    for (const RestPiece* part : loose) {
+        TriangleSurface* nearest = nullptr;
+        double least = std::numeric_limits<double>::infinity();
         const auto look = [&](TriangleSurface& other) {
-            if (const double away = square_distance(*part, other); away < least) least = away, nearest = &other;
+            if (const double away = square_distance(part->surface, other); away < least) least = away, nearest = &other;
         };
-        for (std::size_t n = 1; n < kept.size(); ++n) look(kept[n].surface);
-        look(cut.between);
-        append(*nearest, *part);
+        for (Piece& piece : kept)
+            if (part->cut_by == CutBy::none || part->cut_by == piece.cut_by) look(piece.surface);
+        if (part->cut_by == CutBy::none && !cut.between.triangles.empty()) look(cut.between);
+        goes_to.push_back(nearest);
     }
-    if (!cut.between.triangles.empty()) pieces.push_back({"resected", std::move(cut.between)});
+    for (std::size_t n = 0; n < loose.size(); ++n) append(*goes_to[n], loose[n]->surface);
+    if (!cut.between.triangles.empty()) pieces.push_back({"resected", std::move(cut.between), CutBy::none});
     for (Piece& piece : kept) pieces.push_back(std::move(piece));
 }
 
@@ -156,7 +171,7 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
         const std::size_t low = inputs.reversed ? 1 : 0;
         try {
             pieces.push_back({fmt::format("segment-{}", n + 1),
-                              reconstruct::cut_between(donor, planes[low], planes[1 - low]).between});
+                              reconstruct::cut_between(donor, planes[low], planes[1 - low]).between, CutBy::none});
         } catch (const Error& error) {
             throw Error(fmt::format("segment {} of the donor: {}", n + 1, error.message()));
         }
