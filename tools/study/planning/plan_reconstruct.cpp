@@ -113,7 +113,8 @@ reconstruct::CutPieces cut_jaw(const FibulaInputs& inputs, const FibulaPlan& pla
 }
 
 void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const FibulaPlan& plan) {
-    if (const std::size_t open = open_edges(*inputs.jaw); open > 0)
+    const bool is_cut = inputs.resection != reconstruct::Resection::none;
+    if (const std::size_t open = is_cut ? open_edges(*inputs.jaw) : 0; open > 0)
         throw Error(
             fmt::format("the jaw: its mesh is open at {} edges, and pieces of an open mesh enclose nothing; "
                         "close it first",

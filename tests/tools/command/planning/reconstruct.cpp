@@ -204,6 +204,20 @@ TEST_CASE("what a plane leaves of a tooth stays with the jaw on its side", "[slo
     CHECK(made.volume("resected") == Approx(all * 1.4 / pi + half).epsilon(0.005));
 }
 
+TEST_CASE("a jaw of which nothing is cut may be open, as scans are", "[slow]") {
+    const Case made;
+    geometry::TriangleSurface open = half_ring();
+    open.triangles.pop_back();
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{open, {}}}, made.folder.path / "jaw.stl");
+    json inputs = made.inputs();
+    inputs["resection"] = "none";
+    const test::Outcome done = made.run(inputs);
+    INFO(done.err);
+    CHECK(done.code == 0);
+    CHECK(fs::exists(made.folder.path / "case-pieces" / "jaw-1.stl"));
+    CHECK_FALSE(fs::exists(made.folder.path / "case-pieces" / "resected.stl"));
+}
+
 TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     using Catch::Matchers::ContainsSubstring;
     const Case made;
