@@ -207,6 +207,7 @@ void ScenePanel::render(int width, int height) {
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
+    ++pictures_;
     screens_.show();
 }
 
