@@ -3,8 +3,8 @@
 // a step after an undo starts a branch, and named alternatives point to steps.
 #pragma once
 
-#include "dsp/fit/arrangement.hpp"
-#include "dsp/fit/history.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
+#include "dsp/fit/arrangement/history.hpp"
 
 #include <array>
 #include <cstdint>
@@ -72,7 +72,7 @@ struct CasePlan {
     std::vector<PlanAlternative> alternatives{{"main", {}}};
     int current = 0;  ///< alternative
 
-    /// The previous step of each step, for the functions of dsp/fit/history.hpp.
+    /// The previous step of each step, for the functions of dsp/fit/arrangement/history.hpp.
     std::vector<int> before() const;
     const fit::HistoryPlace& place() const { return alternatives[static_cast<std::size_t>(current)].place; }
     fit::HistoryPlace& place() { return alternatives[static_cast<std::size_t>(current)].place; }

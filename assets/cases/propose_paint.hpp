@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include <cstddef>
 #include <span>

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -131,6 +132,16 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
     if (const Json* reversed = json.find("reversed")) {
         if (!reversed->is_boolean()) throw Error(fmt::format("{}: 'reversed' must be true or false", file));
         inputs.reversed = reversed->get<bool>();
+    }
+    if (const Json* taken = json.find("resection")) {
+        using enum Resection;
+        const std::string word = taken->is_string() ? taken->as_text() : "";
+        const Resection all[] = {between, after_first, before_last, none};
+        const auto meant = std::ranges::find_if(all, [&](Resection r) { return word == name_of(r); });
+        if (meant == std::end(all))
+            throw Error(
+                fmt::format("{}: 'resection' must be \"between\", \"after-first\", \"before-last\" or \"none\"", file));
+        inputs.resection = *meant;
     }
     for (const auto& [key, path] : {std::pair{"donor", donor}, std::pair{"jaw", jaw}}) {
         const Json* mesh = json.find(key);

@@ -14,7 +14,7 @@ namespace tactus::reconstruct {
 ///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],
 ///      "fibula_line": {"point": [...], "direction": [...]}, "leg": "left", "between_space_mm": 1.5,
 ///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "roll_deg": 0, "reversed": false,
-///      "kerf_mm": 0.4, "donor": "fibula.stl", "jaw": "jaw.stl"}
+///      "kerf_mm": 0.4, "resection": "between", "donor": "fibula.stl", "jaw": "jaw.stl"}
 /// in LPS; in place of the planes a curve along the jaw, "jaw_curve": [[x, y, z], ...] with "segments": 3 and, if wanted,
 /// "least_segment_mm": 20. All from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
 /// read. Paths of meshes are relative to the file; their unit is mm unless they state another. Throws Error.

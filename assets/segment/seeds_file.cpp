@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ namespace {
 using file::Json;
 
 constexpr double mm = 1e-3;
-constexpr double farthest_mm = 1e5, widest_mm = 100.0;
+constexpr double farthest_mm = farthest_seed / mm, widest_mm = widest_brush / mm;
 constexpr std::size_t most_points = 1'000'000;
 
 constexpr const char* expected =
@@ -68,9 +69,7 @@ SeedLabel label_of(const Json& json, std::size_t number, const std::string& file
         throw Error(fmt::format("{} has no 'name'", nth));
     SeedLabel label;
     label.name = json["name"].get<std::string>();
-    const bool has_control =
-        std::any_of(label.name.begin(), label.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    if (label.name.empty() || label.name.size() > 200 || has_control)
+    if (!is_label_name(label.name))
         throw Error(fmt::format("{}: the name must be one line of 1 to 200 characters", nth));
     const std::string where = fmt::format("{}: label '{}'", file, label.name);
     if (const Json* colour = json.find("colour")) label.colour = colour_of(*colour, where);
@@ -83,6 +82,17 @@ SeedLabel label_of(const Json& json, std::size_t number, const std::string& file
 }
 
 }  // namespace
+
+bool is_label_name(std::string_view name) {
+    return !name.empty() && name.size() <= 200 && table::as_utf8(name) == name &&
+           std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
+
+bool is_seed_place(const Vec3& position) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(position[axis]) <= farthest_seed)) return false;
+    return true;
+}
 
 std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file, SeedsUse use) {
     Json json;

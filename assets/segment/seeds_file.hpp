@@ -22,6 +22,12 @@ struct SeedLabel {
 };
 
 inline constexpr std::size_t most_labels = 100;
+inline constexpr double widest_brush = 0.1, farthest_seed = 100.0;  ///< m, what a file may hold
+
+/// What a file may hold as a name: 1 to 200 bytes of UTF-8 on one line.
+bool is_label_name(std::string_view name);
+/// Finite, and nearer than farthest_seed along each axis.
+bool is_seed_place(const Vec3& position);
 
 /// Reads {"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]},
 /// ...]}; positions in LPS. Throws Error that names the label and the stroke; for a segmentation, also for fewer than two

@@ -63,7 +63,7 @@ public:
                     fmt::format("the board at {} does not answer; is it the right port, and does the board run "
                                 "the right program?",
                                 settings_.port));
-            if (!hello.empty() && !port_.write(hello) && !port_.is_open()) throw Error("the line was lost");
+            if (!hello.empty()) port_.send(hello);
             // Some boards start anew when their line is opened: asked again until they have.
             for (int i = 0; i < 50 && protocol_->told().count == before; ++i) {
                 ask({}, false);
@@ -152,7 +152,7 @@ private:
     }
 
     void ask(const std::array<double, 2>& torque, bool run) noexcept {
-        port_.write(protocol_->request(torque, run && gives_));
+        port_.send(protocol_->request(torque, run && gives_));
     }
 
     /// False when the line is lost.

@@ -9,7 +9,9 @@
 #include <link.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
+#include <utility>
 
 namespace tactus::driver {
 
@@ -37,6 +39,21 @@ void* SharedLibrary::find(const char* name) const noexcept { return ::dlsym(hand
 
 void SharedLibrary::fail(const char* name) const {
     throw Error(fmt::format("{} has no function {}: {} is too old, or another library", path_, name, product_));
+}
+
+std::vector<std::string> library_candidates(const std::string& given, const LibraryPlaces& places) {
+    if (!given.empty()) return {given};
+    std::vector<std::string> all;
+    const auto add = [&](const std::string& folder) {
+        for (const std::string& stem : places.stems)
+            for (std::string& file : libraries_in(folder, stem)) all.push_back(std::move(file));
+    };
+    if (const char* const sdk = std::getenv(places.sdk_variable))
+        for (const std::string& folder : places.folders) add(fmt::format("{}/{}", sdk, folder));
+    add("/usr/local/lib");
+    if (const char* const home = std::getenv("HOME")) add(fmt::format("{}/.local/lib", home));
+    all.insert(all.end(), places.names.begin(), places.names.end());
+    return all;
 }
 
 std::vector<std::string> libraries_in(const std::string& folder, const std::string& stem) {

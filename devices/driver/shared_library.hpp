@@ -38,6 +38,17 @@ private:
     void* handle_ = nullptr;
 };
 
+/// Where a vendor's library may be.
+struct LibraryPlaces {
+    const char* sdk_variable;  ///< of the environment: the folder of the vendor's SDK
+    std::vector<std::string> folders;  ///< within the SDK; may hold one "*" as a whole part of the path
+    std::vector<std::string> stems;  ///< "libHD.so": how the names of its files begin
+    std::vector<std::string> names;  ///< for which the system looks in the end
+};
+
+/// In the order in which they are to be tried. `given`: a file that the user named, which is then the only one; or "".
+std::vector<std::string> library_candidates(const std::string& given, const LibraryPlaces& places);
+
 /// Files below `folder` (which may hold one "*" as a whole part of the path) whose names begin with `stem`, sorted,
 /// newest version last in the alphabet first.
 std::vector<std::string> libraries_in(const std::string& folder, const std::string& stem);

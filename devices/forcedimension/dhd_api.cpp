@@ -3,29 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <vector>
-
 namespace tactus::forcedimension {
 
 namespace {
 
-/// libdrd holds libdhd. In the order in which they are tried.
-std::vector<std::string> places(const std::string& library) {
-    if (!library.empty()) return {library};
-    std::vector<std::string> all;
-    const auto add = [&](const std::string& folder) {
-        for (const char* stem : {"libdrd.so", "libdhd.so"})
-            for (const std::string& file : driver::libraries_in(folder, stem)) all.push_back(file);
-    };
-    if (const char* sdk = std::getenv("FDSDK")) {
-        add(std::string(sdk) + "/lib/release/lin-*-gcc");
-        add(std::string(sdk) + "/lib");
-    }
-    add("/usr/local/lib");
-    if (const char* home = std::getenv("HOME")) add(std::string(home) + "/.local/lib");
-    for (const char* name : {"libdrd.so.3", "libdhd.so.3", "libdrd.so", "libdhd.so"}) all.emplace_back(name);
-    return all;
+/// libdrd holds libdhd.
+driver::LibraryPlaces places() {
+    return {"FDSDK",
+            {"lib/release/lin-*-gcc", "lib"},
+            {"libdrd.so", "libdhd.so"},
+            {"libdrd.so.3", "libdhd.so.3", "libdrd.so", "libdhd.so"}};
 }
 
 // The lower figure of the maker's sheet and of CHAI3D's table (src/devices/CDeltaDevices.cpp) where they differ.
@@ -45,7 +32,8 @@ constexpr Model models[] = {
 
 }  // namespace
 
-DhdApi::DhdApi(const std::string& library) : library_("the Force Dimension SDK", places(library)) {
+DhdApi::DhdApi(const std::string& library)
+    : library_("the Force Dimension SDK", driver::library_candidates(library, places())) {
     library_.require(open_id, "dhdOpenID");
     library_.require(close, "dhdClose");
     library_.require(stop, "dhdStop");

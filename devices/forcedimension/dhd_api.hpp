@@ -9,7 +9,8 @@
 
 namespace tactus::forcedimension {
 
-inline constexpr int most_status = 17;
+/// dhdGetStatus is not told how much room there is: 17 places in 3.17, perhaps more in a later SDK.
+inline constexpr int most_status = 128;
 /// Places in what dhdGetStatus fills.
 enum StatusPlace { status_reset = 3, status_force = 5 };
 

@@ -107,7 +107,7 @@ void SerialGripper::drive(const MotorDrive& wanted) noexcept {
 
 void SerialGripper::send(const DriveFrame& drive) noexcept {
     const FrameBytes bytes = encode(pack(drive, ++sent_));
-    if (!port_.write({bytes.bytes.data(), bytes.size})) ++counts_.unsent;
+    if (!port_.send({bytes.bytes.data(), bytes.size})) ++counts_.unsent;
 }
 
 namespace {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -41,6 +43,11 @@ std::string SerialPort::open(const std::string& path, int baud) {
     close();
     const int file = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return fmt::format("cannot open {}: {}", path, std::strerror(errno));
+    // Two programs that drive the same motors would each undo what the other limits.
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(file);
+        return fmt::format("{} is in use: another run or program has it open", path);
+    }
     termios line{};
     if (::tcgetattr(file, &line) != 0) {
         ::close(file);
@@ -66,6 +73,7 @@ std::string SerialPort::open(const std::string& path, int baud) {
 void SerialPort::close() noexcept {
     if (file_ >= 0) ::close(file_);
     file_ = -1;
+    rest_size_ = 0;
 }
 
 std::size_t SerialPort::read(std::span<std::uint8_t> into) noexcept {
@@ -77,11 +85,27 @@ std::size_t SerialPort::read(std::span<std::uint8_t> into) noexcept {
     return 0;
 }
 
-bool SerialPort::write(std::span<const std::uint8_t> bytes) noexcept {
-    if (file_ < 0) return false;
+std::size_t SerialPort::write_some(std::span<const std::uint8_t> bytes) noexcept {
+    if (file_ < 0) return 0;
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno != EAGAIN && errno != EINTR) close();
-    return count == static_cast<ssize_t>(bytes.size());
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+}
+
+bool SerialPort::send(std::span<const std::uint8_t> message) noexcept {
+    if (message.size() > longest) return false;
+    if (rest_size_ > 0) {
+        const std::size_t sent = write_some({rest_.data(), rest_size_});
+        if (!is_open()) return false;
+        std::copy_n(rest_.begin() + static_cast<std::ptrdiff_t>(sent), rest_size_ - sent, rest_.begin());
+        rest_size_ -= sent;
+        if (rest_size_ > 0) return false;
+    }
+    const std::size_t sent = write_some(message);
+    if (sent == 0) return false;
+    rest_size_ = message.size() - sent;
+    std::copy_n(message.begin() + static_cast<std::ptrdiff_t>(sent), rest_size_, rest_.begin());
+    return true;
 }
 
 }  // namespace tactus::gripper

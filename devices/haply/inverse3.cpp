@@ -158,7 +158,10 @@ std::unique_ptr<driver::Backend> make_inverse3(Options& options) {
     static const std::vector<std::string> keys{"auto", "vector", "values"};
     Settings settings;
     settings.address = options.text("address", "127.0.0.1");
-    settings.port = static_cast<int>(options.quantity("port", "10001", "1", "65535"));
+    const double port = options.quantity("port", "10001", "1", "65535");
+    settings.port = static_cast<int>(port);
+    if (settings.port != port)
+        throw Error(options.where("port"), fmt::format("{}: option 'port' is a whole number", options.owner()));
     settings.force_key = options.choice("force_key", keys, "auto");
     settings.max_force = options.quantity("max_force", "4 N", "0.1 N", "10 N");
     return std::make_unique<Inverse3>(std::move(settings));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haply/web_socket.hpp"
 
+#include "devices/haply/handshake.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -127,11 +128,7 @@ void WebSocket::open(const std::string& host, int port, milliseconds longest) {
         ::getsockopt(file_, SOL_SOCKET, SO_ERROR, &failure, &size);
         if (failure != 0) fail(std::strerror(failure));
     }
-    // The key says nothing secret: it only shows that the server speaks this protocol.
-    const std::string hello = fmt::format(
-        "GET / HTTP/1.1\r\nHost: {}:{}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-        "Sec-WebSocket-Key: dGFjdHVzIGhhcHRpY3MhIQ==\r\nSec-WebSocket-Version: 13\r\n\r\n",
-        host, port);
+    const std::string key = handshake_key(), hello = greeting(host, port, key);
     if (!write_all(hello, milliseconds(left_of(until)))) fail("it takes no greeting");
     std::string answer;
     std::size_t end = std::string::npos;
@@ -144,7 +141,7 @@ void WebSocket::open(const std::string& host, int port, milliseconds longest) {
         if (answer.size() > longest_greeting) fail("its answer does not end");
         end = answer.find("\r\n\r\n");
     }
-    if (!answer.starts_with("HTTP/1.1 101")) fail(fmt::format("it answers '{}'", answer.substr(0, answer.find('\r'))));
+    if (const std::string why = refusal(std::string_view(answer).substr(0, end + 2), key); !why.empty()) fail(why);
     reader_.add({answer.data() + end + 4, answer.size() - end - 4});
 }
 

@@ -59,8 +59,8 @@ public:
             // As most gamepads have it, and what a recording of one holds.
             least_[i] = is_told ? info.minimum : is_trigger(i) ? 0 : i < 6 ? -32768 : -1;
             most_[i] = is_told ? info.maximum : is_trigger(i) ? 255 : i < 6 ? 32767 : 1;
-            if (is_told) state_.axes[i] = value_of(i, info.value);
         }
+        ask();
         state.write(state_);
         thread_ = std::thread([this] { read_all(); });
     }
@@ -80,6 +80,22 @@ private:
         return std::clamp(is_trigger(axis) ? share : 2.0 * share - 1.0, -1.0, 1.0);
     }
 
+    /// What the gamepad says of itself now. What it does not say, as in a recording, is at rest.
+    void ask() {
+        state_ = {};
+        for (std::size_t i = 0; i < axis_codes.size(); ++i) {
+            input_absinfo info{};
+            if (::ioctl(file_, EVIOCGABS(axis_codes[i]), &info) >= 0) state_.axes[i] = value_of(i, info.value);
+        }
+        std::array<unsigned char, KEY_MAX / 8 + 1> held{};
+        if (::ioctl(file_, EVIOCGKEY(held.size()), held.data()) < 0) return;
+        const auto is_held = [&](std::uint16_t code) { return (held[code / 8u] >> (code % 8u) & 1) != 0; };
+        for (const auto& [code, bit] : button_codes)
+            if (is_held(code)) state_.buttons |= bit;
+        for (const auto& [code, bit] : roll_codes)
+            if (is_held(code)) state_.rolls |= bit;
+    }
+
     void read_all() {
         while (!is_over_.load(std::memory_order_relaxed)) {
             pollfd waits{file_, POLLIN, 0};
@@ -97,7 +113,13 @@ private:
     }
 
     void take(const input_event& event) {
-        if (event.type == EV_ABS) {
+        // The system lost events, perhaps a release: what follows up to the report is incomplete (evdev's SYN_DROPPED).
+        if (event.type == EV_SYN && event.code == SYN_DROPPED) has_lost_ = true;
+        if (has_lost_) {
+            if (event.type != EV_SYN || event.code != SYN_REPORT) return;
+            has_lost_ = false;
+            ask();
+        } else if (event.type == EV_ABS) {
             const auto axis = std::ranges::find(axis_codes, event.code);
             if (axis == axis_codes.end()) return;
             const auto i = static_cast<std::size_t>(axis - axis_codes.begin());
@@ -118,6 +140,7 @@ private:
     int file_;
     std::array<double, 8> least_{}, most_{};
     PadState state_;
+    bool has_lost_ = false;
     std::atomic<bool> is_over_{false};
     std::thread thread_;
 };

@@ -3,32 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <vector>
-
 namespace tactus::openhaptics {
 
 namespace {
 
-std::vector<std::string> places(const std::string& library) {
-    if (!library.empty()) return {library};
-    std::vector<std::string> all;
-    const auto add = [&](const std::string& folder) {
-        for (const std::string& file : driver::libraries_in(folder, "libHD.so")) all.push_back(file);
-    };
-    if (const char* sdk = std::getenv("OH_SDK_BASE")) {
-        add(std::string(sdk) + "/lib");
-        add(std::string(sdk) + "/usr/lib");
-    }
-    add("/usr/local/lib");
-    if (const char* home = std::getenv("HOME")) add(std::string(home) + "/.local/lib");
-    for (const char* name : {"libHD.so.3.4", "libHD.so.3", "libHD.so"}) all.emplace_back(name);
-    return all;
+driver::LibraryPlaces places() {
+    return {"OH_SDK_BASE", {"lib", "usr/lib"}, {"libHD.so"}, {"libHD.so.3.4", "libHD.so.3", "libHD.so"}};
 }
 
 }  // namespace
 
-HdApi::HdApi(const std::string& library) : library_("OpenHaptics", places(library)) {
+HdApi::HdApi(const std::string& library) : library_("OpenHaptics", driver::library_candidates(library, places())) {
     library_.require(init_device, "hdInitDevice");
     library_.require(disable_device, "hdDisableDevice");
     library_.require(make_current, "hdMakeCurrentDevice");

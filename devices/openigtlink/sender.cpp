@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/openigtlink/sender.hpp"
 
+#include "devices/driver/peer_socket.hpp"
 #include "devices/openigtlink/message.hpp"
 #include "dsp/core/error.hpp"
 
@@ -66,6 +67,11 @@ struct TransformServer::Shared {
 
     void take_new() {
         for (int file; (file = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)) >= 0;) {
+            if (clients.size() >= most_clients) {
+                ::close(file);
+                continue;
+            }
+            driver::keep_alive(file);
             const int at_once = 1;
             ::setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
             clients.push_back({file, {}});

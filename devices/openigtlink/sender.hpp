@@ -17,6 +17,7 @@ namespace tactus::openigtlink {
 class TransformServer {
 public:
     static constexpr std::size_t longest_backlog = 65536;
+    static constexpr std::size_t most_clients = 32;  ///< further ones are hung up: files are left to the run
 
     /// The server of this process at that address and port; opened when there is none. Any thread. Throws Error.
     static std::shared_ptr<TransformServer> at(const std::string& address, int port);

@@ -75,6 +75,7 @@ public:
         const std::string where = fmt::format("{}:{}", settings_.host, settings_.port);
         step("connect to " + where);
         file_ = connect_to(settings_.host, settings_.port);
+        driver::keep_alive(file_);  // nothing is ever sent there
         reader_ = {};
         motion_.clear();
         driver::Opened opened;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What spacenavd says on its socket: 32 bytes an event, eight int32 of this machine. Motion: 0, x, y, z, rx, ry, rz, ms.
-// A button: 1 pressed or 2 released, and its number. Others are skipped. (libspnav 1.0, src/spnav.c, proto.h)
+// A button: 1 pressed or 2 released, and its number. 3: a device came or went, only for clients that asked for protocol 1;
+// a daemon that knows it answers the four bytes of the question. Others are skipped. (libspnav 1.0, src/spnav.c, proto.h)
 #pragma once
 
 #include <array>
@@ -9,6 +10,10 @@
 #include <span>
 
 namespace tactus::spacenav {
+
+/// What a client sends to hear of devices that come and go. To an older daemon it is a sensitivity that is no number, which
+/// it ignores.
+inline constexpr std::int32_t ask_for_devices = 0x7faa5501;
 
 /// Deflection and buttons after the last whole event.
 struct CapState {
@@ -20,6 +25,12 @@ struct CapState {
 /// Puts events together from a stream that is cut anywhere. Does not allocate.
 class EventReader {
 public:
+    /// After so long without an event a deflected cap counts as let go: a device that is pulled out says nothing more.
+    /// A cap that is held says something at every small motion, or by `repeat-interval` of the daemon.
+    static constexpr std::int64_t longest_silence_ns = 1'000'000'000;
+
+    /// Time passes; before `take` of what has come in it.
+    void pass(std::int64_t elapsed_ns) noexcept;
     void take(std::span<const std::uint8_t> bytes) noexcept;
     const CapState& state() const noexcept { return state_; }
 
@@ -29,6 +40,7 @@ private:
     static constexpr std::size_t size_of_event = 32;
     std::array<std::uint8_t, size_of_event> held_{};
     std::size_t size_ = 0;
+    std::int64_t silence_ns_ = 0;
     CapState state_;
 };
 

@@ -87,6 +87,8 @@ public:
         if (file_ < 0 || ::connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
             throw Error(fmt::format("no answer at {}: {}; is spacenavd installed and running?", settings_.socket,
                                     std::strerror(errno)));
+        [[maybe_unused]] const auto asked =
+            ::send(file_, &ask_for_devices, sizeof ask_for_devices, MSG_NOSIGNAL | MSG_DONTWAIT);
         reader_ = {};
         last_ns_ = 0;
         driver::Opened opened;
@@ -101,10 +103,11 @@ public:
         std::array<std::uint8_t, 1024> bytes;
         const std::optional<std::size_t> count = driver::read_now(file_, bytes);
         if (!count) return false;
-        reader_.take(std::span(bytes).first(*count));
-        const std::int64_t now = hosted::boot_ns();
-        const double elapsed = last_ns_ == 0 ? 0.0 : static_cast<double>(now - last_ns_) * 1e-9;
+        const std::int64_t now = hosted::boot_ns(), elapsed_ns = last_ns_ == 0 ? 0 : now - last_ns_;
         last_ns_ = now;
+        reader_.pass(elapsed_ns);
+        reader_.take(std::span(bytes).first(*count));
+        const double elapsed = static_cast<double>(elapsed_ns) * 1e-9;
         const CapState& cap = reader_.state();
         steered_.twist = {shift_of(cap) * settings_.speed, turn_of(cap) * settings_.turn_speed};
         simulate::advance(hand_, steered_, exchange.force(), std::clamp(elapsed, 0.0, longest_step_s));

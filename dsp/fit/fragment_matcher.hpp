@@ -9,10 +9,10 @@
 // pair or two per call.
 #pragma once
 
-#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/fit_energy.hpp"
-#include "dsp/fit/healthy_pull.hpp"
+#include "dsp/fit/registration/healthy_pull.hpp"
 
 #include <cmath>
 #include <cstddef>

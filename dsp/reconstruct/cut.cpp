@@ -2,12 +2,15 @@
 #include "dsp/reconstruct/cut.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/reconstruct/bodies.hpp"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <numeric>
+#include <utility>
 
 namespace tactus::reconstruct {
 
@@ -18,10 +21,20 @@ struct Caps {
     std::vector<int> below, above;
 };
 
-/// Opens the surface along the section and closes both sides. Vertices keep their numbers.
-Caps open_at(geometry::TriangleSurface& surface, const Plane& plane) {
+/// Opens the surface along the section and closes both sides. Vertices keep their numbers. Throws
+/// Error when the section passes through the caps of an earlier cut.
+Caps open_at(geometry::TriangleSurface& surface, const Plane& plane, const Caps& earlier = {}) {
     const Section section = section_of(surface, plane, &plane.origin);
     if (section.pieces.empty()) throw Error("a plane of the cut misses the bone");
+    if (section.away > farthest_from_limb)
+        throw Error(
+            fmt::format("the origin of a plane lies {:.1f} mm outside of the bone, which does not tell which limb it "
+                        "cuts; place it within {:.0f} mm of the limb",
+                        section.away * 1e3, farthest_from_limb * 1e3));
+    for (const std::size_t triangle : section.triangle)
+        for (const int corner : surface.triangles[triangle])
+            if (std::ranges::count(earlier.below, corner) + std::ranges::count(earlier.above, corner) > 0)
+                throw Error("the planes cross inside the bone; move them apart or tilt them less");
     const auto index = [](std::size_t n) { return static_cast<int>(n); };
     const int below = index(surface.vertices.size()), above = below + index(section.points.size());
     for (int side = 0; side < 2; ++side)
@@ -73,35 +86,33 @@ Caps open_at(geometry::TriangleSurface& surface, const Plane& plane) {
 CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& first, const std::optional<Plane>& last) {
     geometry::TriangleSurface open = surface;
     const Caps low = open_at(open, first);
-    const Caps high = last ? open_at(open, *last) : Caps{};
-    std::vector<std::size_t> part(open.vertices.size());
-    std::iota(part.begin(), part.end(), std::size_t{0});
-    const auto root = [&](int corner) {
-        auto n = static_cast<std::size_t>(corner);
-        while (part[n] != n) n = part[n] = part[part[n]];
-        return n;
-    };
-    for (const auto& t : open.triangles)
-        for (const int corner : t) part[root(corner)] = root(t[0]);
-    std::vector<bool> is_between(part.size(), false);
+    const Caps high = last ? open_at(open, *last, low) : Caps{};
+    std::vector<Plane> cuts{first};
+    if (last) cuts.push_back(*last);
+    const std::vector<std::size_t> body = bodies_of(open, cuts);
+    const auto body_at = [&](int corner) { return body[static_cast<std::size_t>(corner)]; };
+    std::vector<bool> is_between(body.size(), false);
     for (const auto* side : {&low.above, &high.below})
-        for (const int middle : *side) is_between[root(middle)] = true;
-    for (const auto* side : {&low.below, &high.above})
-        for (const int middle : *side)
-            if (is_between[root(middle)])
+        for (const int middle : *side) is_between[body_at(middle)] = true;
+    std::vector<CutBy> cut_by(body.size(), CutBy::none);
+    for (const auto& [side, plane] : {std::pair{&high.above, CutBy::last}, std::pair{&low.below, CutBy::first}})
+        for (const int middle : *side) {
+            if (is_between[body_at(middle)])
                 throw Error(
                     "the planes do not separate the bone: a part reaches from one side of a plane to the other; move "
                     "the planes or add one");
+            cut_by[body_at(middle)] = plane;
+        }
     CutPieces pieces;
-    std::map<std::size_t, std::size_t> number;  // of a part in the rest
-    std::vector<int> moved(part.size(), -1);
+    std::map<std::size_t, std::size_t> number;  // of a body in the rest
+    std::vector<int> moved(body.size(), -1);
     for (const auto& t : open.triangles) {
-        const std::size_t of = root(t[0]);
+        const std::size_t of = body_at(t[0]);
         if (!is_between[of] && !number.contains(of)) {
             number[of] = pieces.rest.size();
-            pieces.rest.emplace_back();
+            pieces.rest.push_back({{}, cut_by[of]});
         }
-        geometry::TriangleSurface& to = is_between[of] ? pieces.between : pieces.rest[number[of]];
+        geometry::TriangleSurface& to = is_between[of] ? pieces.between : pieces.rest[number[of]].surface;
         std::array<int, 3> copied{};
         for (std::size_t c = 0; c < 3; ++c) {
             int& at = moved[static_cast<std::size_t>(t[c])];
@@ -113,8 +124,13 @@ CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& fir
         }
         to.triangles.push_back(copied);
     }
-    std::ranges::stable_sort(pieces.rest,
-                             [](const auto& a, const auto& b) { return a.triangles.size() > b.triangles.size(); });
+    std::vector<std::pair<double, std::size_t>> by_size;
+    for (const RestPiece& piece : pieces.rest)
+        by_size.emplace_back(-std::abs(signed_volume(piece.surface)), by_size.size());
+    std::ranges::sort(by_size);
+    std::vector<RestPiece> sorted;
+    for (const auto& [size, n] : by_size) sorted.push_back(std::move(pieces.rest[n]));
+    pieces.rest = std::move(sorted);
     return pieces;
 }
 

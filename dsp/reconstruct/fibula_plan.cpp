@@ -337,6 +337,16 @@ const char* name_of(PlanWarning warning) {
     return "";
 }
 
+const char* name_of(Resection resection) {
+    switch (resection) {
+        case Resection::between: return "between";
+        case Resection::after_first: return "after-first";
+        case Resection::before_last: return "before-last";
+        case Resection::none: return "none";
+    }
+    return "";
+}
+
 std::vector<JawPlane> planes_on(const CurveSplit& split) {
     std::vector<JawPlane> planes;
     for (const Vec3& joint : split.joints) planes.push_back({joint, {}, {}});

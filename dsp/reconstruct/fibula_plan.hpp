@@ -24,6 +24,15 @@ struct JawPlane {
 
 enum class Leg { left, right };
 
+/// What is taken of the jaw.
+enum class Resection {
+    between,  ///< what lies between the first and the last plane
+    after_first,  ///< all beyond the first plane: a hemimandibulectomy with the condyle
+    before_last,  ///< all before the last plane
+    none  ///< the jaw is resected already
+};
+const char* name_of(Resection resection);  ///< "between", "after-first", ...
+
 /// What is planned. Frame LPS for jaw and donor; they need not share an origin.
 struct FibulaInputs {
     std::vector<JawPlane> planes;  ///< 2 to 6, in order along the jaw
@@ -44,6 +53,7 @@ struct FibulaInputs {
     bool reversed = false;  ///< end to end: the donor's line runs against the order of the planes
     double kerf = 0.4e-3;  ///< m of bone that the blade takes beside a segment: a placeholder, not from a source
     std::optional<CurveSplit> from_curve;  ///< what the planes were made from
+    Resection resection = Resection::between;
     std::optional<geometry::TriangleSurface> jaw;  ///< for resection; plan_fibula does not read it
     std::optional<geometry::TriangleSurface> donor;  ///< its surface; gaps and margins need it
 };

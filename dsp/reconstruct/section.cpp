@@ -39,22 +39,43 @@ bool meets_line(const InPlane& in, const Vec3& a, const Vec3& b, double height, 
     return true;
 }
 
-/// The outlines that enclose `near` or, where none does, the nearest one, by their roots.
-std::vector<bool> wanted_outlines(const Section& all, const std::vector<std::size_t>& root_of, const Plane& plane,
-                                  const Vec3& near) {
-    const InPlane in(plane.normal);
-    const double height = glm::dot(in.v, near), from = glm::dot(in.u, near);
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Whether each outline, by its root, encloses `p`; even-odd rule.
+std::vector<bool> enclosing(const Section& all, const std::vector<std::size_t>& root_of, const InPlane& in,
+                            const Vec3& p) {
+    const double height = glm::dot(in.v, p), from = glm::dot(in.u, p);
     std::vector<bool> encloses(all.points.size(), false);
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& [a, b] : all.pieces) {
-        const Vec3 d = geometry::closest_on_segment(near, all.points[a], all.points[b]) - near;
-        if (glm::length(d) < least) least = glm::length(d), nearest = root_of[a];
+    for (const auto& [a, b] : all.pieces)
         if (double at = 0.0; meets_line(in, all.points[a], all.points[b], height, at) && at > from)
             encloses[root_of[a]] = !encloses[root_of[a]];
-    }
-    if (std::find(encloses.begin(), encloses.end(), true) == encloses.end()) encloses[nearest] = true;
     return encloses;
+}
+
+/// Of one limb, by the roots of its outlines: the outlines that enclose `near` or, where none does, the nearest one,
+/// and all that lie inside them: marrow cavities, roots of teeth.
+std::vector<bool> wanted_outlines(const Section& all, const std::vector<std::size_t>& root_of, const Plane& plane,
+                                  const Vec3& near, double& away) {
+    const InPlane in(plane.normal);
+    std::vector<bool> wanted = enclosing(all, root_of, in, near);
+    away = 0.0;
+    if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) {
+        std::size_t nearest = 0;
+        away = infinity;
+        for (const auto& [a, b] : all.pieces) {
+            const double d = glm::length(geometry::closest_on_segment(near, all.points[a], all.points[b]) - near);
+            if (d < away) away = d, nearest = root_of[a];
+        }
+        wanted[nearest] = true;
+    }
+    const std::vector<bool> limb = wanted;
+    for (std::size_t n = 0; n < root_of.size(); ++n) {
+        if (root_of[n] != n || limb[n]) continue;
+        const std::vector<bool> around = enclosing(all, root_of, in, all.points[n]);
+        for (std::size_t other = 0; other < around.size(); ++other)
+            if (around[other] && limb[other]) wanted[n] = true;
+    }
+    return wanted;
 }
 
 /// Sorted places at which the line v = height crosses the section.
@@ -105,8 +126,8 @@ Section section_of(const geometry::TriangleSurface& surface, const Plane& plane,
     std::vector<bool> wanted(all.points.size(), true);
     std::vector<std::size_t> root_of(all.points.size());
     for (std::size_t n = 0; n < root_of.size(); ++n) root_of[n] = root(n);
-    if (near != nullptr) wanted = wanted_outlines(all, root_of, plane, *near);
     Section chosen;
+    if (near != nullptr) wanted = wanted_outlines(all, root_of, plane, *near, chosen.away);
     std::vector<std::size_t> number(all.points.size());
     for (std::size_t n = 0; n < all.points.size(); ++n)
         if (wanted[root_of[n]]) {
@@ -162,7 +183,7 @@ geometry::TriangleSurface parts_near_line(const geometry::TriangleSurface& surfa
     }
     if (chosen.vertices.empty())
         throw Error(fmt::format(
-            "the donor's surface lies {:.1f} mm from the line on average, more than {:.1f} mm; the donor must be "
+            "the donor's surface lies {:.2f} mm from the line on average, farther than {:.2f} mm; the donor must be "
             "straight and the line must follow it",
             nearest * 1e3, farthest * 1e3));
     for (const auto& t : surface.triangles)

@@ -24,11 +24,12 @@ struct Section {
     std::vector<std::array<std::size_t, 2>> pieces;  ///< of the outlines, one per triangle, as indices into points
     std::vector<std::size_t> triangle;  ///< of each piece
     Vec3 centre{0.0};  ///< of the outlines, each piece by its length
+    double away = 0.0;  ///< m: how far `near` lies outside of the outlines; 0 inside of them
 };
 
 /// The outlines in which the plane meets the surface. With `near`, only those that enclose it, or where none does the
-/// one that comes nearest: a plane through one limb of a bone must not cut the other one. A hollow bone's outer outline
-/// encloses its marrow cavity and is one of them. Empty when the plane misses the surface.
+/// one that comes nearest, and what lies inside of these: a plane through one limb of a bone must not cut the other one,
+/// and cuts a hollow limb with its marrow cavity. Empty when the plane misses the surface.
 Section section_of(const geometry::TriangleSurface& surface, const Plane& plane, const Vec3* near = nullptr);
 
 /// The connected parts of a surface whose vertices lie, on average, at most `farthest` from a line: one bone of a leg,

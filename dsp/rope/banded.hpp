@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cholesky's factorisation of a symmetric matrix whose elements lie near the diagonal: a chain of points in which each
-// one depends on the two before it.
+// The symmetric system of a chain of points in which each one depends on the two before it, factored from both ends.
 #pragma once
 
 #include "dsp/core/types.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,64 +11,89 @@
 
 namespace tactus::rope {
 
-/// A symmetric positive matrix of 3×3 blocks; blocks more than two apart are 0. Memory is taken by the constructor.
+/// A symmetric positive matrix of 3×3 blocks; blocks more than two apart are 0. It is factored as L D Lᵀ from both ends
+/// towards two points in the middle (a twisted factorisation): both halves have the same operations and no common
+/// element until they meet, so they are the two lanes of one vector. Memory is taken by the constructor.
 class BlockBand {
 public:
-    explicit BlockBand(std::size_t points) : size_(3 * points), columns_(size_ + width) {}
+    /// At least three points.
+    explicit BlockBand(std::size_t points)
+        : size_(points), middle_((points - 1) / 2), columns_(middle_ + 2), right_(middle_ + 2) {}
 
     void clear() noexcept {
-        for (auto& column : columns_) column.fill(0.0);
+        for (Column& c : columns_) c = {};
+        // With an odd number of points to eliminate, the second half begins with a point that depends on nothing.
+        if (size_ % 2 == 1) columns_[0].diagonal[0][1] = columns_[0].diagonal[3][1] = columns_[0].diagonal[5][1] = 1.0;
     }
+    /// Takes the elements of a matrix of the same size.
+    void copy(const BlockBand& other) noexcept { columns_ = other.columns_; }
     /// Adds to block (i, j), i - j = 0, 1 or 2, and to its mirror image.
     void add(std::size_t i, std::size_t j, const Mat3& block) noexcept {
-        for (std::size_t b = 0; b < 3; ++b)
-            for (std::size_t a = i == j ? b : 0; a < 3; ++a)
-                columns_[3 * j + b][3 * (i - j) + a - b] += block[static_cast<int>(b)][static_cast<int>(a)];
+        const Place at = place_of(i, j);
+        Column& c = columns_[at.column];
+        const int lane = at.lane;
+        if (i == j) {
+            std::size_t n = 0;
+            for (int b = 0; b < 3; ++b)
+                for (int a = b; a < 3; ++a, ++n) c.diagonal[n][lane] += block[b][a];
+            return;
+        }
+        Block& to = i - j == 1 ? c.next : c.second;
+        for (int b = 0; b < 3; ++b)
+            for (int a = 0; a < 3; ++a)
+                to[static_cast<std::size_t>(3 * b + a)][lane] += lane == 0 ? block[b][a] : block[a][b];
     }
     void add(std::size_t i, std::size_t j, double diagonal) noexcept {
-        for (std::size_t a = 0; a < 3; ++a) columns_[3 * j + a][3 * (i - j)] += diagonal;
+        const Place at = place_of(i, j);
+        Column& c = columns_[at.column];
+        if (i == j) {
+            for (const std::size_t n : {0u, 3u, 5u}) c.diagonal[n][at.lane] += diagonal;
+            return;
+        }
+        Block& to = i - j == 1 ? c.next : c.second;
+        for (const std::size_t n : {0u, 4u, 8u}) to[n][at.lane] += diagonal;
     }
     /// Makes the equations of point i read x = right side; the right side must be 0.
     void fix(std::size_t i) noexcept {
-        for (std::size_t a = 3 * i; a < 3 * i + 3; ++a) {
-            columns_[a].fill(0.0);
-            columns_[a][0] = 1.0;
-            for (std::size_t k = 1; k <= std::min(a, width); ++k) columns_[a - k][k] = 0.0;
+        const std::size_t first = i > 2 ? i - 2 : 0, last = i + 2 < size_ ? i + 2 : size_ - 1;
+        for (std::size_t n = first; n <= last; ++n) {
+            const Place at = n < i ? place_of(i, n) : place_of(n, i);
+            Column& c = columns_[at.column];
+            const std::size_t apart = n < i ? i - n : n - i;
+            if (apart == 0)
+                for (std::size_t k = 0; k < 6; ++k) c.diagonal[k][at.lane] = k == 0 || k == 3 || k == 5 ? 1.0 : 0.0;
+            else
+                for (Pair& v : apart == 1 ? c.next : c.second) v[at.lane] = 0.0;
         }
     }
-    /// Solves for `x`, which holds the right side; the matrix is overwritten by its factors L D Lᵀ. False when it is
-    /// not positive.
-    bool solve(std::vector<Vec3>& x) noexcept {
-        for (std::size_t i = 0; i < size_; ++i) {
-            auto& pivot = columns_[i];
-            if (!(pivot[0] > 0.0) || !std::isfinite(pivot[0])) return false;
-            const double inverse = 1.0 / pivot[0];
-            for (std::size_t r = 1; r <= width; ++r) {
-                const double factor = pivot[r] * inverse;
-                double* const to = columns_[i + r].data();
-                const double* const from = pivot.data() + r;
-                for (std::size_t s = 0; s < width; ++s) to[s] -= factor * from[s];
-            }
-            for (std::size_t r = 1; r <= width; ++r) pivot[r] *= inverse;
-            pivot[0] = inverse;
-        }
-        double* const v = &x[0].x;
-        for (std::size_t i = 0; i < size_; ++i)
-            for (std::size_t k = 1; k < std::min(width + 1, size_ - i); ++k) v[i + k] -= columns_[i][k] * v[i];
-        for (std::size_t i = size_; i-- > 0;) {
-            double sum = v[i] * columns_[i][0];
-            for (std::size_t k = 1; k < std::min(width + 1, size_ - i); ++k) sum -= columns_[i][k] * v[i + k];
-            v[i] = sum;
-        }
-        return true;
-    }
+    /// Solves for `x`, which holds the right side; the matrix is overwritten by its factors. False when it is not
+    /// positive.
+    bool solve(std::vector<Vec3>& x) noexcept;
 
 private:
-    static constexpr std::size_t width = 8;  // elements of a column below the diagonal
-    std::size_t size_;
-    // Element k of column j: row j + k. The second half stays 0, so that loops have one length.
-    std::vector<std::array<double, 2 * width>> columns_;
+    using Pair = double __attribute__((vector_size(16)));  // the same element of both halves
+    using Block = std::array<Pair, 9>;  // by columns
+    struct Column {
+        std::array<Pair, 6> diagonal{};  // 00, 10, 20, 11, 21, 22; then factors and reciprocal pivots
+        Block next{}, second{};  // rows of the next point towards the middle, and of the one after it
+    };
+    using Right = std::array<Pair, 3>;
+    struct Place {
+        std::size_t column;
+        int lane;
+    };
+
+    // Points 0, 1, … up to the middle are the first lane, the last ones backwards are the second one. Both lanes end
+    // with the points middle_ and middle_ + 1 (the second lane in reverse order), whose elements are in the first.
+    Place place_of(std::size_t i, std::size_t j) const noexcept {
+        if (i <= middle_ + 1) return {j, 0};
+        return {size_ - 1 - i + size_ % 2, 1};
+    }
+    bool solve_middle(std::vector<Vec3>& x) noexcept;
+
+    std::size_t size_, middle_;
+    std::vector<Column> columns_;
+    std::vector<Right> right_;
 };
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 }  // namespace tactus::rope

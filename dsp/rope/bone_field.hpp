@@ -7,6 +7,9 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <numbers>
+
 namespace tactus::rope {
 
 /// Several bodies may move: `pose` places the field. Where the field ends there is no bone.
@@ -21,6 +24,17 @@ public:
         const double steep = glm::length(at.gradient);
         normal = steep > 1e-6 ? pose_.rotate(at.gradient / steep) : Vec3(0.0);
         return steep > 1e-6 ? at.value / steep : at.value;
+    }
+
+    /// The distance is value / steepness of the interpolant, which is no true distance, and where the field ends it
+    /// jumps. But within a ball the value is nowhere less than the field's own bound, and nowhere steeper than √3 times
+    /// the greatest difference of neighbouring samples.
+    double free_way(const Vec3& place, double /*now*/, double near) const noexcept override {
+        const Vec3 at = pose_.inverse().apply(place);
+        const double least = std::max(near, 0.0) * std::numbers::sqrt3 * field_.steepness;
+        for (const double way : {2e-3, 0.5e-3})
+            if (field_.least_within(at, way) > least) return way;
+        return 0.0;
     }
 
 private:

@@ -14,6 +14,9 @@ public:
     /// Signed distance to the surface, m, negative inside; `normal` becomes its gradient, of unit length. Called in
     /// real-time ticks.
     virtual double distance(const Vec3& place, Vec3& normal) const noexcept = 0;
+    /// A way, m, that a point may go from `place`, where the distance is `now`, without coming nearer than `near`. A
+    /// true distance changes by no more than the way; others must say what they know. 0 or less: none.
+    virtual double free_way(const Vec3& /*place*/, double now, double near) const noexcept { return now - near; }
 };
 
 class Ball final : public Obstacle {

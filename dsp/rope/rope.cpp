@@ -15,8 +15,7 @@ namespace tactus::rope {
 
 namespace {
 
-constexpr int most_rounds = 4;  // of the active set, per iteration
-constexpr double least_damping = 1e-2;  // N/m
+constexpr double near_bone = 1e-3;  // m: points within this distance of contact are watched
 
 double square(double x) { return x * x; }
 
@@ -36,7 +35,12 @@ RopeMaterial artery() {
 
 Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMaterial& material,
            const RopeSettings& settings)
-    : material_(material), settings_(settings), x_(std::move(points)), rest_(std::move(rest)), band_(x_.size()) {
+    : material_(material),
+      settings_(settings),
+      x_(std::move(points)),
+      rest_(std::move(rest)),
+      band_(x_.size()),
+      base_(x_.size()) {
     if (x_.size() < 3 || rest_.size() + 1 != x_.size())
         throw Error(fmt::format("a rope of {} points and {} rest lengths", x_.size(), rest_.size()));
     for (std::size_t n = 0; n < x_.size(); ++n)
@@ -47,7 +51,7 @@ Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMateria
     const bool is_setting = settings.substeps > 0 && settings.most_iterations > 0 && settings.tolerance > 0.0 &&
                             settings.contact_stiffness > 0.0 && settings.stick_stiffness > 0.0;
     if (!is_material || !is_setting) throw Error("a rope's stiffness and drag must be positive, nothing negative");
-    before_ = trial_ = move_ = rest_of_gradient_ = target_ = x_;
+    before_ = trial_ = seen_ = normal_before_ = move_ = rest_of_gradient_ = target_ = x_;
     resists_.assign(rest_.size(), 0);
     touching_.assign(x_.size(), 0);
     load_.assign(x_.size(), Vec3(0.0));
@@ -55,6 +59,32 @@ Rope::Rope(std::vector<Vec3> points, std::vector<double> rest, const RopeMateria
     depth_.assign(x_.size(), 0.0);
     held_.assign(x_.size(), false);
     stick_.assign(x_.size(), {});
+    curve_.assign(x_.size(), {});
+    length_.assign(rest_.size(), 0.0);
+    share_.assign(x_.size(), 0.0);
+    bend_.assign(x_.size(), 0.0);
+    clear_.assign(x_.size(), 0.0);
+    for (std::size_t n = 0; n < rest_.size(); ++n) {
+        share_[n] += 0.5 * rest_[n];
+        share_[n + 1] += 0.5 * rest_[n];
+    }
+    for (std::size_t n = 1; n + 1 < x_.size(); ++n) bend_[n] = material_.bending / (share_[n] * share_[n] * share_[n]);
+    measure();
+}
+
+void Rope::clamp_first(const std::optional<Vec3>& direction) noexcept {
+    clamp_[0] = direction;
+    bend_.front() = clamped_weight(rest_.front(), direction.has_value());
+}
+
+void Rope::clamp_last(const std::optional<Vec3>& direction) noexcept {
+    clamp_[1] = direction;
+    bend_.back() = clamped_weight(rest_.back(), direction.has_value());
+}
+
+/// At a clamp the rope continues as its mirror image, of which half belongs to the rope.
+double Rope::clamped_weight(double l, bool is_clamped) const noexcept {
+    return is_clamped ? 2.0 * material_.bending / (l * l * l) : 0.0;
 }
 
 void Rope::hold(std::size_t point, const Vec3& place) noexcept {
@@ -78,24 +108,6 @@ double Rope::length() const noexcept {
 
 double Rope::rest_length() const noexcept { return std::accumulate(rest_.begin(), rest_.end(), 0.0); }
 
-/// Length of rope that belongs to a point.
-double Rope::share(std::size_t point) const noexcept {
-    const double before = point > 0 ? rest_[point - 1] : 0.0, after = point < rest_.size() ? rest_[point] : 0.0;
-    return 0.5 * (before + after);
-}
-
-/// Bending energy of a point is weight · |bend|² / 2. At a clamp the rope continues as its mirror image, of which half
-/// belongs to the rope.
-double Rope::bend_weight(std::size_t point) const noexcept {
-    const bool is_first = point == 0, is_last = point + 1 == x_.size();
-    if (is_first || is_last) {
-        const double l = is_first ? rest_.front() : rest_.back();
-        return clamp_[is_first ? 0 : 1] ? 2.0 * material_.bending / (l * l * l) : 0.0;
-    }
-    const double l = share(point);
-    return material_.bending / (l * l * l);
-}
-
 Vec3 Rope::bend_at(std::size_t point) const noexcept {
     if (point == 0) return x_[1] - x_[0] - rest_[0] * *clamp_[0];
     const std::size_t last = x_.size() - 1;
@@ -110,21 +122,44 @@ Vec3 Rope::slip(std::size_t point) const noexcept {
     return way - glm::dot(way, s.normal) * s.normal;
 }
 
-void Rope::look_at(const Obstacle* bone) noexcept {
-    for (std::size_t n = 0; n < x_.size(); ++n)
-        depth_[n] = bone && !held_[n] ? material_.radius - bone->distance(x_[n], normal_[n]) : 0.0;
+void Rope::measure() noexcept {
+    for (std::size_t n = 0; n < rest_.size(); ++n) length_[n] = glm::length(x_[n + 1] - x_[n]);
+}
+
+/// A point that is far from the bone is not looked at again before it may have come near: the bone stands still within
+/// a tick.
+void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
+    measure();
+    if (!bone) return;
+    for (std::size_t n = 0; n < x_.size(); ++n) {
+        if (held_[n]) {
+            depth_[n] = 0.0;
+            continue;
+        }
+        if (!is_anew && clear_[n] > 0.0) {
+            const Vec3 way = x_[n] - seen_[n];
+            if (glm::dot(way, way) < clear_[n] * clear_[n]) continue;
+        }
+        depth_[n] = material_.radius - bone->distance(x_[n], normal_[n]);
+        clear_[n] =
+            depth_[n] < -near_bone ? bone->free_way(x_[n], material_.radius - depth_[n], material_.radius) : 0.0;
+        if (clear_[n] > 0.0) {
+            seen_[n] = x_[n];
+            normal_[n] = Vec3(0.0);
+        }
+    }
 }
 
 double Rope::potential(double drag) const noexcept {
     double sum = 0.0;
     for (std::size_t n = 0; n < rest_.size(); ++n)
-        sum += 0.5 * material_.stiffness / rest_[n] * square(std::max(0.0, glm::length(x_[n + 1] - x_[n]) - rest_[n]));
+        sum += 0.5 * material_.stiffness / rest_[n] * square(std::max(0.0, length_[n] - rest_[n]));
     for (std::size_t n = 0; n < x_.size(); ++n) {
-        if (const double w = bend_weight(n); w > 0.0) {
+        if (const double w = bend_[n]; w > 0.0) {
             const Vec3 bend = bend_at(n);
             sum += 0.5 * w * glm::dot(bend, bend);
         }
-        sum += material_.weight * share(n) * x_[n].z;
+        sum += material_.weight * share_[n] * x_[n].z;
         if (held_[n]) continue;
         sum -= glm::dot(load_[n], x_[n]);
         if (depth_[n] > 0.0) sum += 0.5 * settings_.contact_stiffness * square(depth_[n]);
@@ -134,7 +169,7 @@ double Rope::potential(double drag) const noexcept {
         }
         if (drag > 0.0) {
             const Vec3 moved = x_[n] - before_[n];
-            sum += 0.5 * drag * share(n) * glm::dot(moved, moved);
+            sum += 0.5 * drag * share_[n] * glm::dot(moved, moved);
         }
     }
     return sum;
@@ -143,7 +178,7 @@ double Rope::potential(double drag) const noexcept {
 double Rope::energy() const noexcept { return potential(0.0); }
 
 Vec3 Rope::pull_on(std::size_t point) const noexcept {
-    Vec3 force(0.0, 0.0, -material_.weight * share(point));
+    Vec3 force(0.0, 0.0, -material_.weight * share_[point]);
     const auto along = [&](std::size_t from, std::size_t to, double tension_of) {
         const Vec3 d = x_[to] - x_[from];
         const double l = glm::length(d);
@@ -153,7 +188,7 @@ Vec3 Rope::pull_on(std::size_t point) const noexcept {
     if (point + 1 < x_.size()) along(point, point + 1, tension(point));
     const std::size_t first = point > 0 ? point - 1 : 0, last = std::min(point + 1, x_.size() - 1);
     for (std::size_t n = first; n <= last; ++n) {
-        const double w = bend_weight(n);
+        const double w = bend_[n];
         if (!(w > 0.0)) continue;
         const bool is_end = n == 0 || n + 1 == x_.size();
         const double sign = n == point ? (is_end ? -1.0 : -2.0) : 1.0;
@@ -161,163 +196,6 @@ Vec3 Rope::pull_on(std::size_t point) const noexcept {
         force -= sign * w * bend_at(n);
     }
     return force;
-}
-
-/// The largest unbalanced force. Keeps the gradient of all but stretch and contact, which the model has by itself.
-double Rope::gradient(double drag) noexcept {
-    for (Vec3& g : rest_of_gradient_) g = Vec3(0.0);
-    const std::size_t last = x_.size() - 1;
-    for (std::size_t n = 0; n <= last; ++n) {
-        if (const double w = bend_weight(n); w > 0.0) {
-            const Vec3 g = w * bend_at(n);
-            if (n == 0) rest_of_gradient_[0] -= g, rest_of_gradient_[1] += g;
-            else if (n == last) rest_of_gradient_[last] -= g, rest_of_gradient_[last - 1] += g;
-            else rest_of_gradient_[n - 1] += g, rest_of_gradient_[n] -= 2.0 * g, rest_of_gradient_[n + 1] += g;
-        }
-        Vec3& g = rest_of_gradient_[n];
-        g += drag * share(n) * (x_[n] - before_[n]) - load_[n];
-        g.z += material_.weight * share(n);
-        if (stick_[n].limit > 0.0) {
-            const Vec3 way = slip(n);
-            const double length_of = glm::length(way), k = settings_.stick_stiffness;
-            g += (k * length_of < stick_[n].limit ? k : stick_[n].limit / length_of) * way;
-        }
-    }
-    double largest = 0.0;
-    Vec3 before(0.0);
-    for (std::size_t n = 0; n <= last; ++n) {
-        Vec3 after(0.0);
-        if (n < last) {
-            const Vec3 d = x_[n + 1] - x_[n];
-            const double l = glm::length(d), over = l - rest_[n];
-            if (over > 0.0) after = material_.stiffness / rest_[n] * over / l * d;
-        }
-        Vec3 g = rest_of_gradient_[n] + before - after;
-        if (depth_[n] > 0.0) g -= settings_.contact_stiffness * depth_[n] * normal_[n];
-        if (!held_[n]) largest = std::max(largest, glm::length(g));
-        before = after;
-    }
-    return largest;
-}
-
-/// The quadratic model at the present points: its matrix, and the right side in move_. Flagged segments resist, flagged
-/// points touch, whether they do so now or not.
-void Rope::assemble(double drag, double damping) noexcept {
-    band_.clear();
-    for (std::size_t n = 0; n < x_.size(); ++n) move_[n] = held_[n] ? Vec3(0.0) : -rest_of_gradient_[n];
-    for (std::size_t n = 0; n < rest_.size(); ++n) {
-        if (!resists_[n]) continue;
-        const Vec3 d = x_[n + 1] - x_[n];
-        const double l = glm::length(d), over = l - rest_[n], k = material_.stiffness / rest_[n];
-        const Vec3 u = d / l;
-        Mat3 block = k * glm::outerProduct(u, u);
-        if (over > 0.0) block += k * over / l * (Mat3(1.0) - glm::outerProduct(u, u));
-        band_.add(n, n, block);
-        band_.add(n + 1, n + 1, block);
-        block *= -1.0;
-        band_.add(n + 1, n, block);
-        move_[n] += k * over * u;
-        move_[n + 1] -= k * over * u;
-    }
-    const std::size_t last = x_.size() - 1;
-    for (std::size_t n = 0; n <= last; ++n) {
-        const double w = bend_weight(n);
-        if (w > 0.0 && (n == 0 || n == last)) {
-            const std::size_t inner = n == 0 ? 1 : last - 1;
-            band_.add(n, n, w);
-            band_.add(inner, inner, w);
-            band_.add(std::max(n, inner), std::min(n, inner), -w);
-        } else if (w > 0.0) {
-            band_.add(n - 1, n - 1, w);
-            band_.add(n, n, 4.0 * w);
-            band_.add(n + 1, n + 1, w);
-            band_.add(n, n - 1, -2.0 * w);
-            band_.add(n + 1, n, -2.0 * w);
-            band_.add(n + 1, n - 1, w);
-        }
-        band_.add(n, n, drag * share(n) + damping);
-        if (held_[n]) continue;
-        if (touching_[n]) {
-            band_.add(n, n, settings_.contact_stiffness * glm::outerProduct(normal_[n], normal_[n]));
-            move_[n] += settings_.contact_stiffness * depth_[n] * normal_[n];
-        }
-        if (const Stick& s = stick_[n]; s.limit > 0.0) {
-            const Mat3 tangent = Mat3(1.0) - glm::outerProduct(s.normal, s.normal);
-            const Vec3 way = slip(n);
-            const double length_of = glm::length(way), k = settings_.stick_stiffness;
-            if (k * length_of < s.limit) band_.add(n, n, k * tangent);
-            else
-                band_.add(n, n,
-                          s.limit / length_of * (tangent - glm::outerProduct(way, way) / (length_of * length_of)));
-        }
-    }
-    for (std::size_t n = 0; n <= last; ++n)
-        if (held_[n]) {
-            band_.fix(n);
-            move_[n] = Vec3(0.0);
-        }
-}
-
-/// The step to the minimum of the model. Its active set is what resists and touches at that minimum.
-bool Rope::find_move(double drag, double damping) noexcept {
-    for (std::size_t n = 0; n < rest_.size(); ++n) resists_[n] = glm::length(x_[n + 1] - x_[n]) > rest_[n];
-    for (std::size_t n = 0; n < x_.size(); ++n) touching_[n] = depth_[n] > 0.0;
-    for (int round = 0; round < most_rounds; ++round) {
-        assemble(drag, damping);
-        if (!band_.solve(move_)) return false;
-        bool is_same = true;
-        for (std::size_t n = 0; n < rest_.size(); ++n) {
-            const Vec3 d = x_[n + 1] - x_[n];
-            const double l = glm::length(d);
-            const bool will = l > 0.0 && l - rest_[n] + glm::dot(d, move_[n + 1] - move_[n]) / l > 0.0;
-            is_same = is_same && will == (resists_[n] != 0);
-            resists_[n] = will;
-        }
-        for (std::size_t n = 0; n < x_.size(); ++n) {
-            if (held_[n] || normal_[n] == Vec3(0.0)) continue;
-            const bool will = depth_[n] - glm::dot(normal_[n], move_[n]) > 0.0;
-            is_same = is_same && will == (touching_[n] != 0);
-            touching_[n] = will;
-        }
-        if (is_same) break;
-    }
-    return true;
-}
-
-bool Rope::substep(double h, const Obstacle* bone, RopeStep& report) noexcept {
-    const double drag = material_.drag / h;
-    look_at(bone);
-    double now = potential(drag), damping = 0.0;
-    for (int iteration = 0;; ++iteration) {
-        const double residual = gradient(drag);
-        if (residual <= settings_.tolerance || iteration == settings_.most_iterations) {
-            report.residual = std::max(report.residual, residual);
-            return residual <= settings_.tolerance;
-        }
-        ++report.iterations;
-        bool is_less = false;
-        if (find_move(drag, damping)) {
-            // A point moves by at most two segments.
-            double scale = 1.0;
-            for (std::size_t n = 0; n < x_.size(); ++n)
-                scale = std::min(scale, 2.0 * share(n) / std::max(glm::length(move_[n]), 1e-12));
-            trial_ = x_;
-            for (int halving = 0; halving < 6 && !is_less; ++halving, scale *= 0.5) {
-                for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = trial_[n] + scale * move_[n];
-                look_at(bone);
-                const double then = potential(drag);
-                // Near the minimum the decrease is below rounding.
-                is_less = then <= now + 1e-14 * (std::abs(now) + 1e-6);
-                if (is_less) now = then;
-            }
-            if (!is_less) {
-                x_ = trial_;
-                look_at(bone);
-            }
-        }
-        damping = is_less ? 0.1 * damping : std::max(10.0 * damping, least_damping);
-        if (damping < least_damping) damping = 0.0;
-    }
 }
 
 void Rope::begin_friction() noexcept {
@@ -351,20 +229,32 @@ void Rope::end_friction() noexcept {
 RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
     RopeStep report;
     report.is_solved = true;
-    const int substeps = settings_.substeps;
+    const auto allowed = [&](std::size_t p) { return 0.5 * std::min(2.0 * share_[p], rest_[p ? p - 1 : 0]); };
+    // As many substeps as the fastest held point needs.
+    double most_parts = 1.0;
+    for (std::size_t p = 0; p < x_.size(); ++p)
+        if (held_[p]) most_parts = std::max(most_parts, glm::length(target_[p] - x_[p]) / settings_.way);
+    const int substeps = static_cast<int>(std::ceil(std::min(most_parts, static_cast<double>(settings_.substeps))));
+    if (!bone) {
+        std::ranges::fill(depth_, 0.0);
+        std::ranges::fill(normal_, Vec3(0.0));
+    }
     for (int n = 0; n < substeps; ++n) {
         before_ = x_;
         report.lag = 0.0;
         for (std::size_t p = 0; p < x_.size(); ++p) {
             if (!held_[p]) continue;
             const Vec3 way = target_[p] - x_[p];
-            const double length_of = glm::length(way), most = 0.5 * std::min(2.0 * share(p), rest_[p ? p - 1 : 0]);
-            const double part = std::min(1.0 / (substeps - n), length_of > 0.0 ? most / length_of : 1.0);
+            const double length_of = glm::length(way);
+            const double part = std::min(1.0 / (substeps - n), length_of > 0.0 ? allowed(p) / length_of : 1.0);
             x_[p] = part >= 1.0 ? target_[p] : x_[p] + part * way;
             report.lag = std::max(report.lag, (1.0 - part) * length_of);
         }
         begin_friction();
-        report.is_solved = substep(h / substeps, bone, report) && report.is_solved;
+        look_at(bone, n == 0);
+        const int left = settings_.most_iterations * settings_.substeps - report.iterations;
+        const int most = left - settings_.most_iterations / 2 * (substeps - 1 - n);
+        report.is_solved = substep(h / substeps, bone, most, report) && report.is_solved;
         end_friction();
     }
     for (const double depth : depth_) report.contacts += depth > 0.0;

@@ -30,8 +30,9 @@ RopeMaterial artery();
 inline constexpr double free_over_in_situ = 0.89;
 
 struct RopeSettings {
-    int substeps = 4;  ///< of a tick, with contact
-    int most_iterations = 8;  ///< Newton steps per substep
+    int substeps = 4;  ///< of a tick, at most
+    double way = 0.1e-3;  ///< m per substep of the fastest held point: slower ones need fewer substeps
+    int most_iterations = 8;  ///< Newton steps of a tick per substep allowed; half of them are kept for each later one
     double tolerance = 1e-5;  ///< N: largest unbalanced force at a point at which a substep ends
     double contact_stiffness = 4e3;  ///< N/m per point in contact; implicit, so it may be high
     double stick_stiffness = 4e3;  ///< N/m per point that sticks
@@ -64,8 +65,8 @@ public:
     /// A force on a point that is not held, N.
     void load(std::size_t point, const Vec3& force) noexcept { load_[point] = force; }
     /// Keeps the direction of the rope (unit length, from the first point to the last) at the first or last point.
-    void clamp_first(const std::optional<Vec3>& direction) noexcept { clamp_[0] = direction; }
-    void clamp_last(const std::optional<Vec3>& direction) noexcept { clamp_[1] = direction; }
+    void clamp_first(const std::optional<Vec3>& direction) noexcept;
+    void clamp_last(const std::optional<Vec3>& direction) noexcept;
 
     /// A tick of h s. `bone` may be null.
     RopeStep step(double h, const Obstacle* bone) noexcept;
@@ -88,28 +89,41 @@ private:
         double limit = 0.0;  ///< N; 0: the point did not touch
     };
 
+    struct Curve {
+        Vec3 along{0.0};  // unit
+        double bend = 0.0;  // 1/m, by the change of the normal along the last way
+    };
+
     double potential(double drag) const noexcept;
     double gradient(double drag) noexcept;
-    void assemble(double drag, double damping) noexcept;
-    bool find_move(double drag, double damping) noexcept;
-    void look_at(const Obstacle* bone) noexcept;
-    bool substep(double h, const Obstacle* bone, RopeStep& report) noexcept;
+    void assemble_base(double drag) noexcept;
+    void assemble(double damping, bool with_curves) noexcept;
+    bool go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept;
+    void learn_curves() noexcept;
+    bool find_move(double damping, int most_rounds) noexcept;
+    void measure() noexcept;
+    void look_at(const Obstacle* bone, bool is_anew) noexcept;
+    bool substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept;
     void begin_friction() noexcept;
     void end_friction() noexcept;
-    double share(std::size_t point) const noexcept;
-    double bend_weight(std::size_t point) const noexcept;
+    double clamped_weight(double l, bool is_clamped) const noexcept;
     Vec3 bend_at(std::size_t point) const noexcept;
     Vec3 slip(std::size_t point) const noexcept;
 
     RopeMaterial material_;
     RopeSettings settings_;
-    std::vector<Vec3> x_, before_, trial_, move_, rest_of_gradient_, load_, target_, normal_;
+    std::vector<Vec3> x_, before_, trial_, move_, rest_of_gradient_, load_, target_, normal_, normal_before_, seen_;
     std::vector<double> rest_, depth_;
+    std::vector<double> length_;  // of the segments at the present points
+    std::vector<double> share_;  // m of rope that belong to a point
+    std::vector<double> bend_;  // energy of a point's bending is weight · |bend|² / 2
+    std::vector<double> clear_;  // m from `seen_` within which a point does not come near the bone
     std::vector<bool> held_;
     std::vector<char> resists_, touching_;  // the active set
     std::vector<Stick> stick_;
+    std::vector<Curve> curve_;
     std::array<std::optional<Vec3>, 2> clamp_;
-    BlockBand band_;
+    BlockBand band_, base_;  // base: what does not change within a substep
 };
 
 }  // namespace tactus::rope

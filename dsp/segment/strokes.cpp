@@ -18,13 +18,14 @@ double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
     return glm::length(p - (a + t * along));
 }
 
-}  // namespace
-
-std::size_t paint(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke,
-                  std::uint8_t label, std::span<std::uint8_t> seed) {
-    std::vector<std::int32_t> covered;
-    const auto add = [&](int i, int j, int k) {
-        if (const std::int32_t n = node_of_voxel[layout.index(i, j, k)]; n >= 0) covered.push_back(n);
+/// Calls visit(node) for the nodes that a stroke covers, those of several pieces of its line several times, until it
+/// returns false.
+template <class Visit>
+void visit_nodes(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke,
+                 const Visit& visit) {
+    const auto goes_on = [&](int i, int j, int k) {
+        const std::int32_t n = node_of_voxel[layout.index(i, j, k)];
+        return n < 0 || visit(n);
     };
     for (std::size_t n = 0; n < stroke.points.size(); ++n) {
         const Vec3 &a = stroke.points[n], &b = stroke.points[std::min(n + 1, stroke.points.size() - 1)];
@@ -42,16 +43,36 @@ std::size_t paint(const volume::Grid& layout, std::span<const std::int32_t> node
             is_outside = is_outside || !(here >= 0.0 && here <= last);
             at[s] = is_outside ? 0 : static_cast<int>(here);
         }
-        if (!is_outside) add(at[0], at[1], at[2]);
+        if (!is_outside && !goes_on(at[0], at[1], at[2])) return;
         for (int k = low[2]; k <= high[2]; ++k)
             for (int j = low[1]; j <= high[1]; ++j)
                 for (int i = low[0]; i <= high[0]; ++i)
-                    if (distance_to_line(layout.position(i, j, k), a, b) <= stroke.radius) add(i, j, k);
+                    if (distance_to_line(layout.position(i, j, k), a, b) <= stroke.radius && !goes_on(i, j, k)) return;
     }
+}
+
+}  // namespace
+
+std::size_t paint(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke,
+                  std::uint8_t label, std::span<std::uint8_t> seed) {
+    std::vector<std::int32_t> covered;
+    visit_nodes(layout, node_of_voxel, stroke, [&](std::int32_t n) {
+        covered.push_back(n);
+        return true;
+    });
     std::sort(covered.begin(), covered.end());
     covered.erase(std::unique(covered.begin(), covered.end()), covered.end());
     for (const std::int32_t n : covered) seed[static_cast<std::size_t>(n)] = label;
     return covered.size();
+}
+
+bool touches(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke) {
+    bool is_any = false;
+    visit_nodes(layout, node_of_voxel, stroke, [&](std::int32_t) {
+        is_any = true;
+        return false;
+    });
+    return is_any;
 }
 
 }  // namespace tactus::segment

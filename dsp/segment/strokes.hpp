@@ -24,4 +24,7 @@ struct Stroke {
 std::size_t paint(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke,
                   std::uint8_t label, std::span<std::uint8_t> seed);
 
+/// Whether paint() would cover a node. Returns at the first one.
+bool touches(const volume::Grid& layout, std::span<const std::int32_t> node_of_voxel, const Stroke& stroke);
+
 }  // namespace tactus::segment

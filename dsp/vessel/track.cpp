@@ -44,6 +44,27 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+/// Shorter narrowings read too wide, in reference radii: on phantoms narrowed over two radii, by a half and more.
+constexpr double least_width = 1.5;
+
+/// How far from a node, one way, the radius passes `limit`, m; up to the end of the branch.
+double passes(const std::vector<Node>& nodes, std::size_t from, int step, double limit) {
+    auto n = static_cast<std::ptrdiff_t>(from);
+    for (; n + step >= 0 && n + step < std::ssize(nodes); n += step) {
+        const Node &here = nodes[static_cast<std::size_t>(n)], &next = nodes[static_cast<std::size_t>(n + step)];
+        if (next.radius < limit) continue;
+        const double part = (limit - here.radius) / std::max(1e-12, next.radius - here.radius);
+        return std::abs(here.along + part * (next.along - here.along) - nodes[from].along);
+    }
+    return std::abs(nodes[static_cast<std::size_t>(n)].along - nodes[from].along);
+}
+
+/// Length in which a narrowing has more than half its depth, m.
+double width_of(const std::vector<Node>& nodes, const Stenosis& stenosis) {
+    const double half = 0.5 * (stenosis.radius + stenosis.reference_radius);
+    return passes(nodes, stenosis.node, -1, half) + passes(nodes, stenosis.node, 1, half);
+}
+
 }  // namespace
 
 std::optional<Stenosis> stenosis_of(const Branch& branch) {
@@ -77,6 +98,8 @@ std::optional<Stenosis> stenosis_of(const Branch& branch) {
         found = {n, node.radius, reference, std::max(0.0, percent), node.is_radius_uncertain};
     }
     if (!is_any) return std::nullopt;
+    // The window of a measurement is about as long: it sees the wider vessel before and after, too.
+    if (width_of(branch.nodes, found) < least_width * found.reference_radius) found.is_uncertain = true;
     return found;
 }
 

@@ -52,7 +52,7 @@ struct Stenosis {
     double radius = 0.0;            ///< m
     double reference_radius = 0.0;  ///< m: medians of the vessel before and after it, interpolated
     double percent = 0.0;           ///< narrowing of the diameter
-    bool is_uncertain = false;      ///< narrower than 1.5 samples
+    bool is_uncertain = false;      ///< narrower than 1.5 samples, or so short that it reads too wide
 };
 /// None for branches shorter than six radii.
 std::optional<Stenosis> stenosis_of(const Branch& branch);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
+#include "dsp/fit/arrangement/step_tree.hpp"
 #include "dsp/fit/fit.hpp"
-#include "dsp/fit/step_tree.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"

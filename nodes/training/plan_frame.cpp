@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node/node.hpp"
 #include "graph/node/task_asset.hpp"
+#include "graph/node/visual.hpp"
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -17,6 +18,11 @@ struct PlanFrame {
     Out<Pose> placed_frame{"device axes at the handle, at the bone; for device_wrench", "m"};
     Asset<training::Task> task{"the task"};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting blade to the planned entry"};
+
+    // The frame of the workspace goes on to `place`.
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::workspace, .place = "placed_frame", .frame = "frame"}};
+    }
 
     void prepare(const Setup&) {
         const training::PlannedCut& cut = task->cut;
@@ -35,5 +41,6 @@ private:
 };
 
 TACTUS_NODE(PlanFrame, pose, frame, placed, placed_frame, task, clearance)
+TACTUS_VISUALS(PlanFrame)
 
 }  // namespace tactus::nodes

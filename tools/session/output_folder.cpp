@@ -38,15 +38,27 @@ std::string result_in(const fs::path& folder) {
     return found;
 }
 
-/// Points the link to the folder; an existing file that is not a link is kept.
-void link_to(const fs::path& folder, const fs::path& link) {
+/// The first folder of the path that does not exist; empty: all are there.
+fs::path first_missing(const fs::path& folder) {
+    std::error_code ignored;
+    fs::path so_far;
+    for (const fs::path& part : folder) {
+        so_far /= part;
+        if (!fs::exists(so_far, ignored)) return so_far;
+    }
+    return {};
+}
+
+/// Points the link to `target`, at once.
+bool point(const fs::path& link, const fs::path& target) {
     std::error_code failure;
-    if (fs::exists(fs::symlink_status(link, failure)) && !fs::is_symlink(link, failure)) return;
     const fs::path part = fmt::format("{}.{}.part", link.string(), ::getpid());
-    fs::create_symlink(folder.filename(), part, failure);
-    if (failure) return;
+    fs::create_symlink(target, part, failure);
+    if (failure) return false;
     fs::rename(part, link, failure);
-    if (failure) fs::remove(part, failure);
+    if (!failure) return true;
+    fs::remove(part, failure);
+    return false;
 }
 
 }  // namespace
@@ -60,7 +72,17 @@ OutputFolder::OutputFolder(const OutputChoice& choice) {
     for (int n = 2; !why.empty() && choice.is_numbered && n < most; ++n)
         why = take(fmt::format("{}-{}", stem.string(), n), choice.overwrite);
     if (!why.empty()) throw Error(why);
-    if (choice.is_linked) link_to(path_, base.string() + "-latest");
+    if (!choice.is_linked) return;
+    link_ = base.string() + "-latest";
+    link();
+}
+
+/// An existing file that is not a link is kept.
+void OutputFolder::link() {
+    std::error_code ignored;
+    if (fs::is_symlink(link_, ignored)) linked_before_ = fs::read_symlink(link_, ignored);
+    else if (fs::exists(link_, ignored)) link_.clear();
+    if (!link_.empty() && !point(link_, path_.filename())) link_.clear();
 }
 
 OutputFolder::~OutputFolder() { let_go(); }
@@ -70,12 +92,25 @@ void OutputFolder::let_go() {
     if (summary_ >= 0) {
         ::close(std::exchange(summary_, -1));
         fs::remove(part_, ignored);
+        drop_if_empty();
     }
     if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
+void OutputFolder::drop_if_empty() {
+    std::error_code failure;
+    if (made_.empty() || !fs::remove(path_, failure)) return;
+    if (!link_.empty() && linked_before_.empty()) fs::remove(link_, failure);
+    else if (!link_.empty()) point(link_, linked_before_);
+    for (fs::path folder = path_; folder != made_;) {
+        folder = folder.parent_path();
+        if (!fs::remove(folder, failure)) return;
+    }
+}
+
 std::string OutputFolder::take(const fs::path& folder, bool overwrite) {
     std::error_code failure;
+    made_ = first_missing(folder);
     fs::create_directories(folder, failure);
     if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
     lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -97,6 +132,7 @@ std::string OutputFolder::take(const fs::path& folder, bool overwrite) {
         reserve();
     } catch (const Error&) {
         let_go();
+        drop_if_empty();
         throw;
     }
     return {};

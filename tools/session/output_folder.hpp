@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The output folder of a run or rendering: locked during the run; existing results are replaced only on request.
+// The output folder of a run or rendering: locked during the run; existing results are replaced only on request. A run that
+// ends before it wrote anything leaves no folder behind.
 #pragma once
 
 #include <filesystem>
@@ -33,8 +34,13 @@ private:
     std::string take(const std::filesystem::path& folder, bool overwrite);
     void let_go();
     void reserve();
+    void link();
+    /// Removes what this made and nothing was written to, and lets the link name the folder that it named before.
+    void drop_if_empty();
 
     std::filesystem::path path_, part_;
+    std::filesystem::path made_;  ///< the first folder of path_ that was not there before
+    std::filesystem::path link_, linked_before_;
     int lock_ = -1, summary_ = -1;
 };
 

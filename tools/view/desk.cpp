@@ -121,7 +121,6 @@ void Desk::draw() {
     // On a narrow window the words of the run need the room of the menus.
     draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0);
     run_bar(bench_, take_, fonts_);
-    const Point below_bar = point(ImGui::GetCursorScreenPos());
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
@@ -146,7 +145,7 @@ void Desk::draw() {
     draw_dialogs();
     if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();
     ImGui::End();
-    if (!take_) state_banner(bench_, below_bar, fonts_);
+    if (!take_) state_banner(bench_, fonts_);
     if (!shows(columns_, Panel::scene)) scene_.rest();
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
     calibration_.draw(live_.get());

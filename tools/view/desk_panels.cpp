@@ -135,6 +135,7 @@ void Desk::draw_scopes(double height) {
 void Desk::draw_scene(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("scene", height, {6.0 * s, 6.0 * s}, {6.0 * s, 4.0 * s}, false);
+    scene_.has_few_tools = layout == Layout::train;
     scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
 }
 
@@ -153,7 +154,7 @@ void Desk::draw_steps(double height) {
 void Desk::draw_task(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("task", height, {10.0 * s, 8.0 * s}, {8.0 * s, 8.0 * s}, true);
-    train_.draw(bench_.observer(), fonts_);
+    train_.draw(bench_.observer(), scene_.hand().is_there(), fonts_);
 }
 
 void Desk::draw_node(double height) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/input_queue.hpp"
 
+#include <algorithm>
+
 namespace tactus::view {
 
 using Kind = InputEvent::Kind;
@@ -9,6 +11,12 @@ void InputQueue::add(const InputEvent& event) {
     // A mouse that only moves needs no history.
     if (event.kind == Kind::move && !waiting_.empty() && waiting_.back().kind == Kind::move) waiting_.back() = event;
     else waiting_.push_back(event);
+}
+
+bool InputQueue::waits_to_leave() const {
+    return std::ranges::any_of(waiting_, [](const InputEvent& event) {
+        return event.kind == Kind::leave || (event.kind == Kind::focus && !event.is_down);
+    });
 }
 
 void InputQueue::take(const InputEvent& event) {

@@ -39,6 +39,8 @@ public:
     const InputState& next(bool is_typing = false);
     /// True while events wait for a later picture.
     bool is_waiting() const { return !waiting_.empty(); }
+    /// True while a later picture will see the person leave the window: what it sees before that was done before.
+    bool waits_to_leave() const;
 
 private:
     void take(const InputEvent& event);

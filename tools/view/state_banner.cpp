@@ -21,7 +21,7 @@ bool is_told(const session::HandForces& forces, double now_s) {
 
 }  // namespace
 
-void state_banner(Workbench& bench, Point corner, const Fonts& fonts) {
+void state_banner(Workbench& bench, const Fonts& fonts) {
     const auto status = bench.status();
     const bool runs = status->state == RunStatus::State::runs;
     bool is_needed = false;
@@ -30,7 +30,8 @@ void state_banner(Workbench& bench, Point corner, const Fonts& fonts) {
     if (!is_needed) return;
     const auto gap = static_cast<float>(8.0 * fonts.scale);
     const ImVec2 screen = ImGui::GetMainViewport()->Size;
-    ImGui::SetNextWindowPos(vec(corner));
+    // Over the messages, which it repeats: no control is below it.
+    ImGui::SetNextWindowPos(ImVec2(gap, screen.y - gap), ImGuiCond_Always, ImVec2(0.0f, 1.0f));
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(screen.x - 2.0f * gap, screen.y));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(gap, 0.6f * gap));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colour(0x3a1d22, 240));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says over the panels why a hand feels no force, since when, and how to go on; gone when forces are back.
+// Says at the foot of the window why a hand feels no force, since when, and how to go on; gone when forces are back.
 #pragma once
 
 #include "tools/view/painter.hpp"
@@ -7,7 +7,6 @@
 
 namespace tactus::view {
 
-/// `corner`: its upper left, on the screen.
-void state_banner(Workbench& bench, Point corner, const Fonts& fonts);
+void state_banner(Workbench& bench, const Fonts& fonts);
 
 }  // namespace tactus::view

@@ -88,7 +88,9 @@ public:
         for (;;) {
             const auto begin = Clock::now();
             if (interrupted_) return false;
-            if (window_.begin()) {
+            const bool has_picture = window_.begin();
+            if (window_.take_left()) desk_->scene().hand().let_go();
+            if (has_picture) {
                 if (script_) script_->move_mouse();
                 desk_->draw();
                 desk_->scene().hand().beat();

@@ -75,10 +75,15 @@ void Window::listen() {
         static_cast<Listener*>(glfwGetWindowUserPointer(window))->input.add(event);
     };
     static constexpr auto queue = add;
+    static constexpr auto leave = [](GLFWwindow* w) {
+        static_cast<Listener*>(glfwGetWindowUserPointer(w))->was_left = true;
+    };
     glfwSetCursorPosCallback(window_,
                              [](GLFWwindow* w, double x, double y) { queue(w, {Kind::move, x, y, 0, false}); });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
-        if (!entered) queue(w, {Kind::leave, 0.0, 0.0, 0, false});
+        if (entered) return;
+        leave(w);
+        queue(w, {Kind::leave, 0.0, 0.0, 0, false});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
         queue(w, {Kind::button, 0.0, 0.0, button, action == GLFW_PRESS});
@@ -95,7 +100,12 @@ void Window::listen() {
         auto& dropped = static_cast<Listener*>(glfwGetWindowUserPointer(w))->dropped;
         dropped.insert(dropped.end(), paths, paths + count);
     });
+    glfwSetWindowCloseCallback(window_, leave);
+    glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int iconified) {
+        if (iconified) leave(w);
+    });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
+        if (!focused) leave(w);
         queue(w, {Kind::focus, 0.0, 0.0, 0, focused != 0});
         ImGui_ImplGlfw_WindowFocusCallback(w, focused);
     });

@@ -44,6 +44,9 @@ public:
     double drawn_s() const { return drawn_s_; }
     /// Files dropped on the window since the last call.
     std::vector<std::string> take_dropped() { return std::exchange(listener_.dropped, {}); }
+    /// True when, since the last call, the pointer or the keys went to another window, or this one was minimised; and then
+    /// until a picture has seen it, so that keys pressed before do not count after it.
+    bool take_left() { return std::exchange(listener_.was_left, listener_.input.waits_to_leave()); }
     /// Captures the next frame in `picture`.
     void want_picture();
     const display::Image& picture() const { return shown_; }
@@ -67,6 +70,7 @@ private:
     struct Listener {
         InputQueue input;
         std::vector<std::string> dropped;
+        bool was_left = false;  // at once, not after the events that wait
     };
     Listener listener_;
     int width_ = 0, height_ = 0;

@@ -1,28 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of something that moves: fewer triangles, the same outline.
 #include "devices/display/picture_maker.hpp"
-#include "dsp/core/error.hpp"
 #include "dsp/geometry/brick_surface.hpp"
 #include "dsp/volume/bricks.hpp"
+#include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace tactus;
+using tactus::test::can_render;
 
 namespace {
-
-bool can_render() {
-    try {
-        const display::SurfacelessContext context;
-        return true;
-    } catch (const Error& error) {
-        tactus::test::skip(error.what());
-        return false;
-    }
-}
 
 constexpr int width = 320, height = 240;
 constexpr double voxel = 0.25e-3;

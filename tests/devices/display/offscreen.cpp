@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/display/offscreen.hpp"
-#include "devices/display/gl_context.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
 
 #include <array>
 #include <cmath>
@@ -14,18 +13,9 @@
 #include <numbers>
 
 using namespace tactus;
+using tactus::test::can_render;
 
 namespace {
-
-bool can_render() {
-    try {
-        const display::SurfacelessContext context;
-        return true;
-    } catch (const Error& error) {
-        tactus::test::skip(error.what());
-        return false;
-    }
-}
 
 display::PictureMesh sphere(const Vec3& centre, double radius, const Vec3& colour) {
     constexpr std::uint32_t rows = 40, columns = 80;

@@ -3,9 +3,8 @@
 #include "devices/display/legend.hpp"
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/shapes.hpp"
-#include "dsp/core/error.hpp"
+#include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,18 +12,9 @@
 #include <limits>
 
 using namespace tactus;
+using tactus::test::can_render;
 
 namespace {
-
-bool can_render() {
-    try {
-        const display::SurfacelessContext context;
-        return true;
-    } catch (const Error& error) {
-        tactus::test::skip(error.what());
-        return false;
-    }
-}
 
 geometry::SurfacePatch ball(double radius, const Vec3& colour) {
     geometry::SurfacePatch patch;

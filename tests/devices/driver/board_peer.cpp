@@ -65,6 +65,7 @@ public:
         Options options = options_of(given);
         return speaks_frames_ ? board::make_serial_board(options) : board::make_haply_2diy(options);
     }
+    std::string line() const { return link_.string(); }
     void place(const Vec3& position, const Quat&) override {
         const std::lock_guard lock(mutex_);
         x_ = -position.x;
@@ -195,5 +196,6 @@ private:
 
 std::unique_ptr<Peer> make_frame_board_peer() { return std::make_unique<BoardPeer>(true); }
 std::unique_ptr<Peer> make_diy_peer() { return std::make_unique<BoardPeer>(false); }
+std::string line_of(Peer& board) { return dynamic_cast<BoardPeer&>(board).line(); }
 
 }  // namespace tactus::test

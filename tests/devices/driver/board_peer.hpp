@@ -5,6 +5,7 @@
 #include "tests/devices/driver/peer.hpp"
 
 #include <memory>
+#include <string>
 
 namespace tactus::test {
 
@@ -12,5 +13,7 @@ namespace tactus::test {
 std::unique_ptr<Peer> make_frame_board_peer();
 /// A pantograph with Haply's first board.
 std::unique_ptr<Peer> make_diy_peer();
+/// The line of one of these.
+std::string line_of(Peer& board);
 
 }  // namespace tactus::test

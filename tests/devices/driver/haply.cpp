@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Haply's service: its messages, a WebSocket that is cut, flooded or far too long, and both names of a force.
+#include "devices/haply/handshake.hpp"
 #include "devices/haply/inverse3.hpp"
 #include "devices/haply/inverse_messages.hpp"
 #include "devices/haply/web_socket.hpp"
@@ -35,6 +36,47 @@ std::unique_ptr<driver::ThreadedDevice> open(const HaplyService& service, std::v
 }
 
 }  // namespace
+
+TEST_CASE("a WebSocket opens only with the answer to its own greeting") {
+    // FIPS 180-4's "abc", and the example of RFC 6455, section 1.3.
+    const auto sum = haply::sha1("abc");
+    CHECK(sum[0] == 0xA9);
+    CHECK(sum[1] == 0x99);
+    CHECK(sum[19] == 0x9D);
+    CHECK(haply::accept_for("dGhlIHNhbXBsZSBub25jZQ==") == "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+    CHECK(haply::handshake_key().size() == 24);
+    CHECK(haply::handshake_key() != haply::handshake_key());
+    const std::string key = haply::handshake_key();
+    const auto answer = [](const std::string& accept, const std::string& more) {
+        return "HTTP/1.1 101 Switching Protocols\r\nUPGRADE: WebSocket\r\nconnection: keep-alive, Upgrade\r\n"
+               "Sec-WebSocket-Accept:  " +
+               accept + " \r\n" + more;
+    };
+    CHECK(haply::refusal(answer(haply::accept_for(key), ""), key).empty());
+    CHECK_THAT(haply::refusal(answer("s3pPLMBiTxaQ9kYGzzhZRbK+xOo=", ""), key), ContainsSubstring("Sec-WebSocket"));
+    CHECK_THAT(haply::refusal("HTTP/1.1 101 x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n", key),
+               ContainsSubstring("Sec-WebSocket"));
+    CHECK_THAT(haply::refusal("HTTP/1.1 101 x\r\n", key), ContainsSubstring("no WebSocket"));
+    CHECK_THAT(haply::refusal("HTTP/1.1 400 Bad\r\n", key), ContainsSubstring("'HTTP/1.1 400 Bad'"));
+    CHECK_THAT(haply::refusal(answer(haply::accept_for(key), "Sec-WebSocket-Extensions: permessage-deflate\r\n"), key),
+               ContainsSubstring("extension"));
+}
+
+TEST_CASE("a server that answers another greeting, or never to the end, is no service", "[live]") {
+    HaplyService impostor;
+    impostor.is_impostor = true;
+    CHECK_THROWS_WITH(open(impostor), ContainsSubstring("answers another greeting"));
+    HaplyService slow;
+    slow.slow_greeting = true;
+    const std::int64_t begin = hosted::steady_ns();
+    CHECK_THROWS_WITH(open(slow), ContainsSubstring("no service at"));
+    CHECK(hosted::steady_ns() - begin < 4000 * ms);
+}
+
+TEST_CASE("a port that is no whole number is refused, not rounded") {
+    Options options = options_of({{"port", "10001.5", {}}});
+    CHECK_THROWS_WITH(haply::make_inverse3(options), ContainsSubstring("'port' is a whole number"));
+}
 
 TEST_CASE("messages of a WebSocket are put together from any pieces and any parts") {
     const std::string all =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/devices/driver/service_peer.hpp"
 
+#include "devices/haply/handshake.hpp"
 #include "devices/haply/inverse3.hpp"
 
 #include <fmt/format.h>
@@ -19,15 +20,18 @@
 
 namespace tactus::test {
 
-HaplyService::HaplyService() {
+HaplyService::HaplyService(int wanted) {
     listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(wanted));
+    const int again = 1;
+    ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
     socklen_t size = sizeof address;
     if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(listener_, 4) != 0 ||
         ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0)
-        throw std::runtime_error("no loopback");
+        throw std::runtime_error("no free port on loopback");
     port = ntohs(address.sin_port);
     thread_ = std::thread([this] { run(); });
 }
@@ -110,10 +114,20 @@ void HaplyService::serve(int client) {
         if (!is_greeted) {
             const std::size_t end = held.find("\r\n\r\n");
             if (end == std::string::npos) continue;
+            const std::string name = "Sec-WebSocket-Key: ";
+            const std::size_t from = held.find(name) + name.size();
+            const std::string key = held.substr(from, held.find("\r\n", from) - from);
             held.erase(0, end + 4);
             is_greeted = true;
-            send("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n" +
-                 frame(state()));
+            if (slow_greeting.exchange(false)) {  // a byte now and then, for ever
+                for (int i = 0; i < 400 && !ends_ && send("H"); ++i)
+                    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                break;
+            }
+            send(
+                "HTTP/1.1 101 Switching Protocols\r\nupgrade: WebSocket\r\nConnection: keep-alive, Upgrade\r\n"
+                "Sec-WebSocket-Accept: " +
+                (is_impostor ? "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=" : haply::accept_for(key)) + "\r\n\r\n" + frame(state()));
         }
         while (held.size() >= 6) {
             std::size_t size = held[1] & 0x7F, head = 2;

@@ -16,7 +16,8 @@ class HaplyService {
 public:
     enum class Trouble { none, huge, bad_json, half, flood };
 
-    HaplyService();
+    /// `wanted`: a port, or 0 for any. Throws when another program has it.
+    explicit HaplyService(int wanted = 0);
     ~HaplyService();
 
     void move(const Vec3& position, const Quat& orientation);
@@ -25,6 +26,8 @@ public:
     int port = 0;
     std::atomic<std::uint32_t> buttons{0};
     std::atomic<bool> is_silent{false}, is_away{false}, is_nan{false};
+    std::atomic<bool> is_impostor{false};     ///< answers a greeting that nobody sent
+    std::atomic<bool> slow_greeting{false};  ///< of the next connection: its answer never ends
     std::atomic<Trouble> trouble{Trouble::none};  ///< of the next answer
     std::atomic<std::uint64_t> texts{0}, greetings{0};
     std::string version = "3.5.0", basis = "XYZ";  ///< before the driver opens it

@@ -111,7 +111,7 @@ int dhdEnableForce(unsigned char on, char id) {
 int dhdGetStatus(int* status, char id) {
     (void)id;
     if (is_lost) return -1;
-    memset(status, 0, 17 * sizeof *status);
+    for (int i = 0; i < 64; ++i) status[i] = -1; /* as a later SDK, which has more to say than 17 places */
     status[3] = is_calibrated;
     status[5] = force_on;
     return 0;

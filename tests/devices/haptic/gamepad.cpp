@@ -102,6 +102,29 @@ TEST_CASE("a stick moves the hand no faster than its speed, and a button is its 
     CHECK(std::abs(sample.pose.position.y) < 1e-9);
 }
 
+TEST_CASE("when the system lost events of a gamepad, what it held before holds no longer") {
+    Rig rig;
+    rig.say(EV_ABS, ABS_X, 32767);
+    rig.say(EV_KEY, BTN_SOUTH, 1);
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return s.twist.linear.x > 0.05 && s.buttons == 1u; }));
+    input_event lost[2]{};
+    lost[0].type = EV_SYN;
+    lost[0].code = SYN_DROPPED;
+    lost[1].type = EV_ABS;  // the rest of a report whose beginning is lost
+    lost[1].code = ABS_Y;
+    lost[1].value = 32767;
+    REQUIRE(::write(rig.end, lost, sizeof lost) == sizeof lost);
+    rig.say(EV_KEY, BTN_EAST, 1);
+    REQUIRE(
+        rig.ticks_until([](const DeviceSample& s) { return glm::length(s.twist.linear) < 1e-3 && s.buttons == 0u; }));
+    for (int n = 0; n < 200; ++n) rig.device->acquire(1e-3);
+    const Vec3 from = rig.device->acquire(1e-3).pose.position;
+    for (int n = 0; n < 100; ++n) rig.device->acquire(1e-3);
+    CHECK(glm::length(rig.device->acquire(1e-3).pose.position - from) < 1e-4);
+    rig.say(EV_ABS, ABS_X, 32767);  // and it goes on
+    CHECK(rig.ticks_until([](const DeviceSample& s) { return s.twist.linear.x > 0.05; }));
+}
+
 TEST_CASE("a gamepad that is unplugged gives no valid sample any more, and its buttons are let go") {
     Rig rig;
     rig.say(EV_KEY, BTN_SOUTH, 1);

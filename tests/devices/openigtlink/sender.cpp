@@ -9,9 +9,12 @@
 #include "tests/support/catch.hpp"
 
 #include <arpa/inet.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tactus;
@@ -28,6 +31,31 @@ int connected(int port) {
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     REQUIRE(::connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
     return file;
+}
+
+/// This process's connections from and to a port: how many there are, and how many ask whether a silent peer is there.
+std::pair<int, int> kept_alive(int port, bool is_own_end) {
+    int all = 0, alive = 0;
+    for (int file = 0; file < 1024; ++file) {
+        sockaddr_in own{}, other{};
+        socklen_t own_size = sizeof own, other_size = sizeof other;
+        if (::getsockname(file, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 || own.sin_family != AF_INET ||
+            ::getpeername(file, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
+            continue;
+        if (ntohs((is_own_end ? own : other).sin_port) != port) continue;
+        ++all;
+        std::array<int, 4> told{};
+        const std::array<std::pair<int, int>, 4> asked{{{SOL_SOCKET, SO_KEEPALIVE},
+                                                        {IPPROTO_TCP, TCP_KEEPIDLE},
+                                                        {IPPROTO_TCP, TCP_KEEPINTVL},
+                                                        {IPPROTO_TCP, TCP_KEEPCNT}}};
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            socklen_t size = sizeof told[i];
+            ::getsockopt(file, asked[i].first, asked[i].second, &told[i], &size);
+        }
+        alive += told[0] != 0 && told[1] + told[2] * told[3] <= 5 ? 1 : 0;  // s
+    }
+    return {all, alive};
 }
 
 Pose at(double x) {
@@ -102,4 +130,33 @@ TEST_CASE("what one program sends another follows", "[live]") {
         const DeviceSample sample = device.acquire(1e-3);
         return sample.valid && glm::length(sample.pose.position - at(0.25).position) < 1e-7;
     }));
+}
+
+TEST_CASE("a server that too many connect to hangs up on the rest, and goes on to serve the first ones") {
+    const auto server = TransformServer::at("127.0.0.1", 0);
+    const auto message = openigtlink::transform_message("Needle", at(0.1), 0.0);
+    std::vector<int> files;
+    for (std::size_t i = 0; i < TransformServer::most_clients + 8; ++i) {
+        files.push_back(connected(server->port()));
+        server->send(message);
+    }
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        std::uint8_t bytes[4096];
+        CHECK((::recv(files[i], bytes, sizeof bytes, 0) > 0) == (i < TransformServer::most_clients));
+        ::close(files[i]);
+    }
+}
+
+TEST_CASE("both ends of OpenIGTLink ask whether a silent peer is still there") {
+    const auto server = TransformServer::at("127.0.0.1", 0);
+    Options options = options_of({{"port", std::to_string(server->port()), {}}});
+    const auto tracker = openigtlink::make_tracker(options);
+    tracker->open(driver::OpenMode::run, std::make_shared<driver::Exchange>(), [](const std::string&) {});
+    const int plain = connected(server->port());
+    server->send(openigtlink::transform_message("Needle", at(0.1), 0.0));  // takes who has come
+    CHECK(wait_until([&] { return kept_alive(server->port(), true).first == 2; }));
+    CHECK(kept_alive(server->port(), true) == std::pair(2, 2));
+    CHECK(kept_alive(server->port(), false) == std::pair(2, 1));  // of the two clients, the tracker
+    tracker->close();
+    ::close(plain);
 }

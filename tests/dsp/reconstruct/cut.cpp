@@ -67,10 +67,11 @@ TEST_CASE("a plane through one ramus of a jaw leaves the other one whole") {
     const CutPieces pieces = cut_between(jaw, first, last);
     REQUIRE(pieces.rest.size() == 2);
     CHECK(is_closed(pieces.between));
-    CHECK(is_closed(pieces.rest[0]));
-    CHECK(is_closed(pieces.rest[1]));
+    CHECK(is_closed(pieces.rest[0].surface));
+    CHECK(is_closed(pieces.rest[1].surface));
     CHECK(enclosed(pieces.between) == Approx(all * 0.7 / pi).epsilon(0.005));
-    CHECK(enclosed(pieces.between) + enclosed(pieces.rest[0]) + enclosed(pieces.rest[1]) == Approx(all).epsilon(1e-9));
+    CHECK(enclosed(pieces.between) + enclosed(pieces.rest[0].surface) + enclosed(pieces.rest[1].surface) ==
+          Approx(all).epsilon(1e-9));
     for (const Vec3& v : pieces.between.vertices) {
         CHECK(glm::dot(v - first.origin, first.normal) > -1e-12);
         CHECK(glm::dot(v - last.origin, last.normal) < 1e-12);
@@ -103,7 +104,7 @@ TEST_CASE("pieces of a hollow bone have the volume between their planes") {
         CHECK(is_closed(pieces.between));
         CHECK(enclosed(pieces.between) == Approx(area * (high - low)).epsilon(1e-6));
         double sum = enclosed(pieces.between);
-        for (const auto& piece : pieces.rest) sum += enclosed(piece);
+        for (const auto& piece : pieces.rest) sum += enclosed(piece.surface);
         CHECK(sum == Approx(all).epsilon(1e-9));
     }
 }
@@ -131,4 +132,87 @@ TEST_CASE("cuts that miss a bone or do not separate it are refused") {
     }
     REQUIRE(is_closed(ring));
     CHECK_THROWS_WITH(cut_between(ring, {Vec3(0.0, 40.0 * mm, 0.0), x}, {}), ContainsSubstring("do not separate"));
+}
+
+TEST_CASE("a cut whose origin lies in the wall of a hollow bone or beside it also cuts the marrow cavity") {
+    const Vec3 z(0.0, 0.0, 1.0);
+    geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    geometry::TriangleSurface cavity =
+        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
+    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
+    append(bone, cavity);
+    const double area = 30.0 * std::sin(2.0 * pi / 60.0) * (49.0 - 9.0) * mm * mm;
+    // The cavity ends 10 mm before the bone does.
+    const double ends = 30.0 * std::sin(2.0 * pi / 60.0) * 9.0 * 10.0 * mm * mm * mm;
+    for (const double aside : {0.0, 5.0 * mm, 12.0 * mm}) {
+        const CutPieces pieces =
+            cut_between(bone, {Vec3(aside, 0.0, 30.0 * mm), z}, Plane{Vec3(0.0, aside, 50.0 * mm), z});
+        CHECK(is_closed(pieces.between));
+        CHECK(enclosed(pieces.between) == Approx(area * 20.0 * mm).epsilon(1e-6));
+        // The cavity has no connection to the bone and stays with it.
+        REQUIRE(pieces.rest.size() == 2);
+        CHECK(pieces.rest[0].cut_by == CutBy::last);  // 50 mm long, the other one 30 mm
+        CHECK(pieces.rest[1].cut_by == CutBy::first);
+        CHECK(enclosed(pieces.rest[0].surface) == Approx(area * 50.0 * mm + ends).epsilon(1e-6));
+        CHECK(enclosed(pieces.rest[1].surface) == Approx(area * 30.0 * mm + ends).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a cavity that no plane cuts stays with the piece around it") {
+    const Vec3 z(0.0, 0.0, 1.0);
+    geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    const double solid = enclosed(bone);
+    std::vector<double> pores;
+    // Corners, edges and axes of the pores lie on those of the bone. The last one is a tooth in a cavity.
+    for (const double from : {10.0, 40.0, 80.0}) {
+        geometry::TriangleSurface pore =
+            closed_tube(Vec3(0.0, 0.0, from * mm), z, 10.0 * mm, 60, 4, [](double, double) { return 3.0 * mm; });
+        for (auto& t : pore.triangles) std::swap(t[1], t[2]);
+        pores.push_back(-enclosed(pore));
+        append(bone, pore);
+    }
+    const geometry::TriangleSurface tooth =
+        closed_tube(Vec3(0.0, 0.0, 43.0 * mm), z, 4.0 * mm, 60, 4, [](double, double) { return 1.0 * mm; });
+    append(bone, tooth);
+    // The same for a surface that looks inwards as a whole.
+    for (const double sign : {1.0, -1.0}) {
+        const CutPieces pieces = cut_between(bone, {Vec3(0.0, 0.0, 30.0 * mm), z}, Plane{Vec3(0.0, 0.0, 60.0 * mm), z});
+        REQUIRE(pieces.rest.size() == 3);
+        CHECK(sign * enclosed(pieces.between) ==
+              Approx(std::copysign(0.3 * std::abs(solid) - std::abs(pores[1]), solid)));
+        CHECK(sign * enclosed(pieces.rest[0].surface) ==
+              Approx(std::copysign(0.4 * std::abs(solid) - std::abs(pores[2]), solid)));
+        CHECK(sign * enclosed(pieces.rest[1].surface) ==
+              Approx(std::copysign(0.3 * std::abs(solid) - std::abs(pores[0]), solid)));
+        CHECK(pieces.rest[2].cut_by == CutBy::none);
+        CHECK(sign * enclosed(pieces.rest[2].surface) == Approx(enclosed(tooth)));
+        for (auto& t : bone.triangles) std::swap(t[1], t[2]);
+    }
+}
+
+TEST_CASE("a plane whose origin does not tell which limb is meant is refused") {
+    using Catch::Matchers::ContainsSubstring;
+    const geometry::TriangleSurface jaw = half_ring();
+    const Vec3 forwards(0.0, -1.0, 0.0);
+    // Between the rami, and far to the left of both.
+    for (const double x : {2.0, 70.0})
+        CHECK_THROWS_WITH(cut_between(jaw, {Vec3(x, -10.0, 0.0) * mm, forwards}, {}),
+                          ContainsSubstring("does not tell which limb"));
+    CHECK_NOTHROW(cut_between(jaw, {Vec3(36.0, -10.0, 10.0) * mm, forwards}, {}));
+}
+
+TEST_CASE("planes that cross inside a bone are refused and planes that cross beside it are not") {
+    using Catch::Matchers::ContainsSubstring;
+    const geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    const auto tilted = [](double height, double slope) {
+        return Plane{Vec3(0.0, 0.0, height * mm), glm::normalize(Vec3(slope, 0.0, 1.0))};
+    };
+    CHECK_THROWS_WITH(cut_between(bone, tilted(45.0, 0.6), tilted(50.0, -0.6)), ContainsSubstring("cross inside"));
+    const CutPieces pieces = cut_between(bone, tilted(45.0, 0.6), tilted(55.0, -0.6));
+    CHECK(pieces.rest.size() == 2);
+    CHECK(enclosed(pieces.between) ==
+          Approx(30.0 * std::sin(2.0 * pi / 60.0) * 49.0 * 10.0 * mm * mm * mm).epsilon(1e-6));
 }

@@ -3,9 +3,13 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/simulate/vessel_cases.hpp"
+#include "dsp/simulate/vessel_phantom.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
+
+#include <cmath>
+#include <numbers>
 
 using namespace tactus;
 using simulate::TrackError;
@@ -75,6 +79,33 @@ TEST_CASE("a stenosis is passed and measured") {
     const std::vector<Vec3>& line = one.lines[0];
     CHECK(glm::length(result.found.track.branches[0].nodes[stenosis->node].position - line[line.size() * 6 / 10]) <
           one.radius);
+}
+
+TEST_CASE("a stenosis too short for its window is called uncertain, one of four radii is measured", "[slow]") {
+    for (const double radius : {3.0, 4.0})
+        for (const double length : {2.0, 4.0}) {
+            CAPTURE(radius, length);
+            simulate::VesselPhantom phantom({40, 40, 90}, 1e-3);
+            const std::vector<Vec3> line =
+                simulate::straight(Vec3(20.2, 17.1, 8) * 1e-3, Vec3(19.1, 22.3, 82) * 1e-3, 1e-4);
+            const double whole = glm::length(line.back() - line.front()), part = length * radius * 1e-3;
+            phantom.add_tube(
+                line,
+                [&](double s) {  // by half
+                    const double x = (s - 0.6) * whole / part;
+                    const double narrower =
+                        std::abs(x) < 0.5 ? 0.25 * (1.0 + std::cos(2.0 * std::numbers::pi * x)) : 0.0;
+                    return radius * 1e-3 * (1.0 - narrower);
+                },
+                1.0);
+            const volume::Grid scan = phantom.scan(0.0, 0.2, 101);
+            const vessel::Followed found = vessel::follow(scan, line[line.size() / 4]);
+            REQUIRE_FALSE(found.track.branches.empty());
+            const auto stenosis = vessel::stenosis_of(found.track.branches[0]);
+            REQUIRE(stenosis);
+            CHECK(stenosis->is_uncertain == (length == 2.0));
+            if (length == 4.0) CHECK(std::abs(stenosis->percent - 50.0) < 10.0);
+        }
 }
 
 TEST_CASE("an even side branch is no stenosis, and no contrast is missed at its root", "[slow]") {

@@ -5,40 +5,27 @@
 #include "assets/sound/response_file.hpp"
 #include "assets/table/deflection_file.hpp"
 #include "assets/table/trajectory.hpp"
-#include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "tests/fuzz/read_or_refuse.hpp"
 
 #include <cmath>
 #include <cstdlib>
 
-namespace {
-
-template <typename Load>
-void try_reader(const std::filesystem::path& path, Load load) {
-    try {
-        load(path);
-    } catch (const tactus::Error& error) {
-        if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
-    }
-}
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace tactus;
     const MemoryFile file(data, size, "table.csv");
-    try_reader(file.path(), [](const auto& path) {
+    read_or_refuse(file.path(), [](const auto& path) {
         for (const auto& sample : table::read_trajectory(path).samples)
             if (!is_finite(sample.pose.position)) std::abort();
     });
-    try_reader(file.path(), [](const auto& path) {
+    read_or_refuse(file.path(), [](const auto& path) {
         for (const Vec3& place : display::load_places(path))
             if (!is_finite(place)) std::abort();
     });
-    try_reader(file.path(), [](const auto& path) { display::load_touches(path); });
-    try_reader(file.path(), [](const auto& path) { sound::load_response(path); });
-    try_reader(file.path(), [](const auto& path) { table::load_deflection_table(path); });
-    try_reader(file.path(), [](const auto& path) {
+    read_or_refuse(file.path(), [](const auto& path) { display::load_touches(path); });
+    read_or_refuse(file.path(), [](const auto& path) { sound::load_response(path); });
+    read_or_refuse(file.path(), [](const auto& path) { table::load_deflection_table(path); });
+    read_or_refuse(file.path(), [](const auto& path) {
         if (!std::isfinite(table::load_force_calibration(path).slope)) std::abort();
     });
     return 0;

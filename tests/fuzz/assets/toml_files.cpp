@@ -5,32 +5,17 @@
 #include "assets/sound/recording_set.hpp"
 #include "assets/table/thresholds.hpp"
 #include "assets/training/task_file.hpp"
-#include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "tests/fuzz/read_or_refuse.hpp"
 #include "tools/study/rig_matrix.hpp"
-
-#include <cstdlib>
-
-namespace {
-
-template <typename Load>
-void try_reader(const std::filesystem::path& path, Load load) {
-    try {
-        load(path);
-    } catch (const tactus::Error& error) {
-        if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
-    }
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "file.toml");
-    try_reader(file.path(), [](const auto& path) { tactus::display::load_display_file(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::study::load_rig_matrix(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::sound::load_recording_set(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::training::load_task_file(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::display::load_display_file(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::study::load_rig_matrix(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::sound::load_recording_set(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::training::load_task_file(path); });
     return 0;
 }

@@ -2,12 +2,10 @@
 // Pictures of the library's patches, as `render --frames` makes them.
 #include "tests/tools/run_command.hpp"
 
-#include "devices/display/gl_context.hpp"
-#include "dsp/core/error.hpp"
 #include "dsp/display/camera.hpp"
+#include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
-#include "tests/support/skip.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 
 #include <fmt/format.h>
@@ -33,16 +31,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-bool can_render() {
-    try {
-        const display::SurfacelessContext context;
-        return true;
-    } catch (const Error& error) {
-        tactus::test::skip(error.what());
-        return false;
-    }
-}
 
 struct Pixels {
     int width = 0, height = 0;

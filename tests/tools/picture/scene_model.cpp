@@ -2,9 +2,8 @@
 #include "tools/picture/scene/scene_model.hpp"
 
 #include "devices/display/picture_maker.hpp"
-#include "dsp/core/error.hpp"
+#include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -13,18 +12,9 @@
 
 using namespace tactus;
 using namespace tactus::picture;
+using tactus::test::can_render;
 
 namespace {
-
-bool can_render() {
-    try {
-        const display::SurfacelessContext context;
-        return true;
-    } catch (const Error& error) {
-        tactus::test::skip(error.what());
-        return false;
-    }
-}
 
 constexpr Flicks at_60_hz = flicks_per_second / 60;
 

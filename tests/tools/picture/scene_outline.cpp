@@ -37,6 +37,15 @@ TEST_CASE("a saw trainer shows a bone, and a blade with its force") {
     CHECK(outline.handles.empty());
 }
 
+TEST_CASE("the hand of a task is where the blade stands before the planned cut") {
+    const SceneOutline outline = outline_in_library("saw-task");
+    REQUIRE(outline.places.size() == 1);
+    CHECK(outline.places[0].device == "hand.pose");
+    CHECK(outline.places[0].frame == "plan.placed_frame");
+    CHECK(outline.places[0].scale == "place.force_scale");
+    CHECK(outline_in_library("saw-training").places.at(0).frame == "place.frame");
+}
+
 TEST_CASE("a held fragment is where its coupling says, and the hand where the device is") {
     const SceneOutline outline = outline_in_library("fragments");
     REQUIRE(outline.held.size() == 1);

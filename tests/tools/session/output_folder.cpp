@@ -113,3 +113,32 @@ TEST_CASE("a recording cannot have the name of a file that the run itself writes
     CHECK(log.code == 2);
     CHECK_THAT(log.err, ContainsSubstring("--log") && ContainsSubstring("the patch records to this file"));
 }
+
+TEST_CASE("a run that is refused leaves no folder, and the link to the last run as it was") {
+    const Folder folder;
+    folder.write("p.toml", recording_patch);
+    folder.write("bad.toml",
+                 "wires = []\n[devices.board]\ndriver = \"serial_board\"\nport = \"/dev/none\"\n"
+                 "[nodes.hand]\ntype = \"device_input\"\nrate = \"1 kHz\"\n");
+    fs::create_directory(folder.path / "kept");
+    fs::create_directory(folder.path / "bad-run");
+    folder.write("bad-run/summary.json", "{}");
+    fs::create_symlink("bad-run", folder.path / "bad-run-latest");
+    const std::string run = "$T run bad.toml --seconds 0.1" + live;
+    for (const char* out : {"--out new", "--out a/b/c", "--out kept/d", "--out kept", ""}) {
+        INFO(out);
+        const Outcome refused = shell(folder, run + out);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, ContainsSubstring("/dev/none"));
+    }
+    CHECK_FALSE(fs::exists(folder.path / "new"));
+    CHECK_FALSE(fs::exists(folder.path / "a"));
+    CHECK_FALSE(fs::exists(folder.path / "bad-run-2"));
+    CHECK(fs::is_directory(folder.path / "kept"));
+    CHECK(fs::is_empty(folder.path / "kept"));
+    CHECK(fs::read_symlink(folder.path / "bad-run-latest") == "bad-run");
+    CHECK(slurp(folder.path / "bad-run/summary.json") == "{}");
+    fs::remove(folder.path / "bad-run-latest");
+    CHECK(shell(folder, run).code == 2);
+    CHECK_FALSE(fs::is_symlink(fs::symlink_status(folder.path / "bad-run-latest")));
+}

@@ -118,3 +118,16 @@ TEST_CASE("a window that loses the focus releases everything, and one turn of th
     CHECK(after.wheel_y == 2.0);
     CHECK(queue.next().wheel_y == 0.0);
 }
+
+TEST_CASE("a window that was left says so until the keys before it have been seen") {
+    InputQueue queue;
+    const InputEvent leave{.kind = Kind::leave}, back{.kind = Kind::focus, .is_down = true};
+    for (const InputEvent& event : {key(84, true), key(84, false), key(84, true), leave, back}) queue.add(event);
+    CHECK(queue.waits_to_leave());
+    CHECK(queue.next().key[84]);
+    CHECK(queue.waits_to_leave());
+    CHECK_FALSE(queue.next().key[84]);
+    CHECK(queue.waits_to_leave());
+    CHECK(queue.next().key[84]);
+    CHECK_FALSE(queue.waits_to_leave());
+}

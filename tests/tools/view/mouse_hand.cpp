@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person with a mouse and a keyboard, and nothing else.
+#include "assets/file/whole_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/view/person.hpp"
 
 #include <future>
+#include <sstream>
 
 using namespace tactus::test;
 using nlohmann::json;
@@ -14,7 +16,59 @@ std::future<Outcome> begin(const Display& display, const Folder& folder, const s
     return std::async(std::launch::async, [&display, &folder, arguments] { return on(display, folder, arguments); });
 }
 
+/// Samples of a scope's file that are not zero, and all.
+std::pair<int, int> pressed_in(const std::filesystem::path& csv) {
+    std::istringstream lines(tactus::file::read_whole_file(csv));
+    std::string line;
+    std::getline(lines, line);
+    int pressed = 0, all = 0;
+    for (; std::getline(lines, line); ++all) pressed += std::stod(line.substr(line.rfind(',') + 1)) > 0.5;
+    return {pressed, all};
+}
+
 }  // namespace
+
+TEST_CASE("who leaves the window lets go of the hand and its buttons", "[display][slow]") {
+    NEEDS_PERSON(person, display)
+    const Folder folder;
+    folder.write("script", R"(size 800 600
+scope hand.trigger
+until 7
+export 0 held.csv
+until 13
+export 0 left.csv
+stop
+until over
+close
+)");
+    auto done = begin(display, folder,
+                      "run touch-sphere --view --view-script script --set hand.device=mouse --audio none --out out "
+                      "--seconds 60 --json");
+    REQUIRE(person.sees_window("Tactus", 30.0));
+    Person::wait(2.0);
+    person.move(600.0, 300.0);
+    person.key("t", true);
+    // Pressed anew now and then: a busy machine's window lets go of what is held when it is silent for 1 s.
+    for (int i = 0; i < 6; ++i) {
+        person.key("t", false);
+        person.key("t", true);
+        Person::wait(1.1);
+    }
+    // Over the edge and back, the key still held: what was pressed just before counts no more, however slow pictures are.
+    person.key("t", false);
+    person.key("t", true);
+    person.move(1500.0, 1000.0);
+    Person::wait(0.5);
+    person.move(600.0, 300.0);
+    const Outcome outcome = done.get();
+    person.key("t", false);
+    INFO(outcome.out << outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(pressed_in(folder.path / "held.csv").first > 0);
+    const auto [still_pressed, left] = pressed_in(folder.path / "left.csv");
+    CHECK(still_pressed == 0);
+    CHECK(left > 100);
+}
 
 TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {
     NEEDS_PERSON(person, display)

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace tactus::bench {
@@ -30,6 +31,7 @@ constexpr double goal_angle = 0.25, goal_error = 0.5e-3;  // degrees, m
 struct ShaftsChoice {
     int first = 0, count = 20;
     double chips = 0.2, kerf = 0.0, roughness = 0.8;  // share, mm, mm
+    std::optional<double> told_kerf;  // mm
     bool told = false, json = false;
     std::filesystem::path bone;
 };
@@ -66,7 +68,9 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         fragments.push_back(std::move(loaded));
         place.push_back(one.place);
     });
-    study::PlanMatching matching(std::move(fragments), study::FitWay{choice.told ? settings.kerf : 0.0});
+    study::PlanMatching matching(std::move(fragments), study::FitWay{choice.told_kerf ? *choice.told_kerf * 1e-3
+                                                                     : choice.told    ? settings.kerf
+                                                                                      : 0.0});
     const study::CaseFragment& moving = matching.fragment(1);
     const auto [face, area] = middle_of_paint(moving);
     const Pose truth = place[0].inverse() * place[1];
@@ -155,6 +159,8 @@ Verb shafts_verb() {
                 .shows_default()
                 .range(0.0, 4.0);
             verb.flag("--told", choice->told, "the fit knows the kerf");
+            verb.add("--told-kerf", choice->told_kerf, "mm of kerf that the fit is told, right or wrong")
+                .range(0.0, 4.0);
             verb.add("--bone", choice->bone, "file of the long bone (default: the library's fibula)");
             verb.flag("--json", choice->json, "as JSON");
             return [choice] { return bench_shafts(*choice); };

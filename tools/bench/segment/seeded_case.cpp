@@ -30,8 +30,9 @@ std::optional<SeededCase> seeded_case(const std::filesystem::path& folder, const
     std::vector<std::uint8_t> inside(labels.count(), 0);
     for (std::size_t v = 0; v < inside.size(); ++v)
         if (labels.values[v] > 0.0f) inside[v] = static_cast<std::uint8_t>(number[static_cast<int>(labels.values[v])]);
-    real.graph =
-        segment::make_voxel_graph(real.grid, inside, segment::gap_law(segment::gap_statistics(real.grid, inside)));
+    real.law = segment::gap_law(segment::gap_statistics(real.grid, inside));
+    real.graph = segment::make_voxel_graph(real.grid, inside, real.law);
+    real.inside = inside;
     real.node_of_voxel = real.graph.node_of_voxel();
     for (const std::uint32_t v : real.graph.voxel) real.truth.push_back(inside[v]);
     for (std::size_t n = 0; n < real.graph.nodes(); ++n) {
@@ -76,6 +77,12 @@ std::vector<std::uint8_t> painted_seeds(const SeededCase& real, int dabs, Random
             ++dab;
         }
     return seed;
+}
+
+segment::VoxelGraph graph_of_seeds(const SeededCase& real, const std::vector<std::uint8_t>& seed) {
+    const segment::GapLaw law = segment::law_of_seeds(real.law, real.graph, real.grid, seed);
+    if (!(law.bright < real.law.bright)) return real.graph;
+    return segment::make_voxel_graph(real.grid, real.inside, law);
 }
 
 double mean_dice(const SeededCase& real, const std::vector<std::uint8_t>& label) {

@@ -20,6 +20,8 @@ struct SeededCase {
     int labels = 0;
     volume::Grid grid;
     segment::VoxelGraph graph;         ///< all voxels with an expert's label
+    segment::GapLaw law;               ///< of `graph`; that of the scan
+    std::vector<std::uint8_t> inside;  ///< of each voxel: it has a label
     std::vector<std::uint8_t> truth;   ///< of each node, from 1 on
     std::vector<std::int32_t> node_of_voxel;
     std::vector<std::uint32_t> surface;  ///< nodes with a neighbour outside of the bone
@@ -31,6 +33,9 @@ std::optional<SeededCase> seeded_case(const std::filesystem::path& folder, const
 std::vector<std::uint8_t> painted_seeds(const SeededCase& real, int dabs, Random random);
 /// One more dab, of the label that the expert gave to `node`.
 void add_dab(const SeededCase& real, std::size_t node, std::vector<std::uint8_t>& seed);
+
+/// The graph with the conductances that `segment` takes for these seeds.
+segment::VoxelGraph graph_of_seeds(const SeededCase& real, const std::vector<std::uint8_t>& seed);
 
 /// Mean over the labels of 2 |A ∩ B| / (|A| + |B|).
 double mean_dice(const SeededCase& real, const std::vector<std::uint8_t>& label);

@@ -4,6 +4,7 @@
 #include "dsp/core/processor_time.hpp"
 #include "dsp/segment/random_walk.hpp"
 #include "dsp/segment/uncertain.hpp"
+#include "dsp/segment/watershed.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/segment/seeded_case.hpp"
 #include "tools/study/workers.hpp"
@@ -47,6 +48,7 @@ Interval interval_of(const std::vector<double>& values) {
 struct SeriesResult {
     std::vector<double> dice, three_dabs, first_seconds, dab_seconds, peer_dice, difference, peer_seconds;
     std::vector<double> one_dab, two_dabs;
+    std::vector<double> preview, preview_seconds;  ///< by a watershed
     std::vector<double> corrected;    ///< after three dabs on the largest error
     std::vector<double> dabs_needed;  ///< on the largest error, for 0.97; of those that reach it within 20
 };
@@ -74,10 +76,14 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
         std::vector<std::uint8_t> seed =
             painted_seeds(real, choice.dabs, Random{first + static_cast<std::uint64_t>(n)});
         double begin = process_seconds();
-        segment::Walks walks = segment::random_walks(real.graph, seed, real.labels);
+        segment::Walks walks = segment::random_walks(graph_of_seeds(real, seed), seed, real.labels);
         out.first_seconds.push_back(process_seconds() - begin);
         double dice = mean_dice(real, segment::labels_of(walks));
         out.dice.push_back(dice);
+        begin = process_seconds();
+        const std::vector<std::uint8_t> preview = segment::watershed(graph_of_seeds(real, seed), seed);
+        out.preview_seconds.push_back(process_seconds() - begin);
+        out.preview.push_back(mean_dice(real, preview));
         if (n < choice.peers) {
             if (const auto peer = peer_labels(real, seed)) {
                 out.peer_dice.push_back(mean_dice(real, peer->label));
@@ -91,7 +97,7 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
         for (int dab = 1; dab <= 3; ++dab) {
             if (dab_largest(real, segment::certainty_of(walks), looked)) {
                 begin = process_seconds();
-                walks = segment::random_walks(real.graph, looked, real.labels, {}, &walks);
+                walks = segment::random_walks(graph_of_seeds(real, looked), looked, real.labels, {}, &walks);
                 out.dab_seconds.push_back(process_seconds() - begin);
             }
             (dab == 1   ? out.one_dab
@@ -103,7 +109,7 @@ SeriesResult run_series(const SeededCase& real, std::uint64_t first, const Segme
         int reached = dice >= 0.97 ? 0 : -1;
         for (int dab = 1; dab <= most_dabs && (dab <= 3 || reached < 0); ++dab) {
             if (!dab_largest(real, zero_where_wrong(real, segment::labels_of(walks)), seed)) break;
-            walks = segment::random_walks(real.graph, seed, real.labels, {}, &walks);
+            walks = segment::random_walks(graph_of_seeds(real, seed), seed, real.labels, {}, &walks);
             dice = mean_dice(real, segment::labels_of(walks));
             if (dab == 3) out.corrected.push_back(dice);
             if (reached < 0 && dice >= 0.97) reached = dab;
@@ -128,6 +134,8 @@ Json report(const SeededCase& real, const char* series, const SeriesResult& r, b
              {"dice_after_three_corrections", corrected.mean},
              {"reach_0_97", r.dabs_needed.size()},
              {"dabs_for_0_97", r.dabs_needed.empty() ? Json() : Json(interval_of(r.dabs_needed).mean)},
+             {"dice_of_preview", interval_of(r.preview).mean},
+             {"preview_s", interval_of(r.preview_seconds).mean},
              {"first_s", first.mean},
              {"dab_s", dab.mean}};
     if (!quiet)
@@ -139,6 +147,9 @@ Json report(const SeededCase& real, const char* series, const SeriesResult& r, b
             real.name, series, real.graph.nodes(), r.dice.size(), dice.mean, dice.half, one.mean, two.mean, three.mean,
             corrected.mean, r.dabs_needed.size(), r.dabs_needed.empty() ? 0.0 : interval_of(r.dabs_needed).mean,
             first.mean, dab.mean);
+    if (!quiet)
+        fmt::print("           preview by a watershed: Dice {:.4f}, {:.3f} s\n", interval_of(r.preview).mean,
+                   interval_of(r.preview_seconds).mean);
     if (r.difference.empty()) return row;
     const Interval peer = interval_of(r.peer_dice), difference = interval_of(r.difference),
                    seconds = interval_of(r.peer_seconds);

@@ -102,7 +102,7 @@ int bench_rope(const RopeBenchChoice& choice) {
     fmt::print(
         "{} random pulls of 20 ms on ropes of 32 segments over bone: energy {:.1e} J given at most, of {:.3g} J "
         "moved\n",
-        ropes * pulls_per_rope, -small.worst, small.moved);
+        ropes * pulls_per_rope, std::abs(small.worst), small.moved);
     fmt::print("{:.2f} % of ticks end at their most iterations; largest residual {:.1e} N\n", 100.0 * share,
                small.residual);
     fmt::print("a tick of 64 segments: median {:.0f} µs, p99 {:.0f} µs\n", quantile(0.5), quantile(0.99));

@@ -152,10 +152,8 @@ void print(const study::ScanGraph& scan, const study::SegmentedScan& found) {
         found.residual, found.iterations, found.seconds, found.certainty_p05);
 }
 
-/// Opens the window; the labels that have strokes when it is closed.
-std::vector<segment::SeedLabel> painted(const study::ScanGraph& scan, const study::SegmentSettings& settings,
-                                        const SegmentChoice& choice) {
-    view::paint_view(scan, settings, choice.paint, session::stop_on_signals());
+/// The labels that had strokes when the window was closed.
+std::vector<segment::SeedLabel> painted(const SegmentChoice& choice) {
     std::vector<segment::SeedLabel> labels;
     if (std::filesystem::exists(choice.paint.seeds))
         labels = segment::read_seeds(choice.paint.seeds, segment::SeedsUse::draft);
@@ -183,7 +181,12 @@ int segment_bone(const SegmentChoice& given) {
         return done;
     }
     if (!choice.paint.seeds.empty()) {
-        seeds = painted(scan, settings, choice);
+        if (const std::string lost = view::paint_view(scan, settings, choice.paint, session::stop_on_signals());
+            !lost.empty()) {
+            fmt::print(stderr, "tactus: {}; the last strokes are lost\n", lost);
+            return output_lost;
+        }
+        seeds = painted(choice);
         choice.seeds = choice.paint.seeds;
         const bool is_enough = seeds.size() >= 2;
         if (!choice.json && (choice.out.empty() || !is_enough))

@@ -106,7 +106,7 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
         case VisualKind::fingers: outline.fingers.push_back({view.node.name, v.value, v.place, v.force, {}}); break;
         case VisualKind::weight: outline.weights.push_back({v.hand, v.value}); break;
         case VisualKind::workspace:
-            if (!v.hand.empty()) outline.places.push_back({v.hand, v.frame, v.value});
+            if (!v.hand.empty() || !v.place.empty()) outline.places.push_back({v.hand, v.frame, v.value, v.place});
             break;
         case VisualKind::handle: break;
         case VisualKind::mark:
@@ -128,6 +128,16 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
         case VisualKind::box:
         case VisualKind::spring: outline.guides.push_back({view.node.name, v}); break;
     }
+}
+
+/// A frame that a node moves on, as one that puts the scene before a planned cut, is where that node puts it.
+void lead_on(std::vector<SceneOutline::Place>& places) {
+    for (SceneOutline::Place& place : places)
+        for (const SceneOutline::Place& next : places)
+            if (!place.device.empty() && !next.moved.empty() && next.frame == place.frame) place.moved = next.moved;
+    std::erase_if(places, [](const SceneOutline::Place& place) { return place.device.empty(); });
+    for (SceneOutline::Place& place : places)
+        if (!place.moved.empty()) place.frame = place.moved;
 }
 
 /// Poses where nothing else is to be seen: those that nodes declare and others compute.
@@ -203,6 +213,7 @@ SceneOutline outline_of(const compile::Plan& plan) {
         const NodeView view(plan, static_cast<int>(i));
         for (const Visual& visual : visuals_of(*view.node.type, view.node.instance.get())) add(visual, view, outline);
     }
+    lead_on(outline.places);
     add_still_bones(plan, outline);
     // A gripper on an arm moves with the arm.
     for (auto& fingers : outline.fingers)

@@ -92,6 +92,7 @@ struct SceneOutline {
     /// The workspace mapping of a device: its handle, the same pose in the scene, and the scale.
     struct Place {
         std::string device, frame, scale;
+        std::string moved = {};  ///< where another node has moved `frame` to; `frame` then names that
     };
 
     std::string title;

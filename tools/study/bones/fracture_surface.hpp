@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -2,7 +2,7 @@
 #include "tools/study/bones/intact_side.hpp"
 
 #include "dsp/contact/sample_surface.hpp"
-#include "dsp/fit/mirror.hpp"
+#include "dsp/fit/registration/mirror.hpp"
 #include "dsp/volume/outer_shell.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"

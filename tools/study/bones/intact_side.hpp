@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 #include "tools/study/bones/kept_numbers.hpp"
 
 #include <cstddef>

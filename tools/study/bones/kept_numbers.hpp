@@ -2,7 +2,7 @@
 // Registrations as lists of numbers, for kept results.
 #pragma once
 
-#include "dsp/fit/mirror.hpp"
+#include "dsp/fit/registration/mirror.hpp"
 #include "tools/study/bones/kept_result.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/registration.hpp"
 
-#include "dsp/fit/point_registration.hpp"
+#include "dsp/fit/registration/point_registration.hpp"
 
 namespace tactus::study {
 

@@ -2,7 +2,7 @@
 // Registers a surface to another one of the same shape, as a whole and, on request, a displaced part separately.
 #pragma once
 
-#include "dsp/fit/mirror.hpp"
+#include "dsp/fit/registration/mirror.hpp"
 #include "tools/study/bones/surface_file.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/assembly_parts.hpp"
 
-#include "dsp/fit/assemblies.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 
 #include <glm/geometric.hpp>
 

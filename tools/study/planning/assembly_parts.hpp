@@ -2,7 +2,7 @@
 // The parts of a case while it is put together: which fragments hang together, where they are, and by which fits.
 #pragma once
 
-#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
 
 #include <functional>

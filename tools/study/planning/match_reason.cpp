@@ -131,6 +131,15 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
                                  ? "bring it nearer to its place, correct the paint, or use --mode global"
                              : only == fit::Arrangement::none ? "name the partner, or correct the paint"
                                                               : "correct the paint";
+    if (found.kerf && found.kerf->is_doubtful()) {
+        const fit::KerfEstimate& kerf = *found.kerf;
+        const std::string lost =
+            fmt::format("told a kerf of {:.1f} mm, and the cortex beyond the faces says {:.1f} ± {:.1f} mm",
+                        kerf.told * 1e3, kerf.kerf * 1e3, kerf.spread * 1e3);
+        return kerf.is_contradicted
+                   ? "unsure: " + lost + "; measure the lost bone and correct --kerf, or place it by hand"
+                   : "unsure: " + lost + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";
+    }
     if (found.inside != fit::Arrangement::none) {
         const std::string& other = plan.fragments[static_cast<std::size_t>(found.inside)].name;
         return fmt::format(

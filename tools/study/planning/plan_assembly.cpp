@@ -2,7 +2,7 @@
 #include "tools/study/planning/plan_assembly.hpp"
 
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/assemblies.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 #include "dsp/fit/joint_refinement.hpp"
 #include "tools/study/planning/assembly_parts.hpp"
 #include "tools/study/workers.hpp"

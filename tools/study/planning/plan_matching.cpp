@@ -2,12 +2,13 @@
 #include "tools/study/planning/plan_matching.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 #include "dsp/fit/as_scanned.hpp"
-#include "dsp/fit/assemblies.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "tools/study/bones/intact_side.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::study {
 
@@ -68,6 +69,29 @@ double PlanMatching::overlap_volume(int a, const Pose& at, int b, const Pose& th
     return fit::overlap_volume(fragment(a).bone.distance, at, fragment(b).map, there);
 }
 
+std::optional<fit::KerfEstimate> PlanMatching::estimate_kerf(const PlanMatch& found,
+                                                             const fit::Arrangement& arrangement) const {
+    const int moving = found.match.moving, partner = found.match.partner;
+    std::vector<Pose> poses = poses_of(arrangement);
+    poses[static_cast<std::size_t>(moving)] = found.match.pose;
+    fit::FitEnergy energy = matcher_->make_energy();
+    const fit::FitSurface *mine = nullptr, *other = nullptr;
+    double most = 0.0;
+    for (std::size_t m = 0; m < matcher_->faces(); ++m)
+        for (std::size_t f = 0; f < matcher_->faces(); ++f) {
+            if (matcher_->fragment_of(m) != moving || matcher_->fragment_of(f) != partner) continue;
+            const fit::FitQuality q = matcher_->quality_of(energy, m, f, poses);
+            if (!(q.score * std::sqrt(q.overlap) > most)) continue;
+            most = q.score * std::sqrt(q.overlap);
+            mine = &matcher_->face(m);
+            other = &matcher_->face(f);
+        }
+    if (!mine) return std::nullopt;
+    const Pose between = arrangement.pose(partner).inverse() * found.match.pose;
+    return fit::check_kerf({fragment(moving).bone.points, mine}, {fragment(partner).bone.points, other}, between,
+                           settings().fit.kerf);
+}
+
 /// Looks for the fragment that what moves would lie in most.
 void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement,
                                     const std::vector<char>& counts) const {
@@ -100,6 +124,10 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
         made.verdict == fit::FitVerdict::fit &&
         fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
+    if (found.match.verdict == fit::FitVerdict::fit) {
+        if (settings().fit.kerf > 0.0) found.kerf = estimate_kerf(found, arrangement);
+        if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
+    }
     if (found.match.verdict == fit::FitVerdict::fit) {
         look_for_overlap(found, arrangement, counts);
         if (found.inside != fit::Arrangement::none) found.match.verdict = fit::FitVerdict::blocked;

@@ -4,6 +4,7 @@
 
 #include "dsp/fit/fragment_matcher.hpp"
 #include "dsp/fit/gap.hpp"
+#include "dsp/fit/kerf_check.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
@@ -24,6 +25,7 @@ struct PlanMatch {
     bool was_painted = false; ///< the paint comes from the file; false: it was proposed
     int inside = fit::Arrangement::none;  ///< fragment that it would lie in; the verdict is `blocked`
     double inside_volume = 0.0;  ///< m³ of both
+    std::optional<fit::KerfEstimate> kerf;  ///< where faces fit with a told kerf; a doubt is `ambiguous`
     bool is_apart = false;  ///< it fits a fragment that is not connected to what stands, and nothing of that
 };
 
@@ -34,7 +36,7 @@ enum class Partners : std::uint8_t { standing_first, all };
 /// What fits take into account beside the faces.
 struct FitWay {
     double kerf = 0.0;  ///< m, width of the bone that was lost along the faces, which fits leave open
-    bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/healthy_pull.hpp
+    bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/registration/healthy_pull.hpp
 };
 
 /// The fragments of a plan and a matcher for them. Does not change the plan.
@@ -65,6 +67,8 @@ public:
     PlanMatch anywhere(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
 
 private:
+    /// None when no faces of the two lie on each other.
+    std::optional<fit::KerfEstimate> estimate_kerf(const PlanMatch& found, const fit::Arrangement& arrangement) const;
     void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement, const std::vector<char>& counts) const;
 
     void make_matcher(const FitWay& way);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/fit/gap.hpp"
-#include "dsp/fit/mirror.hpp"
+#include "dsp/fit/registration/mirror.hpp"
 #include "tools/study/bones/kept_result.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_case.hpp"

@@ -6,12 +6,17 @@
 #include "assets/cases/plan_lock.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/reconstruct/bodies.hpp"
 #include "dsp/reconstruct/cut.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
 
 namespace tactus::study {
@@ -20,14 +25,21 @@ namespace {
 
 namespace fs = std::filesystem;
 using geometry::TriangleSurface;
+using reconstruct::CutBy;
 using reconstruct::FibulaInputs;
 using reconstruct::FibulaPlan;
 using reconstruct::Plane;
+using reconstruct::RestPiece;
 
 struct Piece {
     std::string name;
     TriangleSurface surface;
+    CutBy cut_by = CutBy::none;
 };
+
+/// m³. A separate body that is not larger goes with the piece in which it stands; a molar has about 1 cm³. An
+/// assumption, not from a source.
+constexpr double largest_tooth = 2e-6;
 
 /// Removes the folder unless told to keep it.
 struct NewFolder {
@@ -50,6 +62,17 @@ struct NewFolder {
     NewFolder& operator=(const NewFolder&) = delete;
 };
 
+/// Edges that do not belong to two triangles of opposite direction.
+std::size_t open_edges(const TriangleSurface& surface) {
+    std::map<std::pair<int, int>, int> balance;
+    for (const auto& t : surface.triangles)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const int a = t[c], b = t[(c + 1) % 3];
+            balance[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return static_cast<std::size_t>(std::ranges::count_if(balance, [](const auto& edge) { return edge.second != 0; }));
+}
+
 /// A plane of the jaw, its normal along the order of the planes.
 Plane jaw_plane(const FibulaInputs& inputs, const FibulaPlan& plan, std::size_t segment, std::size_t end) {
     const reconstruct::FibulaSegment& s = plan.segments[segment];
@@ -59,26 +82,73 @@ Plane jaw_plane(const FibulaInputs& inputs, const FibulaPlan& plan, std::size_t 
     return plane;
 }
 
+void append(TriangleSurface& to, const TriangleSurface& more) {
+    const int first = static_cast<int>(to.vertices.size());
+    to.vertices.insert(to.vertices.end(), more.vertices.begin(), more.vertices.end());
+    for (const auto& t : more.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+/// m², between the middle of a surface and the nearest vertex of another one.
+double square_distance(const TriangleSurface& small, const TriangleSurface& large) {
+    Vec3 middle(0.0);
+    for (const Vec3& v : small.vertices) middle += v / static_cast<double>(small.vertices.size());
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& v : large.vertices) least = std::min(least, glm::dot(v - middle, v - middle));
+    return least;
+}
+
+/// The planes by which the jaw is cut, as of cut_between.
+reconstruct::CutPieces cut_jaw(const FibulaInputs& inputs, const FibulaPlan& plan) {
+    const Plane first = jaw_plane(inputs, plan, 0, 0);
+    Plane last = jaw_plane(inputs, plan, plan.segments.size() - 1, 1);
+    switch (inputs.resection) {
+        case reconstruct::Resection::between: return reconstruct::cut_between(*inputs.jaw, first, last);
+        case reconstruct::Resection::after_first: return reconstruct::cut_between(*inputs.jaw, first, {});
+        case reconstruct::Resection::before_last:
+            last.normal = -last.normal;
+            return reconstruct::cut_between(*inputs.jaw, last, {});
+        case reconstruct::Resection::none: break;
+    }
+    return {{}, {{*inputs.jaw, CutBy::first}}};
+}
+
 void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const FibulaPlan& plan) {
+    if (const std::size_t open = open_edges(*inputs.jaw); open > 0)
+        throw Error(
+            fmt::format("the jaw: its mesh is open at {} edges, and pieces of an open mesh enclose nothing; "
+                        "close it first",
+                        open));
     reconstruct::CutPieces cut;
     try {
-        cut = reconstruct::cut_between(*inputs.jaw, jaw_plane(inputs, plan, 0, 0),
-                                       jaw_plane(inputs, plan, plan.segments.size() - 1, 1));
+        cut = cut_jaw(inputs, plan);
     } catch (const Error& error) {
         throw Error(fmt::format("the jaw: {}", error.message()));
     }
-    pieces.push_back({"resected", std::move(cut.between)});
     std::vector<Piece> kept;
-    for (TriangleSurface& part : cut.rest) {
-        if (kept.empty() || 100 * part.triangles.size() >= kept[0].surface.triangles.size()) {
-            kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part)});
-            continue;
-        }
-        TriangleSurface& largest = kept[0].surface;
-        const int first = static_cast<int>(largest.vertices.size());
-        largest.vertices.insert(largest.vertices.end(), part.vertices.begin(), part.vertices.end());
-        for (const auto& t : part.triangles) largest.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    std::vector<const RestPiece*> loose;
+    for (RestPiece& part : cut.rest) {
+        // The rest comes by size: the first piece at a plane is the jaw itself, a small one after it is half a tooth.
+        const bool is_jaw = part.cut_by != CutBy::none &&
+                            std::ranges::none_of(kept, [&](const Piece& other) { return other.cut_by == part.cut_by; });
+        if (is_jaw || std::abs(reconstruct::signed_volume(part.surface)) > largest_tooth)
+            kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part.surface), part.cut_by});
+        else loose.push_back(&part);
     }
+    // Nearest before anything is joined: a tooth must not draw the next one to its piece.
+    std::vector<TriangleSurface*> goes_to;
+    for (const RestPiece* part : loose) {
+        TriangleSurface* nearest = nullptr;
+        double least = std::numeric_limits<double>::infinity();
+        const auto look = [&](TriangleSurface& other) {
+            if (const double away = square_distance(part->surface, other); away < least) least = away, nearest = &other;
+        };
+        for (Piece& piece : kept)
+            if (part->cut_by == CutBy::none || part->cut_by == piece.cut_by) look(piece.surface);
+        if (part->cut_by == CutBy::none && !cut.between.triangles.empty()) look(cut.between);
+        goes_to.push_back(nearest);
+    }
+    for (std::size_t n = 0; n < loose.size(); ++n) append(*goes_to[n], loose[n]->surface);
+    if (!cut.between.triangles.empty()) pieces.push_back({"resected", std::move(cut.between), CutBy::none});
     for (Piece& piece : kept) pieces.push_back(std::move(piece));
 }
 
@@ -101,7 +171,7 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
         const std::size_t low = inputs.reversed ? 1 : 0;
         try {
             pieces.push_back({fmt::format("segment-{}", n + 1),
-                              reconstruct::cut_between(donor, planes[low], planes[1 - low]).between});
+                              reconstruct::cut_between(donor, planes[low], planes[1 - low]).between, CutBy::none});
         } catch (const Error& error) {
             throw Error(fmt::format("segment {} of the donor: {}", n + 1, error.message()));
         }
@@ -122,7 +192,7 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
         step.time = cases::time_of_day();
         cases::add_step(plan, std::move(step));
     };
-    if (inputs.jaw) {
+    if (inputs.jaw && inputs.resection != reconstruct::Resection::none) {
         cases::PlanStep hide;
         hide.kind = cases::StepKind::hide;
         hide.by = "command";

@@ -16,9 +16,10 @@ struct Reconstruction {
 
 /// Cuts the donor at the planned planes and the jaw, when there is one, at the first and last of its planes, writes the
 /// pieces into "NAME-pieces" beside the plan (STL, mm, LPS) and saves a plan with a step that hides the resected piece
-/// and one per segment that places it. Pieces of the jaw that are no neighbours of a cut and small (less than 1 % of
-/// the triangles, such as teeth) go with its largest one. Throws Error when there is no donor, when the plan or the
-/// folder exists, and as plan_fibula, cut_between and load_fragment do; then nothing is left behind.
+/// and one per segment that places it. Bodies of the jaw of at most 2 cm³, such as teeth, go with the piece that is
+/// nearest to their middle; what is left of one that a plane cuts goes with the jaw on its side. Throws Error when there
+/// is no donor, when the plan or the folder exists, and as plan_fibula, cut_between and load_fragment do; then nothing
+/// is left behind.
 Reconstruction make_reconstruction(const reconstruct::FibulaInputs& inputs, const std::filesystem::path& plan);
 
 }  // namespace tactus::study

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_words.hpp"
 
-#include "dsp/fit/assemblies.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

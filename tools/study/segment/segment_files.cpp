@@ -19,6 +19,17 @@ namespace tactus::study {
 
 namespace {
 
+/// A bone's name in its file: there '#' divides the file's name from the bone's.
+std::string bone_name_of(const SegmentedScan& found, std::size_t label) {
+    std::string name = found.labels[label].name;
+    std::ranges::replace(name, '#', '_');
+    const auto is_taken = [&](const SegmentedLabel& other) { return other.name == name; };
+    if (name == found.labels[label].name) return name;
+    name += fmt::format(" ({})", label + 1);  // other names may differ by this character alone
+    while (std::ranges::any_of(found.labels, is_taken)) name += '_';
+    return name;
+}
+
 std::vector<volume::Segment> segments_of(const SegmentedScan& found) {
     std::vector<volume::Segment> segments;
     for (const SegmentedLabel& label : found.labels)
@@ -42,7 +53,8 @@ void write_bones(const ScanGraph& scan, const SegmentedScan& found, const Segmen
     summary.notes = scan.notes;
     const std::string hash = bone::hash_of_source(settings.scan);
     std::vector<bone::Bone> bones;
-    for (const volume::Segment& segment : segments_of(found)) {
+    for (volume::Segment segment : segments_of(found)) {
+        segment.name = bone_name_of(found, bones.size());
         bones.push_back(bone::bone_of_label(labels, segment, how, settings.run));
         bone::add_provenance(bones.back(), options, summary, hash);
         bones.back().provenance["seeds"] = seeds;
@@ -64,8 +76,10 @@ void write_plan_of(const std::filesystem::path& bones, const SegmentedScan& foun
     const cases::PlanLock lock(plan);
     cases::CasePlan made;
     made.title = plan.stem().stem().string();
-    for (const SegmentedLabel& label : found.labels) {
-        cases::add_fragment(made, label.name, bones.string() + "#" + label.name, plan.parent_path(), label.colour);
+    for (std::size_t l = 0; l < found.labels.size(); ++l) {
+        const SegmentedLabel& label = found.labels[l];
+        cases::add_fragment(made, label.name, bones.string() + "#" + bone_name_of(found, l), plan.parent_path(),
+                            label.colour);
         load_fragment(made.fragments.back(), plan.parent_path());
     }
     cases::save_case_plan(made, plan);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -43,19 +44,20 @@ double ScriptLine::number(std::size_t i) const {
     const std::string& text = word(i);
     double value = 0.0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size())
+    if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
         throw Error(where, fmt::format("'{}' is not a number", text));
     return value;
 }
 
-std::vector<ScriptLine> read_script(const std::filesystem::path& file, const std::vector<std::string>& commands,
-                                    const std::vector<std::pair<std::string, std::string>>& old) {
+std::vector<ScriptLine> script_lines(const std::string& text, const std::string& file,
+                                     const std::vector<std::string>& commands,
+                                     const std::vector<std::pair<std::string, std::string>>& old) {
     std::vector<ScriptLine> lines;
-    std::istringstream text(file::read_whole_file(file));
+    std::istringstream stream(text);
     int number = 0;
-    for (std::string written; std::getline(text, written);) {
+    for (std::string written; std::getline(stream, written);) {
         ++number;
-        ScriptLine line{{file.string(), number, 1}, false, words_of(written)};
+        ScriptLine line{{file, number, 1}, false, words_of(written)};
         if (line.words.empty()) continue;
         if (line.words.front() == "!") {
             line.is_refused = true;
@@ -70,6 +72,11 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file, const std
         lines.push_back(std::move(line));
     }
     return lines;
+}
+
+std::vector<ScriptLine> read_script(const std::filesystem::path& file, const std::vector<std::string>& commands,
+                                    const std::vector<std::pair<std::string, std::string>>& old) {
+    return script_lines(file::read_whole_file(file), file.string(), commands, old);
 }
 
 }  // namespace tactus::view

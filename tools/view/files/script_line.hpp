@@ -18,12 +18,16 @@ struct ScriptLine {
 
     /// Throws Error where there are fewer words.
     const std::string& word(std::size_t i) const;
-    /// Throws Error also where the word is no number.
+    /// Throws Error also where the word is no number, or no finite one.
     double number(std::size_t i) const;
 };
 
-/// The lines of a file that have commands. Throws Error for one that is not among `commands`. `old`: names of before, and
+/// The lines of a text that have commands. Throws Error for one that is not among `commands`. `old`: names of before, and
 /// those of today.
+std::vector<ScriptLine> script_lines(const std::string& text, const std::string& file,
+                                     const std::vector<std::string>& commands,
+                                     const std::vector<std::pair<std::string, std::string>>& old = {});
+/// The same from a file.
 std::vector<ScriptLine> read_script(const std::filesystem::path& file, const std::vector<std::string>& commands,
                                     const std::vector<std::pair<std::string, std::string>>& old = {});
 

@@ -124,7 +124,7 @@ void BonePanel::render(int width, int height) {
         camera_.fit(mesh_->bounds, static_cast<double>(width) / height);
         is_aimed_ = true;
     }
-    std::string colours = fmt::format("{}", static_cast<const void*>(bench_.labels().get()));
+    std::string colours = fmt::format("{}", bench_.labels() ? bench_.labels()->number : 0);
     for (const auto& c : bench_.colours()) colours += fmt::format(" {}.{}.{}", c[0], c[1], c[2]);
     if (colours != coloured_) {
         coloured_ = colours;
@@ -177,6 +177,8 @@ void BonePanel::draw(const Fonts& fonts) {
         for (const Vec3& p : painting.open_stroke().points)
             if (const auto at = place_of(p)) paint.dot(*at, 3.0 * fonts.scale, tone::chosen);
     paint.text(corner_ + Point{8.0, 6.0}, 12.0 * fonts.scale, tone::dim, "right: turn, middle: move, wheel: zoom");
+    if (bench_.labels() && bench_.labels()->is_preview)
+        paint.text_left_of(corner_ + Point{size_.x - 6.0, 6.0}, 12.0 * fonts.scale, tone::warm, "preview");
 }
 
 }  // namespace tactus::view

@@ -3,6 +3,7 @@
 
 #include "dsp/segment/strokes.hpp"
 #include "dsp/segment/uncertain.hpp"
+#include "dsp/segment/watershed.hpp"
 
 #include <fmt/format.h>
 
@@ -29,32 +30,57 @@ std::string problem_of(const std::vector<std::uint8_t>& seed, const std::vector<
     return painted == 0 ? "paint a place of each fragment" : "paint a place of a second fragment";
 }
 
+std::vector<std::size_t> voxels_of(const std::vector<std::uint8_t>& label, std::size_t labels) {
+    std::vector<std::size_t> count(labels, 0);
+    for (const std::uint8_t l : label)
+        if (l != 0) ++count[l - 1u];
+    return count;
+}
+
 }  // namespace
 
 LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
-                             std::optional<segment::Walks>& before, const RunJobs& run) {
+                             std::optional<segment::Walks>& before, const RunJobs& run,
+                             const std::function<void(LiveLabelling)>& preview) {
     const auto begin = std::chrono::steady_clock::now();
+    const auto since = [begin] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
     LiveLabelling out;
     out.seed.assign(scan.graph.nodes(), 0);
     for (std::size_t l = 0; l < labels.size(); ++l)
-        for (const segment::Stroke& stroke : labels[l].strokes)
-            segment::paint(scan.box, scan.node_of_voxel, stroke, static_cast<std::uint8_t>(l + 1), out.seed);
-    out.problem = problem_of(out.seed, labels);
+        for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)
+            if (segment::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s], static_cast<std::uint8_t>(l + 1),
+                               out.seed) == 0 &&
+                out.problem.empty())
+                out.problem = fmt::format(
+                    "stroke {} of '{}' touches no bone from {:g} on: erase it, or end and choose "
+                    "another --threshold",
+                    s + 1, labels[l].name, scan.threshold);
+    if (out.problem.empty()) out.problem = problem_of(out.seed, labels);
     if (out.problem.empty()) {
         const int count = static_cast<int>(labels.size());
         const bool is_warm = before && before->labels == count;
         segment::GapLaw law;
         const std::unique_ptr<segment::VoxelGraph> own = study::graph_for_seeds(scan, out.seed, law);
+        if (preview) {
+            LiveLabelling first;
+            first.is_preview = true;
+            first.seed = out.seed;
+            first.label = segment::watershed(own ? *own : scan.graph, out.seed);
+            first.voxels = voxels_of(first.label, labels.size());
+            first.seconds = since();
+            preview(std::move(first));
+        }
         before = segment::random_walks(own ? *own : scan.graph, out.seed, count, {}, is_warm ? &*before : nullptr, run);
         out.residual = before->residual;
         out.iterations = before->iterations;
         out.label = segment::labels_of(*before);
         out.certainty = segment::certainty_of(*before);
-        out.voxels.assign(labels.size(), 0);
+        out.voxels = voxels_of(out.label, labels.size());
         std::vector<float> of_labelled = out.certainty;
         for (std::size_t n = 0; n < out.label.size(); ++n)
-            if (out.label[n] != 0) ++out.voxels[out.label[n] - 1u];
-            else {
+            if (out.label[n] == 0) {
                 ++out.unseeded;
                 of_labelled[n] = 1.0f;
             }
@@ -62,7 +88,7 @@ LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<seg
             out.uncertain.push_back(
                 {region.nodes, scan.box.position(region.deepest[0], region.deepest[1], region.deepest[2])});
     }
-    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out.seconds = since();
     return out;
 }
 
@@ -96,8 +122,16 @@ bool LiveLabels::is_busy() const {
     return is_working_ || waiting_;
 }
 
+void LiveLabels::show(LiveLabelling answer) {
+    answer.number = ++shown_;
+    const std::lock_guard lock(mutex_);
+    latest_ = std::make_shared<const LiveLabelling>(std::move(answer));
+}
+
 void LiveLabels::work() {
+    constexpr double slow = 0.4;  // s; a hand does not wait for less
     std::optional<segment::Walks> before;
+    double last = 0.0;
     for (;;) {
         Question question;
         {
@@ -109,16 +143,23 @@ void LiveLabels::work() {
             waiting_.reset();
             is_working_ = true;
         }
-        auto answer = std::make_shared<LiveLabelling>();
+        LiveLabelling answer;
         try {
-            *answer = live_labelling(scan_, question.labels, before, run_);
+            const bool is_warm = before && before->labels == static_cast<int>(question.labels.size());
+            std::function<void(LiveLabelling)> preview;
+            if (!is_warm || last > slow)
+                preview = [&](LiveLabelling labels) {
+                    labels.version = question.version;
+                    show(std::move(labels));
+                };
+            answer = live_labelling(scan_, question.labels, before, run_, preview);
+            last = answer.seconds;
         } catch (const std::exception& failure) {
             before.reset();
-            answer->problem = failure.what();
+            answer.problem = failure.what();
         }
-        answer->version = question.version;
-        const std::lock_guard lock(mutex_);
-        latest_ = std::move(answer);
+        answer.version = question.version;
+        show(std::move(answer));
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,6 +21,8 @@ namespace tactus::view {
 /// What the walks found for one version of the painting. Per node of the graph.
 struct LiveLabelling {
     int version = 0;
+    int number = 0;           ///< of all answers of a LiveLabels, from 1
+    bool is_preview = false;  ///< labels by a watershed, without certainty; those of the walks follow
     std::vector<std::uint8_t> seed;   ///< 0: none
     std::vector<std::uint8_t> label;  ///< 0: none; empty when there is a problem
     std::vector<float> certainty;
@@ -33,12 +36,13 @@ struct LiveLabelling {
 };
 
 /// Labels of one painting: seeds, walks, certainty. `before`: the walks of an earlier painting of as many labels, which make
-/// this one faster; set to those found.
+/// this one faster; set to those found. `preview`: called with labels by a watershed before the walks begin.
 LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
-                             std::optional<segment::Walks>& before, const RunJobs& run);
+                             std::optional<segment::Walks>& before, const RunJobs& run,
+                             const std::function<void(LiveLabelling)>& preview = {});
 
 /// Solves on a thread of its own. `scan` must outlive it. The newest question replaces one that waits; nothing waits for the
-/// solver but the destructor.
+/// solver but the destructor. A preview is shown where the walks have nothing to begin with, or took over 0.4 s before.
 class LiveLabels {
 public:
     explicit LiveLabels(const study::ScanGraph& scan, RunJobs run = run_in_turn);
@@ -57,9 +61,11 @@ private:
         std::vector<segment::SeedLabel> labels;
     };
     void work();
+    void show(LiveLabelling answer);
 
     const study::ScanGraph& scan_;
     RunJobs run_;
+    int shown_ = 0;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::optional<Question> waiting_;

@@ -20,11 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool touches(const study::ScanGraph& scan, const segment::Stroke& stroke) {
-    std::vector<std::uint8_t> seed(scan.graph.nodes(), 0);
-    return segment::paint(scan.box, scan.node_of_voxel, stroke, 1, seed) > 0;
-}
-
 vessel::TrackSettings track_settings(const study::ScanGraph& scan) {
     vessel::TrackSettings settings;
     if (scan.hu == volume::HuKind::calibrated) settings.clip_below = study::least_hu_of_vessels;
@@ -64,7 +59,9 @@ PaintBench::PaintBench(const study::ScanGraph& scan, study::SegmentSettings sett
     : window(suggested_window(scan.scan)),
       scan_(scan),
       settings_(std::move(settings)),
-      painting_(seeds, [&scan](const segment::Stroke& stroke) { return touches(scan, stroke); }),
+      painting_(
+          seeds,
+          [&scan](const segment::Stroke& stroke) { return segment::touches(scan.box, scan.node_of_voxel, stroke); }),
       live_(scan, settings_.run),
       followers_(scan.scan, track_settings(scan), stem_of_seeds(seeds)) {
     const volume::Grid& box = scan.box;
@@ -89,17 +86,20 @@ void PaintBench::tend() {
     }
     if (auto answer = live_.latest(); answer && answer != labels_) {
         labels_ = std::move(answer);
-        if (!labels_->problem.empty()) tell(labels_->problem);
+        std::size_t unsure = 0;
+        for (const study::UncertainPlace& place : labels_->uncertain) unsure += place.voxels;
+        if (!painting_.is_kept()) tell(painting_.problem(), true);
+        else if (!labels_->problem.empty()) tell(labels_->problem);
+        else if (labels_->is_preview) tell("these labels are a preview; the random walks are being computed");
         else
             tell(fmt::format("{:.2f} s; residual {:.0e}; {} voxels below certainty 0.4{}", labels_->seconds,
-                             labels_->residual,
-                             labels_->uncertain.empty() ? std::size_t{0} : labels_->uncertain.front().voxels,
+                             labels_->residual, unsure,
                              labels_->unseeded > 0 ? fmt::format("; {} in islands without a seed", labels_->unseeded)
                                                    : std::string()));
     }
-    if (told_problem_ != painting_.problem()) {
-        told_problem_ = painting_.problem();
-        if (!told_problem_.empty()) tell(told_problem_, true);
+    if (told_problems_ != painting_.problems()) {
+        told_problems_ = painting_.problems();
+        tell(painting_.problem(), true);
     }
     const std::size_t before = vessels_.size();
     vessels_ = followers_.found();
@@ -131,6 +131,10 @@ void PaintBench::move_cursor(const Vec3& to) {
 }
 
 bool PaintBench::look_here() {
+    if (labels_ && labels_->is_preview) {
+        tell("what is sure is known when the random walks are computed");
+        return false;
+    }
     if (!labels_ || labels_->uncertain.empty()) {
         tell(labels_ && labels_->problem.empty() ? "no place is uncertain" : "there are no labels yet");
         return false;

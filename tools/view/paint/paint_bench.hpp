@@ -64,8 +64,8 @@ private:
     std::shared_ptr<const LiveLabelling> labels_;
     std::vector<std::shared_ptr<const LiveVessel>> vessels_;
     std::future<std::string> plan_;
-    int asked_ = -1;
-    std::string message_, told_problem_;
+    int asked_ = -1, told_problems_ = 0;
+    std::string message_;
     bool is_problem_ = false;
 };
 

@@ -110,8 +110,14 @@ void PaintDesk::draw_labels() {
                 renamed_ = -1;
             } else if (ImGui::IsItemDeactivated()) renamed_ = -1;
         } else {
-            if (ImGui::Selectable(label.name.c_str(), painting.active == l, ImGuiSelectableFlags_AllowDoubleClick,
-                                  ImVec2(wide, 0.0f))) {
+            const bool is_chosen = ImGui::Selectable("##row", painting.active == l,
+                                                     ImGuiSelectableFlags_AllowDoubleClick, ImVec2(wide, 0.0f));
+            // Not as the row's own text, in which ImGui takes ## for the end.
+            const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+            ImGui::PushClipRect(low, high, true);
+            ImGui::GetWindowDrawList()->AddText(low, ImGui::GetColorU32(ImGuiCol_Text), label.name.c_str());
+            ImGui::PopClipRect();
+            if (is_chosen) {
                 painting.active = l;
                 if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
                     renamed_ = static_cast<int>(l);
@@ -119,7 +125,7 @@ void PaintDesk::draw_labels() {
                 }
             }
             mark_spot("label " + label.name);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("double click: another name");
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\ndouble click: another name", label.name.c_str());
         }
         ImGui::SameLine();
         if (ImGui::SmallButton("x")) removed = static_cast<int>(l);

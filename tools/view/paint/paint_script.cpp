@@ -5,6 +5,7 @@
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/paint/paint_desk.hpp"
+#include "tools/view/paint/paint_lines.hpp"
 #include "tools/view/spots.hpp"
 
 #include <fmt/format.h>
@@ -18,13 +19,10 @@ namespace {
 
 constexpr double longest_wait = 300.0;  // s
 
-const std::vector<std::string> commands{
-    "label", "brush",  "stroke", "erase", "remove", "rename", "undo",  "redo", "cursor", "grey", "zoom",       "from",
-    "look",  "vessel", "plan",   "until", "press",  "drag",   "wheel", "size", "frames", "wait", "screenshot", "close"};
-
 }  // namespace
 
-PaintScript::PaintScript(const std::filesystem::path& file) : lines_(read_script(file, commands)) {}
+PaintScript::PaintScript(const std::filesystem::path& file)
+    : lines_(paint_lines(file::read_whole_file(file), file.string())) {}
 
 void PaintScript::step(PaintDesk& desk, Window& window) {
     ++frames_;
@@ -68,24 +66,12 @@ bool PaintScript::use_mouse(const ScriptLine& line) {
 
 bool PaintScript::perform(const ScriptLine& line, PaintDesk& desk, Window& window) {
     PaintBench& bench = desk.bench();
-    Painting& painting = bench.painting();
     const std::string& what = line.words.front();
-    const auto fail = [&](const std::string& why) { throw Error(line.where, why); };
-    const auto position = [&](std::size_t i) {
-        return Vec3(line.number(i), line.number(i + 1), line.number(i + 2)) * 1e-3;
-    };
-    const auto label_named = [&](const std::string& name) {
-        const auto& labels = painting.labels();
-        return static_cast<std::size_t>(std::ranges::find(labels, name, &segment::SeedLabel::name) - labels.begin());
-    };
-    const auto need = [&](bool is_done) {
-        if (!is_done) fail(painting.problem().empty() ? "nothing has changed" : painting.problem());
-    };
     if (what == "press" || what == "drag" || what == "wheel") return use_mouse(line);
     if (what == "wait") return ImGui::GetTime() - since_ >= line.number(1);
-    if (what == "frames") return frames_ >= static_cast<int>(line.number(1));
+    if (what == "frames") return frames_ >= static_cast<int>(std::min(line.number(1), 1e6));
     if (what == "until") {
-        if (ImGui::GetTime() - since_ > longest_wait) fail("the computation does not end");
+        if (ImGui::GetTime() - since_ > longest_wait) throw Error(line.where, "the computation does not end");
         if (line.word(1) == "there") return std::filesystem::exists(line.word(2));
         // Two frames, so that its results are drawn.
         return frames_ >= 2 && !bench.is_busy() && !bench.makes_plan() && desk.bone().is_ready();
@@ -96,38 +82,71 @@ bool PaintScript::perform(const ScriptLine& line, PaintDesk& desk, Window& windo
         display::write_png(window.picture(), line.word(1));
         return true;
     }
+    if (what == "click_bone") {
+        const auto at = desk.bone().place_of(Vec3(line.number(1), line.number(2), line.number(3)) * 1e-3);
+        if (frames_ == 0 && !at) throw Error(line.where, "this place is not in the picture of the bone");
+        if (frames_ == 0) from_ = to_ = *at;
+        mouse_ = Mouse{from_, frames_ >= 3 && frames_ < 6, 0.0};
+        return frames_ >= 17;
+    }
+    if (what == "size") window.resize(static_cast<int>(line.number(1)), static_cast<int>(line.number(2)));
+    else if (what == "close") closes_ = true;
+    else {
+        bool is_refused = false;
+        try {
+            is_refused = !edit(line, desk);
+        } catch (const Error&) {
+            if (!line.is_refused) throw;
+            is_refused = true;
+        }
+        const std::string& why = bench.painting().problem();
+        if (is_refused && !line.is_refused)
+            throw Error(line.where, what == "look" ? bench.message() : why.empty() ? "nothing has changed" : why);
+        if (!is_refused && line.is_refused) throw Error(line.where, fmt::format("'{}' was not refused", what));
+    }
+    return true;
+}
+
+/// False: it was refused.
+bool PaintScript::edit(const ScriptLine& line, PaintDesk& desk) {
+    PaintBench& bench = desk.bench();
+    Painting& painting = bench.painting();
+    const std::string& what = line.words.front();
+    const auto position = [&](std::size_t i) {
+        return Vec3(line.number(i), line.number(i + 1), line.number(i + 2)) * 1e-3;
+    };
+    const auto label_named = [&](const std::string& name) {
+        const auto& labels = painting.labels();
+        return static_cast<std::size_t>(std::ranges::find(labels, name, &segment::SeedLabel::name) - labels.begin());
+    };
     if (what == "label") {
         const std::size_t found = label_named(line.word(1));
-        if (found < painting.labels().size()) painting.active = found;
-        else {
-            need(painting.add_label());
-            need(painting.rename(painting.active, line.word(1)));
-        }
+        if (found == painting.labels().size()) return painting.add_label(line.word(1));
+        painting.active = found;
     } else if (what == "brush") bench.brush = std::clamp(line.number(1), 0.1, 100.0) * 1e-3;
     else if (what == "stroke" || what == "erase") {
         painting.begin(bench.brush, position(1), what == "erase");
         for (std::size_t i = 4; i < line.words.size(); i += 3) painting.extend(position(i));
+        if (!painting.is_open()) return false;
         bench.move_cursor(painting.open_stroke().points.back());
-        need(painting.end());
-    } else if (what == "remove") need(painting.remove_label(label_named(line.word(1))));
-    else if (what == "rename") need(painting.rename(label_named(line.word(1)), line.word(2)));
-    else if (what == "undo") need(painting.undo());
-    else if (what == "redo") need(painting.redo());
+        return painting.end();
+    } else if (what == "remove") return painting.remove_label(label_named(line.word(1)));
+    else if (what == "rename") return painting.rename(label_named(line.word(1)), line.word(2));
+    else if (what == "undo") return painting.undo();
+    else if (what == "redo") return painting.redo();
     else if (what == "cursor") bench.move_cursor(position(1));
     else if (what == "grey") bench.window = {line.number(1), line.number(2)};
     else if (what == "zoom") {
         desk.sight().pixels_per_m = std::clamp(desk.sight().pixels_per_m * line.number(1), 200.0, 100'000.0);
         desk.sight().middle = bench.cursor;
-    } else if (what == "from") {
-        const auto view = display::view_of_name(line.word(1));
-        if (!view) fail(fmt::format("no view '{}'", line.word(1)));
-        desk.bone().look_from(*view);
-    } else if (what == "look") {
-        if (!bench.look_here()) fail(bench.message());
-    } else if (what == "vessel") bench.follow_vessel(position(1));
-    else if (what == "plan") bench.make_plan();
-    else if (what == "size") window.resize(static_cast<int>(line.number(1)), static_cast<int>(line.number(2)));
-    else closes_ = true;
+    } else if (what == "from") desk.bone().look_from(*display::view_of_name(line.word(1)));
+    else if (what == "look") return bench.look_here();
+    else if (what == "tool")
+        bench.tool = line.word(1) == "paint"   ? PaintBench::Tool::paint
+                     : line.word(1) == "erase" ? PaintBench::Tool::erase
+                                               : PaintBench::Tool::vessel;
+    else if (what == "vessel") bench.follow_vessel(position(1));
+    else bench.make_plan();
     return true;
 }
 

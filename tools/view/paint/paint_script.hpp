@@ -15,7 +15,7 @@ namespace tactus::view {
 class PaintDesk;
 class Window;
 
-/// Commands; positions in mm, LPS:
+/// Commands; positions in mm, LPS. A line that begins with ! must be refused by the painting:
 ///
 ///     label NAME            paints this label; makes it if there is none
 ///     brush MM              radius
@@ -24,7 +24,9 @@ class Window;
 ///     remove NAME, rename NAME NEW, undo, redo
 ///     cursor X Y Z, grey LOW HIGH, zoom FACTOR, from VIEW
 ///     look                  look here
+///     tool NAME             paint, erase or vessel
 ///     vessel X Y Z          follows a vessel
+///     click_bone X Y Z      a click on the bone's picture, at the pixel of this place
 ///     plan                  makes a plan
 ///     until solved          waits until nothing is being computed, at most 300 s
 ///     until there FILE      waits for a file
@@ -32,7 +34,7 @@ class Window;
 ///     size W H, frames N, wait S, screenshot FILE, close
 class PaintScript {
 public:
-    /// Throws Error when the file cannot be read or a command is unknown.
+    /// Throws Error when the file cannot be read, and as paint_lines().
     explicit PaintScript(const std::filesystem::path& file);
 
     /// Called after each frame: runs the next lines up to one that must wait. Throws Error when a line fails.
@@ -43,6 +45,7 @@ public:
 
 private:
     bool perform(const ScriptLine& line, PaintDesk& desk, Window& window);
+    bool edit(const ScriptLine& line, PaintDesk& desk);
     bool use_mouse(const ScriptLine& line);
 
     std::vector<ScriptLine> lines_;

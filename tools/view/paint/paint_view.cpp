@@ -14,7 +14,7 @@
 
 namespace tactus::view {
 
-std::size_t paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
+std::string paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
                        const PaintViewChoice& choice, const std::atomic<bool>& interrupted) {
     using Clock = std::chrono::steady_clock;
     constexpr auto picture_time = std::chrono::microseconds(16'667);
@@ -43,7 +43,7 @@ std::size_t paint_view(const study::ScanGraph& scan, const study::SegmentSetting
     }
     // A stroke that is being drawn while the window closes is kept, too.
     bench.painting().end();
-    return bench.painting().labels_with_strokes();
+    return bench.painting().is_kept() || bench.painting().save() ? std::string() : bench.painting().problem();
 }
 
 }  // namespace tactus::view

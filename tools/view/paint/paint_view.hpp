@@ -15,9 +15,9 @@ struct PaintViewChoice {
     double scale = 0.0;            ///< of the content, 0: that of the screen
 };
 
-/// Runs until the window is closed. Returns the number of labels with strokes. Throws Error when no window can be opened, or
-/// the seeds cannot be read.
-std::size_t paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
+/// Runs until the window is closed. Returns why the last strokes could not be written; empty: they are in the file. Throws
+/// Error when no window can be opened, or the seeds cannot be read.
+std::string paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
                        const PaintViewChoice& choice, const std::atomic<bool>& interrupted);
 
 }  // namespace tactus::view

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cctype>
+#include <exception>
 #include <utility>
 
 namespace tactus::view {
@@ -48,13 +48,19 @@ Painting::Painting(std::filesystem::path file, Touches touches) : file_(std::mov
 }
 
 void Painting::begin(double radius, const Vec3& point, bool erases) {
-    open_ = {as_filed(Vec3(radius)).x, {as_filed(point)}};
-    is_open_ = true;
+    const double filed = as_filed(Vec3(radius)).x;
+    is_open_ = filed > 0.0 && filed <= segment::widest_brush && segment::is_seed_place(point);
+    if (!is_open_) return refuse("a stroke needs places within 100 m, and a brush of at most 100 mm");
+    open_ = {filed, {as_filed(point)}};
     erases_ = erases;
 }
 
 void Painting::extend(const Vec3& point) {
     if (!is_open_ || open_.points.size() >= most_points) return;
+    if (!segment::is_seed_place(point)) {
+        is_open_ = false;
+        return refuse("a stroke needs places within 100 m");
+    }
     // The line between the points is painted, too.
     if (glm::length(point - open_.points.back()) < 0.25 * open_.radius) return;
     open_.points.push_back(as_filed(point));
@@ -65,11 +71,20 @@ bool Painting::end() {
     problem_.clear();
     Labels next = labels_;
     if (erases_) {
-        if (!erase_strokes(next, open_)) return false;
+        if (!erase_strokes(next, open_)) {
+            refuse("there is no stroke at that place: nothing was erased");
+            return false;
+        }
+        // What is left of a stroke beside the bone would make the file one that is refused.
+        for (std::size_t l = 0; l < next.size(); ++l)
+            std::erase_if(next[l].strokes, [&](const segment::Stroke& stroke) {
+                const auto is_same = [&](const segment::Stroke& old) { return old.points == stroke.points; };
+                return std::ranges::none_of(labels_[l].strokes, is_same) && !touches_(stroke);
+            });
     } else {
         if (active >= next.size()) return false;
         if (!touches_(open_)) {
-            problem_ = "there is no bone at that place: nothing was painted";
+            refuse("there is no bone at that place: nothing was painted");
             return false;
         }
         next[active].strokes.push_back(open_);
@@ -78,20 +93,25 @@ bool Painting::end() {
     return true;
 }
 
-bool Painting::add_label() {
+bool Painting::add_label(const std::string& name) {
     if (labels_.size() >= segment::most_labels) {
-        problem_ = fmt::format("at most {} labels", segment::most_labels);
+        refuse(fmt::format("at most {} labels", segment::most_labels));
         return false;
     }
+    if (!name.empty() && !may_be_named(name)) return false;
     Labels next = labels_;
-    next.push_back({free_name(labels_), free_colour(labels_), {}});
+    next.push_back({name.empty() ? free_name(labels_) : name, free_colour(labels_), {}});
     change(std::move(next));
     active = labels_.size() - 1;
     return true;
 }
 
 bool Painting::remove_label(std::size_t label) {
-    if (label >= labels_.size() || labels_.size() < 2) return false;
+    if (label >= labels_.size()) return false;
+    if (labels_.size() < 2) {
+        refuse("the last label stays");
+        return false;
+    }
     Labels next = labels_;
     next.erase(next.begin() + static_cast<std::ptrdiff_t>(label));
     change(std::move(next));
@@ -102,16 +122,19 @@ bool Painting::remove_label(std::size_t label) {
 
 bool Painting::rename(std::size_t label, const std::string& name) {
     if (label >= labels_.size() || labels_[label].name == name) return false;
-    const bool is_plain = !name.empty() && name.size() <= 200 &&
-                          std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    if (!is_plain || std::ranges::any_of(labels_, [&](const SeedLabel& l) { return l.name == name; })) {
-        problem_ = fmt::format("'{}' is no name for a label, or another label has it", name);
-        return false;
-    }
+    if (!may_be_named(name)) return false;
     Labels next = labels_;
     next[label].name = name;
     change(std::move(next));
     return true;
+}
+
+bool Painting::may_be_named(const std::string& name) {
+    if (!segment::is_label_name(name)) refuse("a name is one line of 1 to 200 bytes of UTF-8");
+    else if (std::ranges::any_of(labels_, [&](const SeedLabel& l) { return l.name == name; }))
+        refuse(fmt::format("another label is named '{}'", name));
+    else return true;
+    return false;
 }
 
 void Painting::recolour(std::size_t label, const Vec3& colour) {
@@ -127,7 +150,8 @@ bool Painting::undo() {
     after_.push_back(std::exchange(labels_, std::move(before_.back())));
     before_.pop_back();
     active = std::min(active, labels_.size() - 1);
-    keep();
+    ++version_;
+    save();
     return true;
 }
 
@@ -137,7 +161,8 @@ bool Painting::redo() {
     before_.push_back(std::exchange(labels_, std::move(after_.back())));
     after_.pop_back();
     active = std::min(active, labels_.size() - 1);
-    keep();
+    ++version_;
+    save();
     return true;
 }
 
@@ -151,17 +176,25 @@ void Painting::change(Labels labels) {
     if (before_.size() > most_remembered) before_.pop_front();
     after_.clear();
     problem_.clear();
-    keep();
+    ++version_;
+    save();
+}
+
+void Painting::refuse(std::string why) {
+    problem_ = std::move(why);
+    ++problems_;
 }
 
 /// What cannot be written stays in the window, and is written with the next edit.
-void Painting::keep() {
-    ++version_;
+bool Painting::save() {
+    is_kept_ = false;
     try {
         segment::write_seeds(labels_, file_);
-    } catch (const Error& error) {
-        problem_ = error.what();
+        is_kept_ = true;
+    } catch (const std::exception& error) {
+        refuse(error.what());
     }
+    return is_kept_;
 }
 
 }  // namespace tactus::view

@@ -30,12 +30,19 @@ public:
     int version() const { return version_; }
     /// Why the last edit could not be made or kept; empty: it was.
     const std::string& problem() const { return problem_; }
+    /// How often there was a problem.
+    int problems() const { return problems_; }
+    /// Whether the file holds every finished edit.
+    bool is_kept() const { return is_kept_; }
+    /// Tries again to write the file. Returns is_kept().
+    bool save();
 
     std::size_t active = 0;  ///< the label that is painted
 
     /// A stroke of the active label: begins, follows the brush, and ends. `end` is false when it meets no bone; nothing has
     /// changed then. m.
     void begin(double radius, const Vec3& point, bool erases = false);
+    /// A place that the file cannot hold ends the stroke without a change.
     void extend(const Vec3& point);
     bool end();
     void cancel() { is_open_ = false; }
@@ -43,8 +50,9 @@ public:
     bool is_erasing() const { return is_open_ && erases_; }
     const segment::Stroke& open_stroke() const { return open_; }
 
-    /// A label with a name and a colour that no other has; it becomes active. False: there are too many.
-    bool add_label();
+    /// A label with a colour that no other has; it becomes active. `name` empty: one that is free. False: there are too
+    /// many, or as rename().
+    bool add_label(const std::string& name = "");
     bool remove_label(std::size_t label);
     /// False for names that the file cannot hold, or that another label has.
     bool rename(std::size_t label, const std::string& name);
@@ -59,7 +67,8 @@ public:
 
 private:
     void change(Labels labels);
-    void keep();
+    void refuse(std::string why);
+    bool may_be_named(const std::string& name);
 
     std::filesystem::path file_;
     Touches touches_;
@@ -67,8 +76,9 @@ private:
     std::deque<Labels> before_, after_;
     segment::Stroke open_;
     bool is_open_ = false, erases_ = false;
-    int version_ = 0;
+    int version_ = 0, problems_ = 0;
     std::string problem_;
+    bool is_kept_ = true;
 };
 
 }  // namespace tactus::view

@@ -27,7 +27,7 @@ void SlicePanel::refresh() {
     const long sample = std::lround((bench_.cursor[normal] - grid.origin[normal]) / grid.spacing[normal]);
     const LiveLabelling* const labels = bench_.labels().get();
     std::string wanted = fmt::format("{} {} {} {} {}", sample, bench_.window.low, bench_.window.high,
-                                     static_cast<const void*>(labels), bench_.shows_certainty);
+                                     labels ? labels->number : 0, bench_.shows_certainty);
     const SliceOverlay overlay{&bench_.scan(), labels, bench_.colours(), bench_.shows_certainty};
     for (const auto& c : overlay.colours) wanted += fmt::format(" {:02x}{:02x}{:02x}", c[0], c[1], c[2]);
     if (wanted == shown_) return;
@@ -158,6 +158,8 @@ void SlicePanel::draw(const Fonts& fonts) {
     const int normal = axes_of(slice_).normal;
     paint.text({box.left + 6.0, box.top + 4.0}, small, tone::dim,
                fmt::format("{} {} {:.1f} mm", name_of(slice_), "xyz"[normal], bench_.cursor[normal] * 1e3));
+    if (bench_.labels() && bench_.labels()->is_preview)
+        paint.text_left_of({box.right - 6.0, box.top + 4.0}, small, tone::warm, "preview");
     const auto edges = edges_of(slice_);
     const Point m = box.middle();
     paint.text({box.left + 6.0, m.y - 0.5 * small}, small, tone::text, edges[0]);

@@ -3,7 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/fit/history.hpp"
+#include "dsp/fit/arrangement/history.hpp"
 
 #include <fmt/format.h>
 

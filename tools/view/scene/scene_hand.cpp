@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
 constexpr std::int64_t ticking_ns = 500'000'000;  // the run is under way
+constexpr std::int64_t longest_hold_ns = 1'000'000'000;  // of what is held, without a picture
 constexpr int first_pictures = 6;
 constexpr double radians_per_pixel = 0.006;
 constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3;
@@ -41,12 +42,23 @@ void SceneHand::begin_picture() {
     beat();
 }
 
+void SceneHand::let_go() {
+    keys_ = latched_ = 0;
+    stale_ = ~0u;
+    is_drag_stale_ = true;
+    // Nor does the spring pull on.
+    if (is_there_) cursor_.begin(felt_.pose);
+}
+
 void SceneHand::beat() {
     haptic::WindowHand& link = haptic::window_hand();
     const std::int64_t now = hosted::steady_ns();
+    const bool was_silent = spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns;
+    spoke_ns_ = now;
     std::uint64_t number = 0;
     if (!link.felt.read(felt_, number)) return;
     is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
+    if (was_silent) let_go();
     if (!is_there_) return;
     if (felt_.run != run_) {
         run_ = felt_.run;
@@ -133,11 +145,14 @@ void SceneHand::press_keys() {
     keys_ = 0;
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput || io.KeyCtrl) return;
-    for (std::size_t i = 0; i < hand_buttons.size(); ++i)
-        if (ImGui::IsKeyDown(hand_buttons[i].key)) {
-            keys_ |= 1u << i;
-            latched_ &= ~(1u << i);
+    for (std::size_t i = 0; i < hand_buttons.size(); ++i) {
+        const unsigned bit = 1u << i;
+        if (!ImGui::IsKeyDown(hand_buttons[i].key)) stale_ &= ~bit;
+        else if ((stale_ & bit) == 0) {
+            keys_ |= bit;
+            latched_ &= ~bit;
         }
+    }
     if (ImGui::IsKeyPressed('H', false)) is_on_ = !is_on_;
 }
 
@@ -154,10 +169,12 @@ bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
     const double depth = std::max(glm::dot(place.handle - camera.eye(), forward), 1e-3);
     const double per_pixel = 2.0 * depth * std::tan(0.5 * camera.vertical_field_of_view_rad) / std::max(height, 1);
     const Point by = point(io.MouseDelta);
-    if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    if (!ImGui::IsItemActive()) is_drag_stale_ = false;
+    const bool drags = ImGui::IsItemActive() && !is_drag_stale_;
+    if (drags && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
         if (io.KeyShift) cursor_.move(forward * (-by.y * per_pixel), place);
         else cursor_.move((right * by.x - up * by.y) * per_pixel, place);
-    } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    } else if (drags && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
         if (io.KeyShift) cursor_.turn(forward * (by.x * radians_per_pixel), place);
         else cursor_.turn((up * by.x + right * by.y) * radians_per_pixel, place);
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) return false;

@@ -24,6 +24,8 @@ public:
     /// Tells the driver where the hand is wanted, and that the window is alive; several times in a picture, which may take
     /// long without a graphics card.
     void beat();
+    /// Lets go of everything, because the person has left the window: what is held must be pressed anew.
+    void let_go();
     /// A device of the run is moved by the window.
     bool is_there() const { return is_there_; }
     /// The mouse in the scene moves the hand, not the view.
@@ -59,6 +61,9 @@ private:
     int pictures_ = 0;  // of this run; the first ones make meshes and take long
     bool is_there_ = false, is_on_ = true, is_hovered_ = false;
     unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit
+    unsigned stale_ = 0;  // keys that were down when the person left
+    bool is_drag_stale_ = false;
+    std::int64_t spoke_ns_ = 0;
 };
 
 }  // namespace tactus::view

@@ -14,6 +14,9 @@
 #include <numbers>
 #include <utility>
 
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
 namespace tactus::view {
 
 using picture::outline_of;
@@ -29,6 +32,18 @@ constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
 // Triangle counts for software rendering: above the first, moving scenes are drawn coarsely; above the second, one
 // sample per pixel is smooth enough.
 constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
+
+/// Waits until what was drawn is there, and says meanwhile that the window is alive.
+void finish(SceneHand& hand) {
+    constexpr GLuint64 turn_ns = 10'000'000;
+    constexpr int most_turns = 100;
+    const GLsync drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    for (int turn = 0; turn < most_turns; ++turn) {
+        if (glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, turn_ns) != GL_TIMEOUT_EXPIRED) break;
+        hand.beat();
+    }
+    glDeleteSync(drawn);
+}
 
 }  // namespace
 
@@ -185,7 +200,9 @@ void ScenePanel::render(int width, int height) {
     needs_picture_ = false;
     width_ = width;
     height_ = height;
+    hand_.beat();
     display::Picture& picture = model_->update();
+    hand_.beat();
     sight_.update(*observer_);
     screens_.lay_out(sight_, width, height);
     const double aspect =
@@ -206,8 +223,12 @@ void ScenePanel::render(int width, int height) {
     // A single fine picture of a still scene does not reduce the rate of moving ones.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
+    hand_.beat();
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     ++pictures_;
+    hand_.beat();
+    // Without a graphics card the processor draws, and the wait for it would come later, as a whole.
+    if (renderer_->is_software()) finish(hand_);
     screens_.show();
 }
 

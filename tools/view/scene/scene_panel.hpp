@@ -60,6 +60,7 @@ public:
     std::vector<int> chosen_places() const;
     bool is_measuring = false;
     bool is_siting = false;  ///< the next click on a bone moves the saw there
+    bool has_few_tools = false;  ///< above the picture: views and the hand, as a trainee needs them
     bool wants_calibration = false;  ///< requests the calibration panel
 
     // View settings. All throw Error and then change nothing.

@@ -29,6 +29,7 @@ void ScenePanel::tools() {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
     if (next_button("reset")) reset();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: iso view, all visible, no clipping");
+    if (has_few_tools) return hand_.tools();
     if (next_button(is_measuring ? "measuring" : "measure")) {
         is_measuring = !is_measuring;
         marks_.clear();

@@ -24,6 +24,31 @@ constexpr Warning warnings[] = {{"off_plan", "beside the plan"}, {"too_deep", "t
                                 {"too_near", "too near"},        {"over_force", "too much force"},
                                 {"over_time", "over time"},      {"over_heat", "too hot for too long"}};
 
+/// A word and a large number at the right border; on a line of its own where both do not fit.
+void figure(const char* what, const std::string& value, const Fonts& fonts) {
+    ImGui::PushFont(fonts.large);
+    const float wide = ImGui::CalcTextSize(value.c_str()).x, high = ImGui::GetTextLineHeight();
+    ImGui::PopFont();
+    const float left = ImGui::GetCursorPosX(), right = left + ImGui::GetContentRegionAvail().x;
+    const float top = ImGui::GetCursorPosY();
+    const float word = ImGui::CalcTextSize(what).x;
+    const bool fits = left + word + wide + ImGui::GetFontSize() <= right;
+    if (fits) ImGui::SetCursorPosY(top + 0.5f * (high - ImGui::GetTextLineHeight()));
+    ImGui::TextDisabled("%s", what);
+    if (fits) ImGui::SetCursorPosY(top);
+    ImGui::SetCursorPosX(std::max(left, right - wide));
+    ImGui::PushFont(fonts.large);
+    ImGui::TextUnformatted(value.c_str());
+    ImGui::PopFont();
+}
+
+void how_to_move() {
+    for (const char* line :
+         {"drag: move the hand", "wheel, or drag with Shift: nearer, farther", "right button: turn; with Shift: roll",
+          "hold T: the tool runs", "1 to 7: look from another side", "middle button: turn the view"})
+        ImGui::TextDisabled("%s", line);
+}
+
 /// What a trainee reads after an attempt.
 std::string score_words(const study::ScoredRun& run) {
     const study::Score& s = run.score;
@@ -127,34 +152,42 @@ void TrainPanel::meter(const Fonts& fonts, double force) const {
 }
 
 void TrainPanel::figures(const Fonts& fonts) {
-    ImGui::PushFont(fonts.large);
-    const std::shared_ptr<const RunStatus> status = bench_.status();
     const double elapsed = number(node_ + ".elapsed");
-    ImGui::Text("time  %.1f s", std::isfinite(elapsed) ? elapsed : status->time);
+    figure("time", fmt::format("{:.1f} s", std::isfinite(elapsed) ? elapsed : bench_.status()->time), fonts);
+    const auto millimetres = [this](const std::string& port) {
+        const double metres = number(port);
+        return std::isfinite(metres) ? fmt::format("{:.1f} mm", 1e3 * std::abs(metres)) : std::string("-");
+    };
     if (!node_.empty()) {
-        ImGui::Text("depth left  %.1f mm", 1e3 * number(node_ + ".depth_left"));
-        ImGui::Text("beside the plan  %.1f mm, %.0f°", 1e3 * std::abs(number(node_ + ".distance")),
-                    57.29577951 * number(node_ + ".angle"));
-        const double clearance = number(node_ + ".clearance");
-        if (clearance < 0.9) ImGui::Text("to what is spared  %.1f mm", 1e3 * clearance);
-    } else if (!depth_.empty()) ImGui::Text("depth  %.2f mm", 1e3 * number(depth_));
+        const double left = number(node_ + ".depth_left");
+        figure(left < 0.0 ? "too deep by" : "depth left", millimetres(node_ + ".depth_left"), fonts);
+        figure("beside the plan", millimetres(node_ + ".distance"), fonts);
+        const double angle = number(node_ + ".angle");
+        figure("tilt", std::isfinite(angle) ? fmt::format("{:.0f}°", 57.29577951 * angle) : "-", fonts);
+        if (number(node_ + ".clearance") < 0.9) figure("to what is spared", millimetres(node_ + ".clearance"), fonts);
+    } else if (!depth_.empty()) figure("depth", millimetres(depth_), fonts);
     for (const Warning& warning : warnings) {
         if (node_.empty() || !flag(node_ + "." + warning.port)) continue;
+        ImGui::PushFont(fonts.bold);
         ImGui::PushStyleColor(ImGuiCol_Text, tone::bad);
-        ImGui::Text("! %s", warning.text);
+        ImGui::TextWrapped("! %s", warning.text);
         ImGui::PopStyleColor();
+        ImGui::PopFont();
     }
-    ImGui::PopFont();
 }
 
 /// After the run: the score of an attempt at a task, or what the command would say.
 void TrainPanel::result() {
     ViewedRun* const run = bench_.running();
     if (!run || !run->is_over()) return;
-    if (scored_run_ != bench_.runs()) {
+    if (scoring_.valid() && scoring_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        score_ = scoring_.get();
+    // Not before the score of an earlier run is there: waiting would stop the window.
+    if (scored_run_ != bench_.runs() && !scoring_.valid()) {
         scored_run_ = bench_.runs();
-        score_ = "...";
-        if (node_.empty()) score_ = run->summary_text();
+        score_ = "computes the score...";
+        if (const std::string failure = bench_.status()->failure; !failure.empty()) score_ = failure;
+        else if (node_.empty()) score_ = run->summary_text();
         else
             scoring_ = std::async(std::launch::async, [folder = bench_.status()->folder] {
                 try {
@@ -164,14 +197,12 @@ void TrainPanel::result() {
                 }
             });
     }
-    if (scoring_.valid() && scoring_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        score_ = scoring_.get();
     ImGui::Separator();
     ImGui::TextWrapped("%s", score_.c_str());
     mark_spot("score");
 }
 
-void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts) {
+void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, bool has_mouse, const Fonts& fonts) {
     follow(observer);
     const std::shared_ptr<const RunStatus> status = bench_.status();
     const bool is_over = status->state == RunStatus::State::over;
@@ -182,13 +213,22 @@ void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
     ImGui::PopFont();
     if (task_ && !task_->about.empty()) ImGui::TextWrapped("%s", task_->about.c_str());
     meter(fonts, force);
-    figures(fonts);
-    if (ImGui::Button(is_over ? "again" : "end")) {
+    // Always at the same place, so that it is found without looking.
+    if (ImGui::Button(is_over ? "again" : "end", ImVec2(-1.0f, 1.6f * ImGui::GetFrameHeight()))) {
         if (is_over) bench_.run();
         else bench_.stop();
     }
     mark_spot(is_over ? "again" : "end");
-    result();
+    if (is_over) return result();
+    figures(fonts);
+    if (!has_mouse) return;
+    ImGui::Separator();
+    // A low window keeps its room for the warnings.
+    ImGui::TextDisabled("how to move the hand");
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    how_to_move();
+    ImGui::EndTooltip();
 }
 
 }  // namespace tactus::view

@@ -22,7 +22,8 @@ public:
     TrainPanel(const TrainPanel&) = delete;
     TrainPanel& operator=(const TrainPanel&) = delete;
 
-    void draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts);
+    /// `has_mouse`: the mouse moves the hand, and the panel says how.
+    void draw(const std::shared_ptr<observe::Observer>& observer, bool has_mouse, const Fonts& fonts);
 
 private:
     void follow(const std::shared_ptr<observe::Observer>& observer);

@@ -4,9 +4,8 @@
 #include "tests/support/places.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/peak_memory.hpp"
 #include "tests/tools/run_command.hpp"
-
-#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdint>
@@ -45,20 +44,9 @@ void write_ct(const fs::path& path, int layers) {
 
 // Peak of what a child held, in MB.
 double peak_of_import(const fs::path& ct, const fs::path& out) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::freopen("/dev/null", "w", stdout);
-        ::freopen("/dev/null", "w", stderr);
-        ::execl(tactus::test::command().c_str(), "tactus", "import", ct.c_str(), "--component", "all", "-o",
-                out.c_str(), nullptr);
-        ::_exit(127);
-    }
-    int status = 0;
-    struct rusage used{};
-    REQUIRE(::wait4(child, &status, 0, &used) == child);
-    REQUIRE(WIFEXITED(status));
-    REQUIRE(WEXITSTATUS(status) == 0);
-    return static_cast<double>(used.ru_maxrss) / 1024.0;
+    const auto peak = tactus::test::peak_memory({"import", ct.string(), "--component", "all", "-o", out.string()});
+    REQUIRE(peak.code == 0);
+    return peak.kilobytes / 1024.0;
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 // Files that claim what they do not hold, or are none, given to the command; many more in tests/campaign.
 #include "tests/support/catch.hpp"
 #include "tests/support/sanitized.hpp"
+#include "tests/tools/peak_memory.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <cstdint>
@@ -42,19 +42,8 @@ std::string wav(std::uint32_t rate, std::uint16_t channels, std::size_t samples)
 
 /// Peak of what the command held, in MB, within 2 GB of data; its exit code.
 std::pair<double, int> peak_of(const std::string& verb, const fs::path& file) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const rlimit most{rlim_t{2} << 30, rlim_t{2} << 30};
-        ::setrlimit(RLIMIT_DATA, &most);
-        ::freopen("/dev/null", "w", stdout);
-        ::freopen("/dev/null", "w", stderr);
-        ::execl(command().c_str(), "tactus", verb.c_str(), file.c_str(), nullptr);
-        ::_exit(127);
-    }
-    int status = 0;
-    struct rusage used{};
-    REQUIRE(::wait4(child, &status, 0, &used) == child);
-    return {static_cast<double>(used.ru_maxrss) / 1024.0, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+    const PeakMemory peak = peak_memory({verb, file.string()}, rlim_t{2} << 30);
+    return {peak.kilobytes / 1024.0, peak.code};
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -21,10 +23,10 @@ namespace {
 
 constexpr double mm = 1e-3, pi = std::numbers::pi;
 
-// A jaw as half a ring of radius 40 mm with its chin at y = -40 mm.
-geometry::TriangleSurface half_ring() {
-    geometry::TriangleSurface ring =
-        reconstruct::closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 40, 81, [](double, double) { return 6.0 * mm; });
+// A jaw as half a ring of radius 40 mm with its chin at y = -40 mm; a part of it from `from` to `to`, 0 to 1.
+geometry::TriangleSurface half_ring(double thick = 6.0 * mm, double from = 0.0, double to = 1.0) {
+    geometry::TriangleSurface ring = reconstruct::closed_tube(Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, 1.0), to - from, 40,
+                                                              81, [&](double, double) { return thick; });
     for (Vec3& v : ring.vertices) {
         const double a = pi * v.z;
         v = (40.0 * mm + v.x) * Vec3(-std::cos(a), -std::sin(a), 0.0) + Vec3(0.0, 0.0, -v.y);
@@ -112,6 +114,96 @@ TEST_CASE("plan reconstruct makes a plan of the pieces with each segment in plac
     CHECK_THAT(again.err, Catch::Matchers::ContainsSubstring("exists already"));
 }
 
+TEST_CASE("plan reconstruct takes half a jaw with its end, and a jaw that is resected already stays whole", "[slow]") {
+    const Case made;
+    const double all = mesh::volume_of(half_ring());
+    json half = made.inputs();
+    half["resection"] = "after-first";
+    const test::Outcome done = made.run(half);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(made.volume("resected") == Approx(all * (pi - 0.8) / pi).epsilon(0.01));
+    CHECK(made.volume("jaw-1") == Approx(all * 0.8 / pi).epsilon(0.01));
+    CHECK_FALSE(fs::exists(made.folder.path / "case-pieces" / "jaw-2.stl"));
+    const Case other;
+    json whole = other.inputs();
+    whole["resection"] = "none";
+    REQUIRE(other.run(whole).code == 0);
+    CHECK(other.volume("jaw-1") == Approx(all).epsilon(1e-4));
+    CHECK_FALSE(fs::exists(other.folder.path / "case-pieces" / "resected.stl"));
+    CHECK(json::parse(test::slurp(other.plan))["steps"].size() == 2);
+}
+
+TEST_CASE("a tooth in the resected part of a jaw is resected with it", "[slow]") {
+    const Case made;
+    // Small separate bodies on the ring: one on each side and one in front.
+    geometry::TriangleSurface jaw = half_ring();
+    double tooth_volume = 0.0;
+    for (const double turn : {0.4, 1.5, 2.7}) {
+        const Vec3 at(-40.0 * mm * std::cos(turn), -40.0 * mm * std::sin(turn), 6.5 * mm);
+        geometry::TriangleSurface tooth =
+            reconstruct::closed_tube(at, Vec3(0.0, 0.0, 1.0), 5.0 * mm, 6, 2, [](double, double) { return 2.0 * mm; });
+        if (mesh::volume_of(tooth) < 0.0)
+            for (auto& t : tooth.triangles) std::swap(t[1], t[2]);
+        tooth_volume = mesh::volume_of(tooth);
+        reconstruct::append(jaw, tooth);
+    }
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{jaw, {}}}, made.folder.path / "jaw.stl");
+    const test::Outcome done = made.run(made.inputs());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    for (const char* piece : {"resected", "jaw-1", "jaw-2"}) {
+        double highest = 0.0;
+        const mesh::Mesh mesh = mesh::load_mesh(made.folder.path / "case-pieces" / (std::string(piece) + ".stl"));
+        for (const Vec3& v : mesh.vertices) highest = std::max(highest, v.z);
+        INFO(piece);
+        CHECK(highest == Approx(11.5).margin(0.01));
+    }
+    CHECK(made.volume("resected") + made.volume("jaw-1") + made.volume("jaw-2") ==
+          Approx(mesh::volume_of(half_ring()) + 3.0 * tooth_volume).epsilon(1e-4));
+}
+
+TEST_CASE("a hollow jaw is cut into hollow pieces, not into bone and marrow", "[slow]") {
+    const Case made;
+    geometry::TriangleSurface jaw = half_ring();
+    // A canal through both rami and the chin, and a pore in the resected part that no plane meets.
+    geometry::TriangleSurface canal = half_ring(2.0 * mm, 0.05, 0.95);
+    geometry::TriangleSurface pore = reconstruct::closed_tube(Vec3(-2.0 * mm, -44.0 * mm, 0.0), Vec3(1.0, 0.0, 0.0),
+                                                              4.0 * mm, 12, 4, [](double, double) { return 1.0 * mm; });
+    if (mesh::volume_of(pore) < 0.0)
+        for (auto& t : pore.triangles) std::swap(t[1], t[2]);
+    for (geometry::TriangleSurface* cavity : {&canal, &pore}) {
+        for (auto& t : cavity->triangles) std::swap(t[1], t[2]);
+        reconstruct::append(jaw, *cavity);
+    }
+    const double all = mesh::volume_of(half_ring()), empty = -mesh::volume_of(canal), hole = -mesh::volume_of(pore);
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{jaw, {}}}, made.folder.path / "jaw.stl");
+    const test::Outcome done = made.run(made.inputs());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(json::parse(test::slurp(made.plan))["fragments"].size() == 5);
+    CHECK_FALSE(fs::exists(made.folder.path / "case-pieces" / "jaw-3.stl"));
+    CHECK(made.volume("resected") == Approx(all * 1.4 / pi - empty * 1.4 / (0.9 * pi) - hole).epsilon(0.01));
+    CHECK(made.volume("resected") + made.volume("jaw-1") + made.volume("jaw-2") ==
+          Approx(all - empty - hole).epsilon(1e-4));
+}
+
+TEST_CASE("what a plane leaves of a tooth stays with the jaw on its side", "[slow]") {
+    const Case made;
+    geometry::TriangleSurface jaw = half_ring();
+    // A root inside the bone, through which the first plane goes.
+    geometry::TriangleSurface root = half_ring(2.0 * mm, 0.8 / pi - 0.02, 0.8 / pi + 0.02);
+    reconstruct::append(jaw, root);
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{jaw, {}}}, made.folder.path / "jaw.stl");
+    const test::Outcome done = made.run(made.inputs());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(json::parse(test::slurp(made.plan))["fragments"].size() == 5);
+    const double all = mesh::volume_of(half_ring()), half = 0.5 * mesh::volume_of(root);
+    CHECK(made.volume("jaw-2") == Approx(all * 0.8 / pi + half).epsilon(0.005));
+    CHECK(made.volume("resected") == Approx(all * 1.4 / pi + half).epsilon(0.005));
+}
+
 TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     using Catch::Matchers::ContainsSubstring;
     const Case made;
@@ -128,6 +220,18 @@ TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     json missing = made.inputs();
     missing["jaw"] = "none.stl";
     refused(missing, "none.stl");
+    json unknown = made.inputs();
+    unknown["resection"] = "all";
+    refused(unknown, "'resection' must be");
+    json middle = made.inputs();
+    middle["mandible_planes"][0]["origin"] = {-5, -8, 0};
+    refused(middle, "does not tell which limb");
+    geometry::TriangleSurface open = half_ring();
+    open.triangles.pop_back();
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{open, {}}}, made.folder.path / "open.stl");
+    json hole = made.inputs();
+    hole["jaw"] = "open.stl";
+    refused(hole, "the jaw: its mesh is open at 3 edges");
     json beside = made.inputs();
     for (json& plane : beside["mandible_planes"]) plane["origin"][2] = 300.0;
     beside["mandible_planes"][0]["normal"] = {0.0, 0.1, 1.0};

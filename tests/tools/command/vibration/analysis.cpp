@@ -3,17 +3,14 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/peak_memory.hpp"
 #include "tests/tools/record_folder.hpp"
 
 #include <fmt/format.h>
 #include <sndfile.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <string>
@@ -376,17 +373,9 @@ TEST_CASE("orders needs no more memory for a longer recording", "[slow]") {
         folder.sound("long.wav", tones({{100.0, 0.3}, {200.0, 0.2}}, seconds, 8000.0), 1, 8000,
                      SF_FORMAT_WAV | SF_FORMAT_PCM_16);
         const std::string file = (folder.path / "long.wav").string();
-        const pid_t child = fork();
-        if (child == 0) {
-            if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
-            execl(tactus::test::command().c_str(), "tactus", "orders", "--rate", "100", file.c_str(), nullptr);
-            _exit(9);
-        }
-        int status = 0;
-        rusage usage{};
-        REQUIRE(wait4(child, &status, 0, &usage) == child);
-        CHECK(status == 0);
-        return usage.ru_maxrss;
+        const auto peak = tactus::test::peak_memory({"orders", "--rate", "100", file});
+        CHECK(peak.code == 0);
+        return peak.kilobytes;
     };
     // 300 s more would take 19 MB as numbers of 8 bytes.
     CHECK(kilobytes(360.0) < kilobytes(60.0) + 6000);

@@ -4,19 +4,16 @@
 #include "tests/support/places.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/tools/peak_memory.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
 #include <sndfile.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -383,17 +380,9 @@ TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {
     const Folder folder;
     const auto kilobytes = [&](double seconds) {
         const fs::path file = sound_of(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
-        const pid_t child = fork();
-        if (child == 0) {
-            if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
-            execl(tactus::test::command().c_str(), "tactus", "compare", file.c_str(), file.c_str(), nullptr);
-            _exit(9);
-        }
-        int status = 0;
-        rusage usage{};
-        REQUIRE(wait4(child, &status, 0, &usage) == child);
-        CHECK(status == 0);
-        return usage.ru_maxrss;
+        const auto peak = tactus::test::peak_memory({"compare", file.string(), file.string()});
+        CHECK(peak.code == 0);
+        return peak.kilobytes;
     };
     // A minute is held, for the alignment; 240 s would take 15 MB more per copy of the samples.
     CHECK(kilobytes(330.0) < kilobytes(90.0) + 8000);

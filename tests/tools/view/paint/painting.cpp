@@ -12,6 +12,7 @@
 #include "tools/view/paint/bone_mesh.hpp"
 #include "tools/view/paint/erase_strokes.hpp"
 #include "tools/view/paint/paint_bench.hpp"
+#include "tools/view/paint/paint_lines.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -21,6 +22,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <limits>
 #include <thread>
 
 using namespace tactus;
@@ -137,6 +140,125 @@ TEST_CASE("a stroke that meets no bone changes nothing, nor does one that is not
     CHECK(painting.labels()[1].strokes.empty());
 }
 
+TEST_CASE("a stroke to a place that the file cannot hold changes nothing") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    dab(painting, 0, left_block);
+    const std::string before = file::read_whole_file(scene.seeds());
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (const Vec3& away :
+         {Vec3(none), Vec3(0.0, 1e3, 0.0), Vec3(std::numeric_limits<double>::infinity(), 0.0, 0.0)}) {
+        painting.begin(2e-3, left_block);
+        painting.extend(away);
+        CHECK_FALSE(painting.is_open());
+        CHECK_FALSE(painting.end());
+        painting.begin(2e-3, away);
+        CHECK_FALSE(painting.end());
+        CHECK_FALSE(painting.problem().empty());
+    }
+    painting.begin(none, left_block);
+    CHECK_FALSE(painting.end());
+    CHECK(file::read_whole_file(scene.seeds()) == before);
+}
+
+TEST_CASE("what the eraser leaves of a stroke beside the bone is dropped, so that segment takes the file") {
+    const Scene scene;
+    Painting painting = scene.painting();
+    dab(painting, 0, left_block + Vec3(0.0, 6e-3, 0.0));
+    dab(painting, 1, right_block);
+    painting.begin(1e-3, left_block);
+    painting.extend(left_block - Vec3(12e-3, 0.0, 0.0));  // out into the air
+    REQUIRE(painting.end());
+    painting.begin(3e-3, left_block, true);
+    painting.extend(left_block - Vec3(5e-3, 0.0, 0.0));
+    REQUIRE(painting.end());
+    CHECK(painting.labels()[0].strokes.size() == 1);
+    CHECK_NOTHROW(study::segment_scan(scene.scan, segment::read_seeds(scene.seeds()), scene.settings, "seeds"));
+}
+
+TEST_CASE("a stroke that the chosen threshold leaves without bone is named") {
+    Scene scene;
+    {
+        Painting painting = scene.painting();
+        dab(painting, 0, left_block);
+        dab(painting, 1, right_block);
+        dab(painting, 1, Vec3(-0.0045, 0.1165, -0.1835), 0.5e-3);  // in the bridge of 420 HU
+    }
+    scene.settings.threshold = 550.0;
+    scene.scan = study::scan_graph(scene.settings);
+    std::optional<segment::Walks> none;
+    const auto found = view::live_labelling(scene.scan, scene.painting().labels(), none, run_in_turn);
+    CHECK(found.problem.find("stroke 2 of 'fragment 2'") != std::string::npos);
+}
+
+TEST_CASE("a refusal is told again when it happens again") {
+    const Scene scene;
+    PaintBench bench(scene.scan, scene.settings, scene.seeds());
+    for (int n = 0; n < 2; ++n) {
+        bench.tell("something else");
+        bench.painting().begin(1e-3, air);
+        CHECK_FALSE(bench.painting().end());
+        bench.tend();
+        CHECK(bench.is_problem());
+        CHECK(bench.message().find("no bone") != std::string::npos);
+    }
+}
+
+TEST_CASE("labels by a watershed are shown while the walks are being computed") {
+    const Scene scene;
+    std::vector<segment::SeedLabel> labels(2);
+    labels[0] = {"left", {}, {{2e-3, {left_block}}}};
+    labels[1] = {"right", {}, {{2e-3, {right_block}}}};
+    std::promise<void> go_on;
+    std::shared_future<void> may_go_on = go_on.get_future().share();
+    view::LiveLabels live(scene.scan, [may_go_on](int count, const std::function<void(int)>& job) {
+        may_go_on.wait();
+        run_in_turn(count, job);
+    });
+    const auto await = [&](bool is_preview) {
+        std::shared_ptr<const view::LiveLabelling> found;
+        for (int n = 0; n < 6000 && !(found && found->is_preview == is_preview); ++n) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            found = live.latest();
+        }
+        return found;
+    };
+    live.ask(7, labels);
+    const auto preview = await(true);
+    REQUIRE(preview);
+    REQUIRE(preview->is_preview);
+    CHECK(preview->version == 7);
+    CHECK(live.is_busy());
+    CHECK(preview->certainty.empty());
+    go_on.set_value();
+    const auto walks = await(false);
+    REQUIRE_FALSE(walks->is_preview);
+    CHECK(walks->version == 7);
+    CHECK(walks->number > preview->number);
+    std::size_t other = 0;
+    for (std::size_t n = 0; n < walks->label.size(); ++n) other += walks->label[n] != preview->label[n];
+    CHECK(other < walks->label.size() / 100);
+}
+
+TEST_CASE("the lines of a painting script are checked before the first one runs") {
+    const auto said = [](const std::string& line) -> std::string {
+        try {
+            view::paint_lines("undo\n" + line + "\n", "script");
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    for (const char* const good : {"stroke 1 2 3", "stroke 1 2 3 4 5 6", "label \"a b\"", "! stroke 1 2 3",
+                                   "until there x", "from left", "size 800 600"})
+        CHECK(said(good).empty());
+    for (const char* const bad :
+         {"stroke",     "stroke 1 2",  "stroke 1 2 3 4", "stroke 1 2 nan", "stroke 1 2 inf", "brush 0", "brush x",
+          "undo 1",     "label",       "rename a",       "from nowhere",   "grey 5 1",       "zoom -1", "until",
+          "until done", "until there", "size 1e9 5",     "tool saw",       "strok 1 2 3",    "!"})
+        CHECK(said(bad).starts_with("script:2:1: "));
+}
+
 TEST_CASE("the eraser cuts strokes and takes dabs away") {
     const Scene scene;
     Painting painting = scene.painting();
@@ -172,6 +294,8 @@ TEST_CASE("labels are added, named, coloured and removed, and names that the fil
     CHECK_FALSE(painting.rename(1, "wing \"of\" the ilium"));
     CHECK_FALSE(painting.rename(1, ""));
     CHECK_FALSE(painting.rename(1, "a\nb"));
+    CHECK_FALSE(painting.rename(1, "not UTF-8: \xff"));
+    CHECK_FALSE(painting.add_label("\xc3"));
     CHECK_FALSE(painting.problem().empty());
     dab(painting, 2, right_block);
     REQUIRE(painting.remove_label(1));
@@ -188,7 +312,12 @@ TEST_CASE("a painting that cannot be written is kept in the window and says so")
     painting.begin(1e-3, left_block);
     CHECK(painting.end());
     CHECK_FALSE(painting.problem().empty());
+    CHECK_FALSE(painting.is_kept());
     CHECK(painting.labels()[0].strokes.size() == 1);
+    CHECK_FALSE(painting.save());
+    std::filesystem::create_directory(scene.folder.path / "none");
+    CHECK(painting.save());
+    CHECK(segment::read_seeds(scene.folder.path / "none/seeds.json", segment::SeedsUse::draft)[0].strokes.size() == 1);
     scene.folder.write("bad.json", "{\"labels\": 3}");
     CHECK_THROWS_AS(Painting(scene.folder.path / "bad.json", [](const segment::Stroke&) { return true; }), Error);
 }
@@ -232,7 +361,9 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
                                                         at[2] + scene.scan.box_at[2]);
             if (whole.map.label[v] != fresh.label[n]) FAIL("voxel " << v);
         }
-        // In one step to a plan.
+        // In one step to a plan, also with a name that divides a file from its bone.
+        REQUIRE(bench.painting().rename(1, "wing ##2, 50 % s"));
+        settle(bench);
         bench.make_plan();
         settle(bench);
         INFO(bench.message());
@@ -241,6 +372,8 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
     const auto plan = cases::load_case_plan(scene.folder.path / "case.plan.json");
     REQUIRE(plan.fragments.size() == 2);
     CHECK(plan.fragments[0].name == "fragment 1");
+    CHECK(plan.fragments[1].name == "wing ##2, 50 % s");
+    CHECK(cases::changed_files(plan, scene.folder.path).empty());
     CHECK(bone::load_bones(scene.folder.path / "case.vdb").size() == 2);
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include <cstddef>
 #include <span>

@@ -2,7 +2,7 @@
 // Mirrors the healthy side of a body and registers it to the broken side, as a target.
 #pragma once
 
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include <span>
 #include <vector>

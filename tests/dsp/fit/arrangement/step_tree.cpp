@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/step_tree.hpp"
+#include "dsp/fit/arrangement/step_tree.hpp"
 
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"

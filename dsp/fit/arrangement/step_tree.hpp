@@ -2,8 +2,8 @@
 // Undo tree of an arrangement for use in a tick: each step stores what it changed, so undo costs as much as the step.
 #pragma once
 
-#include "dsp/fit/arrangement.hpp"
-#include "dsp/fit/history.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
+#include "dsp/fit/arrangement/history.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -2,7 +2,7 @@
 // Point-to-point ICP, as a reference for comparison.
 #pragma once
 
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include <span>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
 
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/assemblies.hpp"
-#include "dsp/fit/history.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
+#include "dsp/fit/arrangement/history.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>

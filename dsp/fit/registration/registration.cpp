@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/mirror.hpp"
+#include "dsp/fit/registration/mirror.hpp"
 
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/healthy_pull.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace tactus::fit {
 
 namespace {
-
-constexpr double least_alike_normals = 0.5;  // of two normals: 60 degrees, as in a registration
 
 Mat3 reflection(const Vec3& normal) { return Mat3(1.0) - 2.0 * glm::outerProduct(normal, normal); }
 
@@ -75,53 +71,6 @@ MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<c
     const Vec3 at = fit.plane.reflect(middle);
     fit.glide = glm::length(fit.pose.apply(at) - at);
     return fit;
-}
-
-// The healthy side in a fit.
-
-HealthyPull::HealthyPull(std::span<const contact::SurfacePoint> points, const HealthyPullSettings& settings)
-    : settings_(settings) {
-    std::vector<const contact::SurfacePoint*> outside;
-    for (const contact::SurfacePoint& p : points)
-        if (p.label != contact::surface_label::fracture && glm::length(p.normal) > 0.5) outside.push_back(&p);
-    if (!settings.side || outside.empty()) return;
-    const std::size_t stride = (outside.size() + settings.most_points - 1) / settings.most_points;
-    double area = 0.0;
-    for (std::size_t n = 0; n < outside.size(); n += stride) {
-        links_.push_back(
-            {outside[n]->position, glm::normalize(outside[n]->normal), Vec3(0.0), Vec3(0.0), outside[n]->area, 0.0});
-        area += outside[n]->area;
-    }
-    for (Link& link : links_) link.share /= std::max(area, 1e-12);
-}
-
-void HealthyPull::look(const Pose& body) noexcept {
-    const double s2 = settings_.scale * settings_.scale;
-    for (Link& link : links_) {
-        const Vec3 at = body.apply(link.from);
-        const std::size_t nearest = settings_.side->nearest(at);
-        link.to = settings_.side->position(nearest);
-        link.along = settings_.side->normal(nearest);
-        link.weight = 0.0;
-        if (glm::dot(body.rotate(link.normal), link.along) < least_alike_normals) continue;
-        const double d = glm::dot(link.along, at - link.to), share = s2 / (s2 + d * d);
-        link.weight = settings_.weight * link.share * share * share;
-    }
-}
-
-void HealthyPull::add(contact::ContactSum& sum, const Pose& body, const Vec3& origin, double strength) const noexcept {
-    for (const Link& link : links_) {
-        if (!(link.weight > 0.0)) continue;
-        const Vec3 at = body.apply(link.from);
-        const double d = glm::dot(link.along, at - link.to), k = strength * link.weight;
-        const Vec3 turn = glm::cross(at - origin, link.along);
-        const double j[6] = {link.along.x, link.along.y, link.along.z, turn.x, turn.y, turn.z};
-        sum.energy += 0.5 * k * d * d;
-        for (std::size_t a = 0; a < 6; ++a) {
-            sum.gradient[a] += k * d * j[a];
-            for (std::size_t b = 0; b < 6; ++b) sum.stiffness[6 * a + b] += k * j[a] * j[b];
-        }
-    }
 }
 
 }  // namespace tactus::fit

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/registration.hpp"
+#include "dsp/fit/registration/registration.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/gap.hpp"
-#include "dsp/fit/mirror.hpp"
-#include "dsp/fit/point_registration.hpp"
+#include "dsp/fit/registration/mirror.hpp"
+#include "dsp/fit/registration/point_registration.hpp"
 #include "dsp/geometry/main_axes.hpp"
 #include "tests/support/catch.hpp"
 

@@ -2,7 +2,7 @@
 // Which fragments of an arrangement hang together by fits.
 #pragma once
 
-#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/arrangement/arrangement.hpp"
 
 #include <vector>
 

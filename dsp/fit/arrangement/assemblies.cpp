@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/fit/assemblies.hpp"
+#include "dsp/fit/arrangement/assemblies.hpp"
 
 #include <algorithm>
 

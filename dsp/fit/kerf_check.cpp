@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/kerf_check.hpp"
+
+#include "dsp/fit/fit_steps.hpp"
+#include "dsp/geometry/dense_cholesky.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace tactus::fit {
+
+namespace {
+
+constexpr double rim = 1.2e-3;  // m: nearer to the face the cortex is rounded
+constexpr double reach = 9e-3;  // m: length of a strip on either half
+constexpr double half_width = 1.5e-3;  // m, of a strip
+constexpr double alike = 0.8;  // least cosine between the normals of a strip
+constexpr std::size_t most_strips = 48, least_points = 12, most_paint = 400;
+constexpr int independent = 8;  // strips around a bone that tell something of their own
+constexpr double beside = 0.05e-3;  // m: how well the faces hold the halves across the normal
+constexpr double least_contradiction = 1.0e-3;  // m: ridges of the cortex that end in the gap leave up to this
+constexpr double sure = 2.5;  // standard deviations
+constexpr double most_error = 0.5e-3;  // m, of the opening
+
+struct Spot {
+    Vec3 at, normal;
+};
+
+/// The cortex around a face but for its rim, in the fixed frame.
+std::vector<Spot> cortex_of(const KerfSide& side, const Pose& pose) {
+    const FitSurface& face = *side.face;
+    const std::size_t stride = 1 + face.position.size() / most_paint;
+    double radius = 0.0;
+    for (const Vec3& p : face.position) radius = std::max(radius, glm::length(p));
+    radius += reach + rim;
+    std::vector<Spot> spots;
+    for (const contact::SurfacePoint& point : side.points) {
+        const Vec3 p = point.position - face.centre;
+        if (point.label == contact::surface_label::fracture || !(glm::dot(p, p) < radius * radius) ||
+            !(glm::length(point.normal) > 0.5))
+            continue;
+        bool is_rim = false;
+        for (std::size_t n = 0; n < face.position.size() && !is_rim; n += stride) {
+            const Vec3 off = p - face.position[n];
+            is_rim = glm::dot(off, off) < rim * rim;
+        }
+        if (!is_rim) spots.push_back({pose.apply(point.position), pose.rotate(glm::normalize(point.normal))});
+    }
+    return spots;
+}
+
+struct Step {
+    double step, lever;  ///< m; by how much the step grows with the opening
+};
+
+/// The step of one strip across the gap: height over the tangent plane is a parabola, and a step between the halves.
+std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
+                            const std::array<const std::vector<Spot>*, 2>& cortex) {
+    constexpr std::size_t unknowns = 6;  // 1, z, z², t, t², step
+    const Vec3 across = normal - glm::dot(normal, out) * out;
+    if (!(glm::length(across) > 0.5)) return std::nullopt;
+    const Vec3 along = glm::normalize(across), aside = glm::cross(out, along);
+    std::vector<double> matrix(unknowns * unknowns, 0.0), solved(unknowns, 0.0);
+    for (std::size_t half = 0; half < 2; ++half) {
+        std::size_t count = 0;
+        for (const Spot& spot : *cortex[half]) {
+            const Vec3 off = spot.at - at;
+            const double t = glm::dot(off, aside) / half_width, z = glm::dot(off, along) / reach;
+            const double height = glm::dot(off, out);
+            if (!(std::abs(t) < 1.0) || !(std::abs(z) < 1.4) || !(std::abs(height) < 2e-3) ||
+                !(glm::dot(spot.normal, out) > alike))
+                continue;
+            ++count;
+            const double row[unknowns] = {1.0, z, z * z, t, t * t, half == 0 ? 0.5 : -0.5};
+            for (std::size_t a = 0; a < unknowns; ++a) {
+                solved[a] += row[a] * height;
+                for (std::size_t b = 0; b < unknowns; ++b) matrix[a * unknowns + b] += row[a] * row[b];
+            }
+        }
+        if (count < least_points) return std::nullopt;
+    }
+    for (std::size_t a = 0; a < unknowns; ++a) matrix[a * unknowns + a] += 1e-9;
+    if (!geometry::solve_positive(matrix, solved)) return std::nullopt;
+    return Step{solved[5], glm::dot(normal, out) - solved[1] / reach * glm::dot(normal, along)};
+}
+
+}  // namespace
+
+ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose) {
+    ContourOpening found;
+    const Vec3 normal = direction_of(fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
+    const std::vector<Spot> mine = cortex_of(moving, pose), other = cortex_of(fixed, {});
+    const FitSurface& face = *fixed.face;
+    std::vector<Step> steps;
+    const std::size_t stride = 1 + face.outline.size() / most_strips;
+    for (std::size_t n = 0; n < face.outline.size(); n += stride)
+        if (const auto step = step_at(face.centre + face.outline[n], face.outline_normal[n], normal, {&mine, &other}))
+            steps.push_back(*step);
+    found.strips = static_cast<int>(steps.size());
+    if (found.strips < independent) return found;
+    double levers = 0.0, weights = 0.0;
+    // Strips over ridges and holes have steps of their own: their weight falls with the step that is left.
+    for (int pass = 0; pass < 6; ++pass) {
+        double sum = 0.0, squares = 0.0;
+        levers = weights = 0.0;
+        for (const Step& s : steps) {
+            const double off = (s.step - found.excess * s.lever) / 0.2e-3, weight = 1.0 / (1.0 + off * off);
+            sum += weight * s.lever * s.step;
+            levers += weight * s.lever * s.lever;
+            weights += weight;
+            squares += weight * off * off * 0.04e-6;
+        }
+        if (!(levers > 0.0)) return found;
+        found.excess = sum / levers;
+        const double mean_lever2 = levers / weights;
+        found.spread =
+            std::sqrt((squares / weights / independent + 0.5 * beside * beside) / std::max(mean_lever2, 1e-9));
+    }
+    return found;
+}
+
+KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told) {
+    const ContourOpening contour = contour_opening(moving, fixed, pose);
+    const Vec3 mean = 0.5 * (fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
+    const double cosine = std::clamp(glm::length(mean), 0.5, 1.0);
+    KerfEstimate made{told, std::max(0.0, told - contour.excess * cosine), contour.spread * cosine, false, false};
+    made.is_contradicted =
+        std::abs(contour.excess) > least_contradiction && std::abs(contour.excess) > sure * contour.spread;
+    made.is_too_wide = told * (1.0 / cosine - 1.0) > most_error;
+    return made;
+}
+
+}  // namespace tactus::fit

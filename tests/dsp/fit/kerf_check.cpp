@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/kerf_check.hpp"
+
+#include "tests/dsp/fit/broken_bar.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+/// An oblique break, rough or smooth, of two halves in place.
+struct Oblique {
+    Half left, right;
+    fit::FitSurface moving, fixed;
+
+    Oblique(double gap, double height)
+        : left(half(-1.0, gap, height)),
+          right(half(1.0, gap, height)),
+          moving(left.surface()),
+          fixed(right.surface()) {}
+    static Half half(double side, double gap, double height) {
+        const Relief rough = rough_relief(3, height);
+        return bar_half(side, [rough](double y, double z) { return rough(y, z) + 0.35 * y; }, {.gap = gap});
+    }
+    fit::KerfEstimate check(double told, const Pose& pose = {}) const {
+        return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
+    }
+    fit::ContourOpening opening(const Pose& pose) const {
+        return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wrong") {
+    const Oblique bar(0.8 * mm, 0.2 * mm);
+    const fit::KerfEstimate right = bar.check(0.7 * mm);
+    CHECK_FALSE(right.is_doubtful());
+    CHECK(right.kerf == Approx(0.7 * mm).margin(0.4 * mm));
+    const Vec3 away = glm::normalize(bar.fixed.mean_normal - bar.moving.mean_normal);
+    for (const double wrong : {-1.5 * mm, 1.5 * mm}) {
+        CAPTURE(wrong);
+        const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
+        CHECK(bar.opening(pose).excess == Approx(wrong).margin(0.4 * mm));
+        CHECK(bar.check(0.7 * mm + std::max(0.0, wrong), pose).is_contradicted);
+    }
+}
+
+TEST_CASE("dsp: a wide kerf across rough faces is not known to half a millimetre") {
+    const Oblique rough(3.0 * mm, 0.6 * mm);
+    const double cosine = glm::length(0.5 * (rough.fixed.mean_normal - rough.moving.mean_normal));
+    const double limit = 0.5 * mm / (1.0 / cosine - 1.0);
+    CHECK(rough.check(1.05 * limit).is_too_wide);
+    CHECK_FALSE(rough.check(0.95 * limit).is_too_wide);
+    CHECK_FALSE(Oblique(3.0 * mm, 0.02 * mm).check(3.0 * mm).is_too_wide);
+    CHECK_FALSE(Oblique(0.8 * mm, 0.6 * mm).check(0.8 * mm).is_too_wide);
+}
