@@ -24,6 +24,7 @@ Verb engine_verb();
 Verb nodes_verb();
 Verb contact_verb();
 Verb view_verb();
+Verb pictures_verb();
 Verb scrub_verb();
 Verb snap_verb();
 Verb passivity_verb();

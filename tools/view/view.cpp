@@ -6,6 +6,7 @@
 #include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
 #include "tools/view/desk.hpp"
+#include "tools/view/picture_meter.hpp"
 #include "tools/view/script.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ constexpr auto picture_time = std::chrono::microseconds(16'667);
 class Viewer {
 public:
     Viewer(const ViewChoice& view, const std::atomic<bool>& interrupted)
-        : view_(view), interrupted_(interrupted), window_("Tactus", 1600, 1000, view.scale) {
+        : view_(view), interrupted_(interrupted), window_("Tactus", view.width, view.height, view.scale) {
         ++haptic::window_hand().windows;
         if (!view.script.empty()) {
             script_.emplace(view.script);
@@ -105,6 +106,7 @@ public:
             if (wanted_.any()) open_wanted();
             if (bench_->wants_take) open_take(fs::path(bench_->take()));
             else if (bench_->wants_patch) open_patch(choice_);
+            if (view_.meter) view_.meter->add(desk_->scene().pictures());
             if (const std::optional<bool> goes_on = farewell()) return *goes_on;
             std::this_thread::sleep_until(begin + picture_time);
         }
@@ -240,6 +242,19 @@ int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted
     for (const std::string& loss : run->losses()) say(stderr, fmt::format("tactus: {}\n", loss));
     say(stdout, choice.json ? run->summary_json() : run->summary_text());
     return run->losses().empty() ? done : output_lost;
+}
+
+void watch_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted) {
+    Viewer viewer(choice.view, interrupted);
+    viewer.open_patch(choice);
+    viewer.bench().run();
+    viewer.show();
+    const std::unique_ptr<Workbench> bench = viewer.let_go();
+    while (!bench->running()->is_over()) {
+        bench->running()->stop();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    if (const std::string failure = bench->status()->failure; !failure.empty()) throw Error(failure);
 }
 
 int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted) {

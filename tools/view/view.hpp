@@ -12,6 +12,9 @@ namespace tactus::view {
 /// window can be opened.
 int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted);
 
+/// The same, and prints nothing: for measurements. Throws Error also when the run fails.
+void watch_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted);
+
 /// Opens a window on a take or a patch, which is not run; without a file, on the start page. Throws Error.
 int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted);
 

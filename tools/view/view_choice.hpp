@@ -10,6 +10,8 @@
 
 namespace tactus::view {
 
+class PictureMeter;
+
 /// Options of the window on a run.
 struct ViewChoice {
     bool wanted = false;
@@ -18,6 +20,8 @@ struct ViewChoice {
     std::filesystem::path reference;          ///< sound file whose spectrum is drawn behind those of the signals
     std::string layout;                       ///< "patch", "plan" or "train"; empty: as the patch was seen last
     double scale = 0.0;                       ///< scale of the content, 0: that of the screen
+    int width = 1600, height = 1000;          ///< of the window when it opens, pixels
+    PictureMeter* meter = nullptr;            ///< told of each picture
     picture::SightChoice sight;
 };
 

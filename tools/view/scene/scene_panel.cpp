@@ -225,6 +225,7 @@ void ScenePanel::render(int width, int height) {
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
     hand_.beat();
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
+    ++pictures_;
     hand_.beat();
     // Without a graphics card the processor draws, and the wait for it would come later, as a whole.
     if (renderer_->is_software()) finish(hand_);

@@ -52,6 +52,8 @@ public:
     /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping; 3: along the line of sight as
     /// it is now; 4: along the normal of the plane through three measured points.
     void clip(int axis, double share);
+    /// Number of pictures drawn; a scene that does not change is not drawn again.
+    std::int64_t pictures() const { return pictures_; }
     /// The parts of the last picture.
     std::span<const SceneModel::Part> parts() const;
     /// Places in their scene of the chosen bodies, in the order in which they were chosen.
@@ -110,6 +112,7 @@ private:
     bool is_aimed_ = false, needs_picture_ = true;
     bool was_drawn_ = false;
     double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: time per picture, including the window
+    std::int64_t pictures_ = 0;
     int width_ = 0, height_ = 0;  ///< size of the last picture, pixels
     int clip_axis_ = -1;  ///< 3: across the view as it was; 4: through the measured points
     Vec3 clip_normal_{0.0, 0.0, 1.0};
