@@ -25,6 +25,7 @@ constexpr int independent = 8;  // strips around a bone that tell something of t
 constexpr double beside = 0.05e-3;  // m: how well the faces hold the halves across the normal
 constexpr double least_contradiction = 1.0e-3;  // m: ridges of the cortex that end in the gap leave up to this
 constexpr double sure = 2.5;  // standard deviations
+constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
 constexpr double most_error = 0.5e-3;  // m, of the opening
 
 struct Spot {
@@ -67,12 +68,14 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
     const Vec3 along = glm::normalize(across), aside = glm::cross(out, along);
     std::vector<double> matrix(unknowns * unknowns, 0.0), solved(unknowns, 0.0);
     for (std::size_t half = 0; half < 2; ++half) {
+        // An error of the opening lifts the moving half by its share along `out`.
+        const double highest = 2e-3 + (half == 0 ? widest * std::abs(glm::dot(normal, out)) : 0.0);
         std::size_t count = 0;
         for (const Spot& spot : *cortex[half]) {
             const Vec3 off = spot.at - at;
             const double t = glm::dot(off, aside) / half_width, z = glm::dot(off, along) / reach;
             const double height = glm::dot(off, out);
-            if (!(std::abs(t) < 1.0) || !(std::abs(z) < 1.4) || !(std::abs(height) < 2e-3) ||
+            if (!(std::abs(t) < 1.0) || !(std::abs(z) < 1.4) || !(std::abs(height) < highest) ||
                 !(glm::dot(spot.normal, out) > alike))
                 continue;
             ++count;

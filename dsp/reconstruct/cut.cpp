@@ -101,7 +101,8 @@ CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& fir
                 throw Error(
                     "the planes do not separate the bone: a part reaches from one side of a plane to the other; move "
                     "the planes or add one");
-            cut_by[body_at(middle)] = plane;
+            CutBy& by = cut_by[body_at(middle)];
+            by = by == CutBy::none || by == plane ? plane : CutBy::both;
         }
     CutPieces pieces;
     std::map<std::size_t, std::size_t> number;  // of a body in the rest

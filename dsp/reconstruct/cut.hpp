@@ -11,7 +11,7 @@
 namespace tactus::reconstruct {
 
 /// The plane that made a face of a piece.
-enum class CutBy { none, first, last };
+enum class CutBy { none, first, last, both };
 
 struct RestPiece {
     geometry::TriangleSurface surface;

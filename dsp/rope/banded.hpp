@@ -18,7 +18,7 @@ class BlockBand {
 public:
     /// At least three points.
     explicit BlockBand(std::size_t points)
-        : size_(points), middle_((points - 1) / 2), columns_(middle_ + 2), right_(middle_ + 2) {}
+        : size_(points), middle_(points > 0 ? (points - 1) / 2 : 0), columns_(middle_ + 2), right_(middle_ + 2) {}
 
     void clear() noexcept {
         for (Column& c : columns_) c = {};

@@ -141,6 +141,8 @@ void Rope::look_at(const Obstacle* bone, bool is_anew) noexcept {
             if (glm::dot(way, way) < clear_[n] * clear_[n]) continue;
         }
         depth_[n] = material_.radius - bone->distance(x_[n], normal_[n]);
+        // A field that does not say where its surface is gives no contact.
+        if (normal_[n] == Vec3(0.0)) depth_[n] = std::min(depth_[n], 0.0);
         clear_[n] =
             depth_[n] < -near_bone ? bone->free_way(x_[n], material_.radius - depth_[n], material_.radius) : 0.0;
         if (clear_[n] > 0.0) {
@@ -228,6 +230,7 @@ void Rope::end_friction() noexcept {
 
 RopeStep Rope::step(double h, const Obstacle* bone) noexcept {
     RopeStep report;
+    if (!(h > 0.0)) return report;
     report.is_solved = true;
     const auto allowed = [&](std::size_t p) { return 0.5 * std::min(2.0 * share_[p], rest_[p ? p - 1 : 0]); };
     // As many substeps as the fastest held point needs.

@@ -62,8 +62,10 @@ public:
     /// Holds a point: it moves to `place` during the next ticks, by at most half a segment per substep.
     void hold(std::size_t point, const Vec3& place) noexcept;
     void release(std::size_t point) noexcept;
-    /// A force on a point that is not held, N.
-    void load(std::size_t point, const Vec3& force) noexcept { load_[point] = force; }
+    /// A force on a point that is not held, N; one that is not finite is not taken.
+    void load(std::size_t point, const Vec3& force) noexcept {
+        if (is_finite(force)) load_[point] = force;
+    }
     /// Keeps the direction of the rope (unit length, from the first point to the last) at the first or last point.
     void clamp_first(const std::optional<Vec3>& direction) noexcept;
     void clamp_last(const std::optional<Vec3>& direction) noexcept;

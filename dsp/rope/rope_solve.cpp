@@ -47,7 +47,8 @@ double Rope::gradient(double drag) noexcept {
         }
         Vec3 g = rest_of_gradient_[n] + before - after;
         if (depth_[n] > 0.0) g -= settings_.contact_stiffness * depth_[n] * normal_[n];
-        if (!held_[n]) largest = std::max(largest, glm::length(g));
+        // A force that is not a number is no small one.
+        if (const double size = glm::length(g); !held_[n] && !std::isnan(largest) && !(size <= largest)) largest = size;
         before = after;
     }
     return largest;
@@ -200,7 +201,7 @@ bool Rope::substep(double h, const Obstacle* bone, int most_iterations, RopeStep
     for (int iteration = 0;; ++iteration) {
         const double residual = gradient(drag);
         if (residual <= settings_.tolerance || iteration >= most_iterations) {
-            report.residual = std::max(report.residual, residual);
+            if (!(residual <= report.residual)) report.residual = residual;
             return residual <= settings_.tolerance;
         }
         ++report.iterations;

@@ -113,11 +113,16 @@ template <class Named, class Same>
 std::map<std::string, std::string> names_here(const std::vector<Named>& copied, const std::vector<Named>& here,
                                               Same&& are_same) {
     std::map<std::string, std::string> names;
+    // A new name must not be that of another one of the copy, either.
+    const auto is_taken = [&](const std::string& name) {
+        return std::ranges::find(copied, name, &Named::name) != copied.end() ||
+               std::ranges::any_of(names, [&](const auto& given) { return given.second == name; });
+    };
     for (const Named& one : copied) {
         std::string name = one.name;
         for (int i = 2;; ++i) {
             const auto known = std::ranges::find(here, name, &Named::name);
-            if (known == here.end() || are_same(one, *known)) break;
+            if (known == here.end() ? name == one.name || !is_taken(name) : are_same(one, *known)) break;
             name = fmt::format("{}_{}", one.name, i);
         }
         names[one.name] = name;

@@ -100,8 +100,12 @@ void OutputFolder::let_go() {
 void OutputFolder::drop_if_empty() {
     std::error_code failure;
     if (made_.empty() || !fs::remove(path_, failure)) return;
-    if (!link_.empty() && linked_before_.empty()) fs::remove(link_, failure);
-    else if (!link_.empty()) point(link_, linked_before_);
+    // Another run may have led the link on, or have taken away where it led before.
+    if (!link_.empty() && fs::read_symlink(link_, failure) == path_.filename()) {
+        const bool is_there = !linked_before_.empty() && fs::exists(link_.parent_path() / linked_before_, failure);
+        if (!is_there) fs::remove(link_, failure);
+        else point(link_, linked_before_);
+    }
     for (fs::path folder = path_; folder != made_;) {
         folder = folder.parent_path();
         if (!fs::remove(folder, failure)) return;

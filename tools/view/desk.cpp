@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/desk.hpp"
 
+#include "tools/view/frame/whole_window.hpp"
 #include "tools/view/run_bar.hpp"
-#include "tools/view/spots.hpp"
 #include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
@@ -107,15 +107,7 @@ void Desk::draw() {
     scene_.hand().begin_picture();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};
-    forget_spots();
-    ImGui::NewFrame();
-    ImGui::PushFont(fonts_.body);
-    const ImGuiViewport* viewport = ImGui::GetMainViewport();
-    ImGui::SetNextWindowPos(viewport->Pos);
-    ImGui::SetNextWindowSize(viewport->Size);
-    ImGui::Begin("desk", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    begin_whole_window("desk", fonts_);
     shortcuts();
     if (start_page_.is_open) return draw_start();
     // On a narrow window the words of the run need the room of the menus.

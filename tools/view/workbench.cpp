@@ -374,15 +374,22 @@ bool Workbench::has_same_parts() {
     return checked_.plan && checked_.plan->patch.parts == plan_->patch.parts;
 }
 
+void Workbench::keep_beside(const std::string& text) {
+    try {
+        tell(fmt::format("your edits that were not saved are kept in {}; undo shows them again",
+                         keep_unsaved(editor_->file(), text).string()));
+    } catch (const Error& error) {
+        tell(fmt::format("{}; undo shows your edits that were not saved", error.message()), true);
+    }
+}
+
 /// Applied as an edit, which can be undone. Edits that are not saved are kept beside the patch as well: who saves what
 /// was taken over, or closes the window, still has them.
 void Workbench::take_over_file() {
     try {
         const std::string mine = editor_->is_saved() ? std::string() : editor_->text();
         const bool is_new = editor_->reload();
-        if (is_new && !mine.empty())
-            tell(fmt::format("your edits that were not saved are kept in {}; undo shows them again",
-                             keep_unsaved(editor_->file(), mine).string()));
+        if (is_new && !mine.empty()) keep_beside(mine);
         // A sub-patch may have been saved instead.
         const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
         if (is_known) return;

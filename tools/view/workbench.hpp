@@ -184,6 +184,7 @@ private:
     void adopt_text();
     void follow();
     void take_over_file();
+    void keep_beside(const std::string& text);
     void look_at_file();
     void drop_restored();
     std::filesystem::path keep_text() const;

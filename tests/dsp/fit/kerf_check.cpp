@@ -16,14 +16,14 @@ struct Oblique {
     Half left, right;
     fit::FitSurface moving, fixed;
 
-    Oblique(double gap, double height)
-        : left(half(-1.0, gap, height)),
-          right(half(1.0, gap, height)),
+    Oblique(double gap, double height, double slope = 0.35)
+        : left(half(-1.0, gap, height, slope)),
+          right(half(1.0, gap, height, slope)),
           moving(left.surface()),
           fixed(right.surface()) {}
-    static Half half(double side, double gap, double height) {
+    static Half half(double side, double gap, double height, double slope) {
         const Relief rough = rough_relief(3, height);
-        return bar_half(side, [rough](double y, double z) { return rough(y, z) + 0.35 * y; }, {.gap = gap});
+        return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; }, {.gap = gap});
     }
     fit::KerfEstimate check(double told, const Pose& pose = {}) const {
         return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
@@ -46,6 +46,17 @@ TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wron
         const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
         CHECK(bar.opening(pose).excess == Approx(wrong).margin(0.4 * mm));
         CHECK(bar.check(0.7 * mm + std::max(0.0, wrong), pose).is_contradicted);
+    }
+}
+
+TEST_CASE("dsp: a kerf that is wrong by millimetres is found out as well as one that is wrong by one") {
+    const Oblique bar(0.5 * mm, 0.02 * mm, 0.8);
+    const Vec3 away = glm::normalize(bar.fixed.mean_normal - bar.moving.mean_normal);
+    for (const double wrong : {2.0 * mm, 3.5 * mm}) {
+        CAPTURE(wrong);
+        const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
+        CHECK(bar.opening(pose).excess == Approx(wrong).epsilon(0.25));
+        CHECK(bar.check(0.3 * mm + wrong, pose).is_contradicted);
     }
 }
 

@@ -53,6 +53,26 @@ geometry::TriangleSurface half_ring() {
     return straight;
 }
 
+/// A bone without ends, of radius 40 mm in the plane z = 0.
+geometry::TriangleSurface closed_ring() {
+    geometry::TriangleSurface ring =
+        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 12, 41, [](double, double) { return 6.0 * mm; });
+    ring.vertices.resize(12 * 40);
+    ring.triangles.clear();
+    for (int n = 0; n < 40; ++n)
+        for (int m = 0; m < 12; ++m) {
+            const auto at = [](int i, int j) { return (i % 40) * 12 + j % 12; };
+            ring.triangles.push_back({at(n, m), at(n, m + 1), at(n + 1, m)});
+            ring.triangles.push_back({at(n, m + 1), at(n + 1, m + 1), at(n + 1, m)});
+        }
+    for (std::size_t n = 0; n < ring.vertices.size(); ++n) {
+        const Vec3 v = ring.vertices[n];
+        const double a = 2.0 * pi * v.z;
+        ring.vertices[n] = (40.0 * mm + v.x) * Vec3(std::cos(a), std::sin(a), 0.0) + Vec3(0.0, 0.0, v.y);
+    }
+    return ring;
+}
+
 }  // namespace
 
 TEST_CASE("a plane through one ramus of a jaw leaves the other one whole") {
@@ -115,23 +135,18 @@ TEST_CASE("cuts that miss a bone or do not separate it are refused") {
     const Vec3 x(1.0, 0.0, 0.0);
     CHECK_THROWS_WITH(cut_between(jaw, {Vec3(0.0, 0.0, 1.0), Vec3(0.0, 0.0, 1.0)}, {}), ContainsSubstring("misses"));
     // A closed ring stays in one piece when it is cut once.
-    geometry::TriangleSurface ring =
-        closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 1.0, 12, 41, [](double, double) { return 6.0 * mm; });
-    ring.vertices.resize(12 * 40);
-    ring.triangles.clear();
-    for (int n = 0; n < 40; ++n)
-        for (int m = 0; m < 12; ++m) {
-            const auto at = [](int i, int j) { return (i % 40) * 12 + j % 12; };
-            ring.triangles.push_back({at(n, m), at(n, m + 1), at(n + 1, m)});
-            ring.triangles.push_back({at(n, m + 1), at(n + 1, m + 1), at(n + 1, m)});
-        }
-    for (std::size_t n = 0; n < ring.vertices.size(); ++n) {
-        const Vec3 v = ring.vertices[n];
-        const double a = 2.0 * pi * v.z;
-        ring.vertices[n] = (40.0 * mm + v.x) * Vec3(std::cos(a), std::sin(a), 0.0) + Vec3(0.0, 0.0, v.y);
-    }
+    const geometry::TriangleSurface ring = closed_ring();
     REQUIRE(is_closed(ring));
     CHECK_THROWS_WITH(cut_between(ring, {Vec3(0.0, 40.0 * mm, 0.0), x}, {}), ContainsSubstring("do not separate"));
+}
+
+TEST_CASE("what hangs on both sides of a piece is one piece that both planes have cut") {
+    const Plane first{Vec3(0.0, 40.0 * mm, 0.0), Vec3(1.0, 0.0, 0.0)},
+        last{Vec3(40.0 * mm, 0.0, 0.0), Vec3(0.0, -1.0, 0.0)};
+    const CutPieces cut = cut_between(closed_ring(), first, last);
+    REQUIRE(cut.rest.size() == 1);
+    CHECK(cut.rest[0].cut_by == CutBy::both);
+    CHECK(std::abs(enclosed(cut.rest[0].surface)) == Approx(3.0 * std::abs(enclosed(cut.between))).epsilon(0.05));
 }
 
 TEST_CASE("a cut whose origin lies in the wall of a hollow bone or beside it also cuts the marrow cavity") {

@@ -312,8 +312,41 @@ TEST_CASE("a rope's tick does not allocate and says what it did not solve") {
     CHECK(is_finite(rough.points()[64]));
 }
 
+TEST_CASE("a load or a time that is no number moves no rope, and no such step is solved") {
+    const RopeMaterial material = artery();
+    Rope rope = rope_along({Vec3(0.0), Vec3(0.1, 0.0, 0.0)}, 33, 0.1, material);
+    rope.hold(0, Vec3(0.0));
+    rope.hold(32, Vec3(0.1, 0.0, 0.0));
+    rope.load(16, Vec3(0.0, std::nan(""), 0.0));
+    CHECK(rope.step(1e-3, nullptr).is_solved);
+    const std::vector<Vec3> before(rope.points().begin(), rope.points().end());
+    for (const double h : {0.0, -1e-3, std::nan("")}) {
+        CHECK_FALSE(rope.step(h, nullptr).is_solved);
+        CHECK(std::ranges::equal(before, rope.points()));
+    }
+}
+
+TEST_CASE("a bone that does not say where its surface is gives no contact") {
+    struct Fog final : Obstacle {
+        double distance(const Vec3&, Vec3& normal) const noexcept override {
+            normal = Vec3(0.0);
+            return 0.5e-3;
+        }
+    };
+    const Fog fog;
+    RopeMaterial material = artery();
+    material.weight = 0.0;
+    Rope rope = rope_along({Vec3(0.0), Vec3(0.1, 0.0, 0.0)}, 33, 0.1, material);
+    rope.hold(0, Vec3(0.0));
+    rope.hold(32, Vec3(0.1, 0.0, 0.0));
+    const RopeStep step = rope.step(1e-3, &fog);
+    CHECK(step.is_solved);
+    CHECK(step.contacts == 0);
+}
+
 TEST_CASE("ropes that cannot be are refused") {
     const std::vector<Vec3> two{Vec3(0.0), Vec3(0.1, 0.0, 0.0)}, three{two[0], two[1], Vec3(0.2, 0.0, 0.0)};
+    CHECK_THROWS_AS(Rope({}, {}, {}), Error);
     CHECK_THROWS_AS(Rope(two, {0.1}, {}), Error);
     CHECK_THROWS_AS(Rope(three, {0.1}, {}), Error);
     CHECK_THROWS_AS(Rope(three, {0.1, 0.0}, {}), Error);

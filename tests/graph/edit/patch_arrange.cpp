@@ -139,6 +139,26 @@ TEST_CASE("a copy from another patch brings its own files and rates where their 
     CHECK(read(with_pasted(ball, copy, names, {}, "/home/x")).assets.size() == 1);
 }
 
+TEST_CASE("two files or rates of a copy stay two, also where a new name is one that the copy has") {
+    std::string two = ball;
+    two.replace(two.find("bone = \"parts"), 4, "bone_2 = \"parts/second.vdb\"\nbone");
+    two.replace(two.find("[assets]"), 8, "[groups.slow_2]\nrate = \"120 Hz\"\n[assets]");
+    two += "[nodes.other]\ntype = \"sphere_contact\"\ngroup = \"slow_2\"\nshape = \"bone_2\"\n";
+    const std::vector<std::string> both{"ball", "other"};
+    std::string here = ball;
+    here.replace(here.find("\"60 Hz\""), 7, "\"30 Hz\"");
+    const patch::Patch all = read(
+        with_pasted(here, copied(two, both, "/home/x"), {{"ball", "ball_2"}, {"other", "other_2"}}, {}, "/home/y"));
+    const auto rate_of = [&](const std::string& node) {
+        const std::string group = std::ranges::find(all.nodes, node, &patch::PatchNode::name)->group;
+        return std::ranges::find(all.groups, group, &patch::PatchGroup::name)->rate;
+    };
+    CHECK(rate_of("ball") == "30 Hz");
+    CHECK(rate_of("ball_2") == "60 Hz");
+    CHECK(rate_of("other_2") == "120 Hz");
+    CHECK(all.assets.size() == 3);
+}
+
 TEST_CASE("colours go along with copies, and a sub-patch keeps how its nodes stood") {
     const std::vector<std::string> both{"hand", "ball"};
     const std::string dressed = with_colours(with_places(ball, {{"hand", {20.0, 90.0}}, {"ball", {100.0, 50.0}}}),

@@ -112,6 +112,11 @@ reconstruct::CutPieces cut_jaw(const FibulaInputs& inputs, const FibulaPlan& pla
     return {{}, {{*inputs.jaw, CutBy::first}}};
 }
 
+/// Whether one plane has cut both.
+bool have_a_plane(CutBy a, CutBy b) {
+    return a == b || (a != CutBy::none && b == CutBy::both) || (a == CutBy::both && b != CutBy::none);
+}
+
 void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const FibulaPlan& plan) {
     const bool is_cut = inputs.resection != reconstruct::Resection::none;
     if (const std::size_t open = is_cut ? open_edges(*inputs.jaw) : 0; open > 0)
@@ -129,8 +134,9 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
     std::vector<const RestPiece*> loose;
     for (RestPiece& part : cut.rest) {
         // The rest comes by size: the first piece at a plane is the jaw itself, a small one after it is half a tooth.
-        const bool is_jaw = part.cut_by != CutBy::none &&
-                            std::ranges::none_of(kept, [&](const Piece& other) { return other.cut_by == part.cut_by; });
+        const bool is_jaw = part.cut_by != CutBy::none && std::ranges::none_of(kept, [&](const Piece& other) {
+                                return have_a_plane(other.cut_by, part.cut_by);
+                            });
         if (is_jaw || std::abs(reconstruct::signed_volume(part.surface)) > largest_tooth)
             kept.push_back({fmt::format("jaw-{}", kept.size() + 1), std::move(part.surface), part.cut_by});
         else loose.push_back(&part);
@@ -144,7 +150,7 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
             if (const double away = square_distance(part->surface, other); away < least) least = away, nearest = &other;
         };
         for (Piece& piece : kept)
-            if (part->cut_by == CutBy::none || part->cut_by == piece.cut_by) look(piece.surface);
+            if (part->cut_by == CutBy::none || have_a_plane(part->cut_by, piece.cut_by)) look(piece.surface);
         if (part->cut_by == CutBy::none && !cut.between.triangles.empty()) look(cut.between);
         goes_to.push_back(nearest);
     }

@@ -35,7 +35,11 @@ public:
     /// Null before the first answer.
     const std::shared_ptr<const LiveLabelling>& labels() const { return labels_; }
     const std::vector<std::shared_ptr<const LiveVessel>>& vessels() const { return vessels_; }
-    bool is_busy() const { return live_.is_busy() || labels_version() != painting_.version() || followers_.is_busy(); }
+    /// Also while the preview of an answer is shown.
+    bool is_busy() const {
+        return live_.is_busy() || labels_version() != painting_.version() || (labels_ && labels_->is_preview) ||
+               followers_.is_busy();
+    }
     bool makes_plan() const { return plan_.valid(); }
     std::vector<std::array<std::uint8_t, 3>> colours() const;
 

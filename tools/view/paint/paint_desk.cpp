@@ -2,6 +2,7 @@
 #include "tools/view/paint/paint_desk.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "tools/view/frame/whole_window.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -163,15 +164,7 @@ void PaintDesk::draw_window() {
 void PaintDesk::draw() {
     bench_.tend();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
-    forget_spots();
-    ImGui::NewFrame();
-    ImGui::PushFont(fonts_.body);
-    const ImGuiViewport* viewport = ImGui::GetMainViewport();
-    ImGui::SetNextWindowPos(viewport->Pos);
-    ImGui::SetNextWindowSize(viewport->Size);
-    ImGui::Begin("paint", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    begin_whole_window("paint", fonts_);
     shortcuts();
     const double gap = 4.0 * fonts_.scale, side = 270.0 * fonts_.scale, line = 24.0 * fonts_.scale;
     const Point room = point(ImGui::GetContentRegionAvail());

@@ -164,7 +164,10 @@ void TrainPanel::figures(const Fonts& fonts) {
         figure("beside the plan", millimetres(node_ + ".distance"), fonts);
         const double angle = number(node_ + ".angle");
         figure("tilt", std::isfinite(angle) ? fmt::format("{:.0f}°", 57.29577951 * angle) : "-", fonts);
-        if (number(node_ + ".clearance") < 0.9) figure("to what is spared", millimetres(node_ + ".clearance"), fonts);
+        const double spared = number(node_ + ".clearance");
+        if (spared < 0.9)
+            figure(spared < 0.0 ? "inside what is spared" : "to what is spared", millimetres(node_ + ".clearance"),
+                   fonts);
     } else if (!depth_.empty()) figure("depth", millimetres(depth_), fonts);
     for (const Warning& warning : warnings) {
         if (node_.empty() || !flag(node_ + "." + warning.port)) continue;

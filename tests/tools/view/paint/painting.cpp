@@ -335,6 +335,7 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
         settle(bench);
         REQUIRE(bench.labels()->problem.empty());
         CHECK(bench.labels()->version == bench.painting().version());
+        CHECK_FALSE(bench.labels()->is_preview);
         CHECK(bench.labels()->residual < 1e-3);
         // A later dab is solved from the walks before it, and agrees with a solution from nothing.
         dab(bench.painting(), 1, right_block + Vec3(0.0, 8e-3, 8e-3));

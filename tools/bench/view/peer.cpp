@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/view_peer.hpp"
+#include "tools/bench/view/peer.hpp"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>

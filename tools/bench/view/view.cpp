@@ -7,8 +7,8 @@
 #include "dsp/geometry/brick_surface.hpp"
 #include "dsp/geometry/coarse_surface.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/bench/view_peer.hpp"
-#include "tools/bench/view_pictures.hpp"
+#include "tools/bench/view/large_bone.hpp"
+#include "tools/bench/view/peer.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

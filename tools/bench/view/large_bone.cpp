@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/view_pictures.hpp"
+#include "tools/bench/view/large_bone.hpp"
 
 #include "devices/display/picture_maker.hpp"
 #include "dsp/geometry/brick_surface.hpp"

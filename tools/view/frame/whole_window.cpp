@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/frame/whole_window.hpp"
+
+#include "tools/view/spots.hpp"
+
+#include <imgui.h>
+
+namespace tactus::view {
+
+void begin_whole_window(const char* name, const Fonts& fonts) {
+    forget_spots();
+    ImGui::NewFrame();
+    ImGui::PushFont(fonts.body);
+    const ImGuiViewport* viewport = ImGui::GetMainViewport();
+    ImGui::SetNextWindowPos(viewport->Pos);
+    ImGui::SetNextWindowSize(viewport->Size);
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+}
+
+}  // namespace tactus::view
