@@ -19,7 +19,8 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    /// Opens the line, for this program alone. Returns an empty text, or the reason of the failure. `baud` must be a rate of termios.
+    /// Opens the line, for this program alone. Returns an empty text, or the reason of the failure. `baud` must be a rate
+    /// of termios.
     std::string open(const std::string& path, int baud) noexcept(false);
     void close() noexcept;
     bool is_open() const noexcept { return file_ >= 0; }

@@ -28,7 +28,7 @@ Caps open_at(geometry::TriangleSurface& surface, const Plane& plane, const Caps&
     if (section.pieces.empty()) throw Error("a plane of the cut misses the bone");
     if (section.away > farthest_from_limb)
         throw Error(
-            fmt::format("the origin of a plane lies {:.1f} mm outside of the bone, which does not tell which limb it "
+            fmt::format("the origin of a plane lies {:.1f} mm outside the bone, which does not tell which limb it "
                         "cuts; place it within {:.0f} mm of the limb",
                         section.away * 1e3, farthest_from_limb * 1e3));
     for (const std::size_t triangle : section.triangle)

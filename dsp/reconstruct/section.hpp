@@ -24,7 +24,7 @@ struct Section {
     std::vector<std::array<std::size_t, 2>> pieces;  ///< of the outlines, one per triangle, as indices into points
     std::vector<std::size_t> triangle;  ///< of each piece
     Vec3 centre{0.0};  ///< of the outlines, each piece by its length
-    double away = 0.0;  ///< m: how far `near` lies outside of the outlines; 0 inside of them
+    double away = 0.0;  ///< m: how far `near` lies outside the outlines; 0 inside them
 };
 
 /// The outlines in which the plane meets the surface. With `near`, only those that enclose it, or where none does the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Saving, and handling of unsaved edits.
+// Saving, edits that are not saved, and texts that other programs save.
 #include "tools/view/workbench.hpp"
 
 #include "assets/file/whole_file.hpp"
@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <utility>
 
@@ -157,6 +158,53 @@ void Workbench::discard_offer() {
     fs::remove(offers_.back(), failure);
     if (failure) tell(fmt::format("{}: cannot be removed: {}", offers_.back().string(), failure.message()), true);
     offers_.pop_back();
+}
+
+/// A run watches the file; without one it is looked at twice a second.
+void Workbench::look_at_file() {
+    constexpr auto between = std::chrono::milliseconds(500);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < between) return;
+    looked_ = now;
+    std::error_code none;
+    const auto written = fs::last_write_time(editor_->file(), none);
+    if (none || std::exchange(written_at_, written) == written) return;
+    try {
+        if (editor_->is_changed_elsewhere()) take_over_file();
+    } catch (const Error& error) {
+        tell(error.what(), true);
+    }
+}
+
+bool Workbench::has_same_parts() {
+    check(editor_->text());
+    return checked_.plan && checked_.plan->patch.parts == plan_->patch.parts;
+}
+
+void Workbench::keep_beside(const std::string& text) {
+    try {
+        tell(fmt::format("your edits that were not saved are kept in {}; undo shows them again",
+                         keep_unsaved(editor_->file(), text).string()));
+    } catch (const Error& error) {
+        tell(fmt::format("{}; undo shows your edits that were not saved", error.message()), true);
+    }
+}
+
+/// Applied as an edit, which can be undone. Edits that are not saved are kept beside the patch as well: who saves what
+/// was taken over, or closes the window, still has them.
+void Workbench::take_over_file() {
+    try {
+        const std::string mine = editor_->is_saved() ? std::string() : editor_->text();
+        const bool is_new = editor_->reload();
+        if (is_new && !mine.empty()) keep_beside(mine);
+        // A sub-patch may have been saved instead.
+        const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
+        if (is_known) return;
+        tell("the file was saved by another program; its text is used now");
+        adopt_text();
+    } catch (const Error& error) {
+        tell(error.what(), true);
+    }
 }
 
 }  // namespace tactus::view

@@ -53,6 +53,18 @@ geometry::TriangleSurface half_ring() {
     return straight;
 }
 
+/// Along z, 100 mm long and 7 mm in radius, with a cavity of 3 mm from z = 10 to 90 mm.
+geometry::TriangleSurface hollow_tube() {
+    const Vec3 z(0.0, 0.0, 1.0);
+    geometry::TriangleSurface bone =
+        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
+    geometry::TriangleSurface cavity =
+        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
+    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
+    append(bone, cavity);
+    return bone;
+}
+
 /// A bone without ends, of radius 40 mm in the plane z = 0.
 geometry::TriangleSurface closed_ring() {
     geometry::TriangleSurface ring =
@@ -105,12 +117,7 @@ TEST_CASE("a plane through one ramus of a jaw leaves the other one whole") {
 
 TEST_CASE("pieces of a hollow bone have the volume between their planes") {
     const Vec3 z(0.0, 0.0, 1.0);
-    geometry::TriangleSurface bone =
-        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
-    geometry::TriangleSurface cavity =
-        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
-    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
-    append(bone, cavity);
+    const geometry::TriangleSurface bone = hollow_tube();
     const double all = enclosed(bone);
     const double area = 30.0 * std::sin(2.0 * pi / 60.0) * (49.0 - 9.0) * mm * mm;  // of two polygons of 60 corners
     for (std::uint64_t trial = 0; trial < 50; ++trial) {
@@ -140,7 +147,7 @@ TEST_CASE("cuts that miss a bone or do not separate it are refused") {
     CHECK_THROWS_WITH(cut_between(ring, {Vec3(0.0, 40.0 * mm, 0.0), x}, {}), ContainsSubstring("do not separate"));
 }
 
-TEST_CASE("what hangs on both sides of a piece is one piece that both planes have cut") {
+TEST_CASE("the rest of a ring is one piece, which both planes have cut") {
     const Plane first{Vec3(0.0, 40.0 * mm, 0.0), Vec3(1.0, 0.0, 0.0)},
         last{Vec3(40.0 * mm, 0.0, 0.0), Vec3(0.0, -1.0, 0.0)};
     const CutPieces cut = cut_between(closed_ring(), first, last);
@@ -151,12 +158,7 @@ TEST_CASE("what hangs on both sides of a piece is one piece that both planes hav
 
 TEST_CASE("a cut whose origin lies in the wall of a hollow bone or beside it also cuts the marrow cavity") {
     const Vec3 z(0.0, 0.0, 1.0);
-    geometry::TriangleSurface bone =
-        closed_tube(Vec3(0.0), z, 100.0 * mm, 60, 31, [](double, double) { return 7.0 * mm; });
-    geometry::TriangleSurface cavity =
-        closed_tube(Vec3(0.0, 0.0, 10.0 * mm), z, 80.0 * mm, 60, 31, [](double, double) { return 3.0 * mm; });
-    for (auto& t : cavity.triangles) std::swap(t[1], t[2]);
-    append(bone, cavity);
+    const geometry::TriangleSurface bone = hollow_tube();
     const double area = 30.0 * std::sin(2.0 * pi / 60.0) * (49.0 - 9.0) * mm * mm;
     // The cavity ends 10 mm before the bone does.
     const double ends = 30.0 * std::sin(2.0 * pi / 60.0) * 9.0 * 10.0 * mm * mm * mm;

@@ -17,7 +17,7 @@ namespace tactus::study {
 
 namespace {
 
-// To be raised with every change of code that changes a registration: dsp/fit/registration/registration.cpp, mirror.cpp, gap.cpp,
+// To be raised with every change of code that changes a registration: dsp/fit/registration, dsp/fit/gap.cpp,
 // sampling and import of what is registered.
 constexpr int algorithm = 2;
 
