@@ -122,12 +122,19 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     std::ranges::sort(order);
     geometry::GrowingCubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
-    for (const auto& drawn : order) {
-        const std::uint32_t c = drawn.second;
+    const double widest = least_distance * sampling.spacing;
+    for (std::size_t n = 0; n < count; ++n) {
+        // The order is random, so each candidate and what is near it would come from far away in memory.
+        if (n + 32 < count) __builtin_prefetch(&all.position[order[n + 32].second]);
+        if (n + 16 < count) cubes.prefetch(all.position[order[n + 16].second]);
+        const std::uint32_t c = order[n].second;
         bool free = true;
-        cubes.around(all.position[c], least_distance * sampling.spacing, [&](std::uint32_t k, double d2) {
-            const double least = std::min(all.radius[c], all.radius[kept[k]]);
-            free = d2 >= least * least || glm::dot(all.normal[c], all.normal[kept[k]]) < same_side;
+        cubes.around(all.position[c], widest, [&](std::uint32_t k, double d2) {
+            if (sampling.follow_curvature) {
+                const double least = std::min(all.radius[c], all.radius[kept[k]]);
+                if (d2 >= least * least) return true;
+            }
+            free = !(d2 < widest * widest) || glm::dot(all.normal[c], all.normal[kept[k]]) < same_side;
             return free;
         });
         if (!free) continue;
@@ -150,8 +157,12 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     for (std::size_t i = 0; i < count; ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         std::uint32_t owner = 0;
-        for (const std::uint32_t slot : owners.around(all.position[i], block).slots)
-            for (const auto& point : owners.in(slot)) {
+        owners.around(all.position[i], block);
+        const auto apart2 = owners.apart2(all.position[i], block);
+        for (std::size_t s = 0; s < block.slots.size(); ++s) {
+            // A little more, so that rounding leaves out nothing.
+            if (apart2[s] > 1.001 * nearest) continue;
+            for (const auto& point : owners.in(block.slots[s])) {
                 const Vec3 apart = point.place - all.position[i];
                 const double d2 = glm::dot(apart, apart);
                 if (!(d2 <= radius2)) continue;
@@ -159,6 +170,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
                 const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
                 if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
             }
+        }
         points[owner].area += all.area[i];
     }
     return points;
