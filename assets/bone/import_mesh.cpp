@@ -155,7 +155,9 @@ volume::Grid distance_of_mesh(const MeshPart& part) {
     volume::Grid layout = layout_of(read.mesh, {}, part.is_coarse ? 2.0 : 1.0);
     if (part.within) layout = part_of(layout, *part.within);
     check_layout(layout, most_mesh_voxels);
-    return volume::signed_distance(layout, read.mesh, part.run);
+    constexpr double sampled = 3.0;  // voxels: what the smoothed gradient of a place on the surface takes in
+    return part.is_surface_only ? volume::signed_distance_near(layout, read.mesh, sampled * layout.spacing.x, part.run)
+                                : volume::signed_distance(layout, read.mesh, part.run);
 }
 
 }  // namespace tactus::bone

@@ -17,6 +17,7 @@ struct MeshPart {
     std::optional<std::string> unit;  ///< "mm", "cm" or "m"; default: as import_bone
     bool is_coarse = false;  ///< twice the voxels' width of an import
     std::optional<std::array<Vec3, 2>> within;  ///< m, corners of a box; default: all
+    bool is_surface_only = false;  ///< exact within three voxels of the surface, no farther: enough to sample it
     RunJobs run = run_in_turn;
 };
 

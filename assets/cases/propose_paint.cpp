@@ -96,8 +96,9 @@ std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<co
     return label_patches(points, faces, patch_gap(points), options.least_area);
 }
 
-std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
-                           const Pose& place, const IntactOptions& options) {
+std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> points,
+                                        const fit::RegistrationTarget& intact, const Pose& place,
+                                        const IntactOptions& options) {
     std::vector<std::uint8_t> inside(points.size(), 0), broken(points.size(), 0);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3 at = place.apply(points[i].position);
@@ -117,7 +118,17 @@ std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::R
         });
         broken[i] = those_inside > 0.5 * all;
     }
-    return label_patches(points, broken, patch_gap(points), options.least_area);
+    return broken;
+}
+
+std::size_t label_broken(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken,
+                         double least_area) {
+    return label_patches(points, broken, patch_gap(points), least_area);
+}
+
+std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
+                           const Pose& place, const IntactOptions& options) {
+    return label_broken(points, broken_inside(points, intact, place, options), options.least_area);
 }
 
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,

@@ -6,7 +6,9 @@
 #include "dsp/fit/registration/registration.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace tactus::cases {
 
@@ -47,6 +49,13 @@ struct IntactOptions {
 /// between the sides of the body. Removes other labels. Returns the number of labelled points.
 std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
                            const Pose& place, const IntactOptions& options = {});
+
+/// The same in two steps: which points are broken (1 or 0 each), whatever the least area, and the patches of them.
+std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> points,
+                                        const fit::RegistrationTarget& intact, const Pose& place,
+                                        const IntactOptions& options = {});
+std::size_t label_broken(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken,
+                         double least_area);
 
 /// Removes the label of patches that have no point within `reach` (m) of the other fragment, as scanned. Returns the
 /// number of points that stay labelled. Throws Error when `other` has no points.

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -39,9 +40,14 @@ double area_of_triangle(const geometry::TriangleSurface& s, const std::array<int
 
 /// Random points on the triangles, in proportion to area: each triangle gets the integer part of its share and passes
 /// the remainder on, so that small triangles are not lost.
-Candidates scatter(const geometry::TriangleSurface& surface, double per_area, const SurfaceSampling& sampling) {
+Candidates scatter(const geometry::TriangleSurface& surface, double area_of_all, double per_area,
+                   const SurfaceSampling& sampling) {
     const Random random{sampling.seed};
     Candidates made;
+    const std::size_t expected = static_cast<std::size_t>(area_of_all * per_area) + 2;
+    made.position.reserve(expected);
+    made.normal.reserve(expected);
+    made.area.reserve(expected);
     double owed = 0.5;
     std::uint64_t draw = 0;
     double unplaced = 0.0;  // area of triangles without a point so far
@@ -112,22 +118,41 @@ void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
     }
 }
 
+/// Indices in the order of their random numbers.
+std::vector<std::uint32_t> drawn_order(std::size_t count, const Random& random) {
+    // The numbers are even: their first bits put nearly all into place.
+    const int bits = std::bit_width(count), shift = 64 - std::max(bits, 1);
+    std::vector<std::uint32_t> first((std::size_t{1} << (64 - shift)) + 1, 0);
+    for (std::uint32_t n = 0; n < count; ++n) ++first[(random.bits(n) >> shift) + 1];
+    for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+    std::vector<std::uint32_t> order(count), next(first.begin(), first.end() - 1);
+    for (std::uint32_t n = 0; n < count; ++n) order[next[random.bits(n) >> shift]++] = n;
+    for (std::size_t b = 0; b + 1 < first.size(); ++b)
+        std::ranges::stable_sort(order.begin() + first[b], order.begin() + first[b + 1], {},
+                                 [&random](std::uint32_t n) { return random.bits(n); });
+    return order;
+}
+
 /// Poisson-disc sampling by dart throwing: visits candidates in random order and accepts each one that keeps the
 /// distance to accepted ones, then adds every candidate's area to the nearest accepted point.
 std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling& sampling) {
     const std::size_t count = all.position.size();
-    const Random random{mix(sampling.seed)};
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(count);
-    for (std::uint32_t n = 0; n < count; ++n) order[n] = {random.bits(n), n};
-    std::ranges::sort(order);
+    const std::vector<std::uint32_t> order = drawn_order(count, Random{mix(sampling.seed)});
     geometry::GrowingCubes cubes(count / 8, sampling.spacing);
     std::vector<std::uint32_t> kept;
-    for (const auto& drawn : order) {
-        const std::uint32_t c = drawn.second;
+    const double widest = least_distance * sampling.spacing;
+    for (std::size_t n = 0; n < count; ++n) {
+        // The order is random, so each candidate and what is near it would come from far away in memory.
+        if (n + 32 < count) __builtin_prefetch(&all.position[order[n + 32]]);
+        if (n + 16 < count) cubes.prefetch(all.position[order[n + 16]]);
+        const std::uint32_t c = order[n];
         bool free = true;
-        cubes.around(all.position[c], least_distance * sampling.spacing, [&](std::uint32_t k, double d2) {
-            const double least = std::min(all.radius[c], all.radius[kept[k]]);
-            free = d2 >= least * least || glm::dot(all.normal[c], all.normal[kept[k]]) < same_side;
+        cubes.around(all.position[c], widest, [&](std::uint32_t k, double d2) {
+            if (sampling.follow_curvature) {
+                const double least = std::min(all.radius[c], all.radius[kept[k]]);
+                if (d2 >= least * least) return true;
+            }
+            free = !(d2 < widest * widest) || glm::dot(all.normal[c], all.normal[kept[k]]) < same_side;
             return free;
         });
         if (!free) continue;
@@ -150,8 +175,12 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     for (std::size_t i = 0; i < count; ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         std::uint32_t owner = 0;
-        for (const std::uint32_t slot : owners.around(all.position[i], block).slots)
-            for (const auto& point : owners.in(slot)) {
+        owners.around(all.position[i], block);
+        const auto apart2 = owners.apart2(all.position[i], block);
+        for (std::size_t s = 0; s < block.slots.size(); ++s) {
+            // A little more, so that rounding leaves out nothing.
+            if (apart2[s] > 1.001 * nearest) continue;
+            for (const auto& point : owners.in(block.slots[s])) {
                 const Vec3 apart = point.place - all.position[i];
                 const double d2 = glm::dot(apart, apart);
                 if (!(d2 <= radius2)) continue;
@@ -159,6 +188,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
                 const bool better = d2 < nearest || (d2 == nearest && point.index < owner);
                 if (better && glm::dot(all.normal[i], point.normal) >= same_side) nearest = d2, owner = point.index;
             }
+        }
         points[owner].area += all.area[i];
     }
     return points;
@@ -185,7 +215,7 @@ std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const
     if (area / (sampling.spacing * sampling.spacing) > 2.0 * static_cast<double>(sampling.most_points))
         throw Error(fmt::format("a spacing of {:.4g} mm on {:.4g} mm² gives more than {} points; take a larger one",
                                 1e3 * sampling.spacing, 1e6 * area, sampling.most_points));
-    Candidates all = scatter(surface, per_area, sampling);
+    Candidates all = scatter(surface, area, per_area, sampling);
     all.radius.assign(all.position.size(), least_distance * sampling.spacing);
     if (sampling.follow_curvature) {
         if (map)

@@ -181,14 +181,20 @@ void FitEnergy::link(const Pose& pose) noexcept {
     }
 }
 
+Vec3 opening_direction(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) noexcept {
+    const Vec3 both = 0.5 * (fixed.plane_normal - pose.rotate(moving.plane_normal));
+    const double length = glm::length(both);
+    // Faces that do not look at each other have none in common.
+    return length > least_cosine ? both / length : fixed.plane_normal;
+}
+
 Vec3 FitEnergy::opening(const Pose& pose) const noexcept {
     if (!(law.kerf > 0.0)) return Vec3(0.0);
-    // The length of a mean normal is the mean cosine of the relief's slopes, so that a gap along it is wider than the
-    // distance of the surfaces.
+    // The length of a mean normal is the mean cosine of the relief's slopes, so that the gap is wider than the distance
+    // of the surfaces.
     const Vec3 &fixed = fixed_->mean_normal, both = 0.5 * (fixed - pose.rotate(moving_->mean_normal));
-    const Vec3& normal = glm::length(both) > least_cosine ? both : fixed;
-    const double length = glm::length(normal);
-    return length > 0.0 ? law.kerf / std::max(length, least_cosine) / length * normal : Vec3(0.0);
+    const double cosine = glm::length(glm::length(both) > least_cosine ? both : fixed);
+    return law.kerf / std::max(cosine, least_cosine) * opening_direction(*moving_, *fixed_, pose);
 }
 
 Pose FitEnergy::closed(const Pose& pose, const Vec3& opening) noexcept {

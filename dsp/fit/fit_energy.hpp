@@ -18,7 +18,7 @@
 // circular arc, so that a curved contour continues without a step. The weights are those of the last update: they are
 // constant within one solve, so that the energy has the stated gradient.
 //
-// A kerf is bone that was lost all along. Both faces are those of one fracture that opened along its mean normal: the
+// A kerf is bone that was lost all along. Both faces are those of one fracture that opened along the normal of its plane: the
 // energy at a pose is that of the closed faces, with the moving one shifted back by the opening. The distance of rough
 // faces varies with their slopes, so that it says less: w is the mean distance, and w / (mean cosine) the opening.
 #pragma once
@@ -65,6 +65,10 @@ struct FitQuality {
     double gap = 0.0;  ///< m, mean signed distance of what overlaps, kerf included: positive when bone is missing
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline
 };
+
+/// The unit direction in which a kerf takes the moving face away from the fixed one, fixed frame. Only the rotation of
+/// `pose` counts.
+Vec3 opening_direction(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) noexcept;
 
 class FitEnergy {
 public:

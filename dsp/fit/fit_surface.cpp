@@ -2,6 +2,7 @@
 #include "dsp/fit/fit_surface.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/geometry/main_axes.hpp"
 #include "dsp/geometry/nearest_points.hpp"
 #include "dsp/geometry/neighbours.hpp"
 
@@ -43,6 +44,21 @@ std::vector<std::size_t> spread_evenly(const std::vector<Vec3>& candidates, std:
     return picks;
 }
 
+/// `position` is relative to the centre.
+Vec3 plane_through(const FitSurface& made) {
+    constexpr double flat = 0.5;  // of its thickness and its width
+    const double length = glm::length(made.mean_normal);
+    const Vec3 mean = length > 0.0 ? made.mean_normal / length : Vec3(0.0);
+    Mat3 spread(0.0);
+    for (std::size_t i = 0; i < made.position.size(); ++i)
+        spread += made.share[i] * glm::outerProduct(made.position[i], made.position[i]);
+    const Mat3 axes = geometry::main_axes(spread);
+    const double thick = glm::dot(axes[2], spread * axes[2]), wide = glm::dot(axes[1], spread * axes[1]);
+    const double along = glm::dot(axes[2], mean);
+    if (!(thick < flat * flat * wide) || !(std::abs(along) > flat)) return mean;
+    return along < 0.0 ? -axes[2] : axes[2];
+}
+
 void take_paint(FitSurface& made, std::span<const contact::SurfacePoint> points, const FitSurfaceOptions& options) {
     for (const contact::SurfacePoint& p : points) {
         if (p.label != options.paint || !(glm::length(p.normal) > 0.5)) continue;
@@ -61,6 +77,7 @@ void take_paint(FitSurface& made, std::span<const contact::SurfacePoint> points,
         made.mean_normal += made.share[i] * made.normal[i];
     }
     for (Vec3& p : made.position) p -= made.centre;
+    made.plane_normal = plane_through(made);
     for (std::size_t i = 0; i < made.position.size(); ++i)
         made.gyration += made.share[i] * glm::dot(made.position[i], made.position[i]);
     made.gyration = std::sqrt(made.gyration);

@@ -30,6 +30,9 @@ struct FitSurface {
     std::vector<double> share;  ///< of the painted area; the sum is 1
     double area = 0.0;  ///< painted, m²
     Vec3 mean_normal{0.0};  ///< area-weighted mean of the paint; shorter than 1 where it is rough or curved
+    /// Unit normal of the plane through the paint, out of the bone: a kerf opens along it. The mean normal of rough paint
+    /// depends on its rim only, where it leans with the relief. That normal where the paint is not flat.
+    Vec3 plane_normal{0.0};
     double gyration = 0.0;  ///< root mean square distance of painted points from their middle, m
     std::vector<Vec3> outline, outline_normal;  ///< unpainted points around the paint
     contact::Voxmap field;  ///< signed distance of the whole bone around the paint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/kerf_check.hpp"
 
-#include "dsp/fit/fit_steps.hpp"
+#include "dsp/fit/fit_energy.hpp"
 #include "dsp/geometry/dense_cholesky.hpp"
 
 #include <glm/geometric.hpp>
@@ -23,8 +23,6 @@ constexpr double alike = 0.8;  // least cosine between the normals of a strip
 constexpr std::size_t most_strips = 48, least_points = 12, most_paint = 400;
 constexpr int independent = 8;  // strips around a bone that tell something of their own
 constexpr double beside = 0.05e-3;  // m: how well the faces hold the halves across the normal
-constexpr double least_contradiction = 1.0e-3;  // m: ridges of the cortex that end in the gap leave up to this
-constexpr double sure = 2.5;  // standard deviations
 constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
 constexpr double most_error = 0.5e-3;  // m, of the opening
 
@@ -96,7 +94,7 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
 
 ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose) {
     ContourOpening found;
-    const Vec3 normal = direction_of(fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
+    const Vec3 normal = opening_direction(*moving.face, *fixed.face, pose);
     const std::vector<Spot> mine = cortex_of(moving, pose), other = cortex_of(fixed, {});
     const FitSurface& face = *fixed.face;
     std::vector<Step> steps;
@@ -132,8 +130,10 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
     const Vec3 mean = 0.5 * (fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
     const double cosine = std::clamp(glm::length(mean), 0.5, 1.0);
     KerfEstimate made{told, std::max(0.0, told - contour.excess * cosine), contour.spread * cosine, false, false};
-    made.is_contradicted =
-        std::abs(contour.excess) > least_contradiction && std::abs(contour.excess) > sure * contour.spread;
+    // Faces of which no bone is lost lie on each other however the contour beside them looks: ridges that end there have
+    // steps as well, which `spread` knows of. A told opening rests on the word of a person alone.
+    made.is_contradicted = told > 0.0 ? std::abs(contour.excess) > most_error
+                                      : -contour.excess > most_error && -contour.excess > contour.spread;
     made.is_too_wide = told * (1.0 / cosine - 1.0) > most_error;
     return made;
 }

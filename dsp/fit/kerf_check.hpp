@@ -21,7 +21,7 @@ struct KerfSide {
 };
 
 struct ContourOpening {
-    double excess = 0.0;  ///< m along the mean normal: by how much the halves are farther apart than the contour says
+    double excess = 0.0;  ///< m along the opening: by how much the halves are farther apart than the contour says
     double spread = 1.0;  ///< m, standard deviation of `excess`; large when the contour says nothing
     int strips = 0;  ///< that were found on both halves
 };
@@ -29,12 +29,14 @@ struct ContourOpening {
 /// `pose`: of the moving half in the frame of the fixed one. For preparations, not for a tick: it allocates.
 ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose);
 
-/// The kerf that the contour says, beside the one that was told.
+/// The kerf that the contour says, beside the one that was told (0: none was).
 struct KerfEstimate {
     double told = 0.0, kerf = 0.0, spread = 0.0;  ///< m, mean width, as FitSettings::kerf has it
-    bool is_contradicted = false;  ///< the contour has an opening that is more than a millimetre off
-    /// Rough faces are between `told` and told / (mean cosine of their slopes) apart along their mean normal: that
-    /// leaves more than half a millimetre.
+    /// With the kerf that the contour says, the halves would lie more than half a millimetre elsewhere. Where no kerf
+    /// was told: and by more than `spread`.
+    bool is_contradicted = false;
+    /// Rough faces are between `told` and told / (mean cosine of their slopes) apart along the opening: that leaves
+    /// more than half a millimetre.
     bool is_too_wide = false;
 
     bool is_doubtful() const noexcept { return is_contradicted || is_too_wide; }

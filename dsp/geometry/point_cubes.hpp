@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -56,6 +57,14 @@ public:
         head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
     }
 
+    /// Fetches the slots about a place that is asked for soon.
+    void prefetch(const Vec3& p) const {
+        const auto [x, y, z] = table_.cell(p);
+        const std::int64_t bx = table_.beside(p.x, x), by = table_.beside(p.y, y), bz = table_.beside(p.z, z);
+        for (int n = 0; n < 8; ++n)
+            __builtin_prefetch(&head_[table_.slot({x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0)})]);
+    }
+
     /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
     /// when two cubes share a slot.
     template <class Visit>
@@ -85,6 +94,17 @@ private:
     std::vector<Entry> points_;
 };
 
+/// From a cube to itself, first, and to the 26 around it.
+inline constexpr std::array<std::array<int, 3>, 27> cube_steps = [] {
+    std::array<std::array<int, 3>, 27> steps{};
+    std::size_t n = 1;
+    for (int z = -1; z <= 1; ++z)
+        for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x)
+                if (x != 0 || y != 0 || z != 0) steps[n++] = {x, y, z};
+    return steps;
+}();
+
 /// Points with normals that are all known. Those of a slot lie side by side in memory.
 class PackedCubes {
 public:
@@ -92,7 +112,7 @@ public:
         Vec3 place, normal;
         std::uint32_t index = 0;  ///< in the given lists
     };
-    /// The slots of a cube and of those around it. Queries in spatial order keep it from one to the next.
+    /// The slots of a cube, first, and of those around it. Queries in spatial order keep it from one to the next.
     struct Block {
         CubeTable::Cell cell{std::numeric_limits<std::int64_t>::max(), 0, 0};
         std::array<std::uint32_t, 27> slots{};
@@ -100,7 +120,8 @@ public:
 
     /// `radius`: the greatest of a query.
     PackedCubes(std::span<const Vec3> places, std::span<const Vec3> normals, double radius)
-        : table_(1.001 * radius, std::bit_ceil(places.size() / 4 + 1)),
+        : side_(1.001 * radius),
+          table_(side_, std::bit_ceil(places.size() / 4 + 1)),
           first_(std::bit_ceil(places.size() / 4 + 1) + 1, 0),
           entries_(places.size()) {
         std::vector<std::uint32_t> slot(places.size());
@@ -126,15 +147,29 @@ public:
         const CubeTable::Cell cell = table_.cell(p);
         if (cell == block.cell) return block;
         block.cell = cell;
-        std::size_t n = 0;
-        for (std::int64_t z = -1; z <= 1; ++z)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t x = -1; x <= 1; ++x)
-                    block.slots[n++] = table_.slot({cell[0] + x, cell[1] + y, cell[2] + z});
+        for (std::size_t n = 0; n < cube_steps.size(); ++n)
+            block.slots[n] =
+                table_.slot({cell[0] + cube_steps[n][0], cell[1] + cube_steps[n][1], cell[2] + cube_steps[n][2]});
         return block;
+    }
+    /// Squares of the distances, m², from a place to the cubes of its block.
+    std::array<double, 27> apart2(const Vec3& p, const Block& block) const {
+        std::array<std::array<double, 3>, 3> along{};
+        for (int a = 0; a < 3; ++a) {
+            const double in =
+                std::clamp(p[a] - static_cast<double>(block.cell[static_cast<std::size_t>(a)]) * side_, 0.0, side_);
+            along[static_cast<std::size_t>(a)] = {in * in, 0.0, (side_ - in) * (side_ - in)};
+        }
+        std::array<double, 27> squares{};
+        for (std::size_t n = 0; n < cube_steps.size(); ++n)
+            squares[n] = along[0][static_cast<std::size_t>(cube_steps[n][0] + 1)] +
+                         along[1][static_cast<std::size_t>(cube_steps[n][1] + 1)] +
+                         along[2][static_cast<std::size_t>(cube_steps[n][2] + 1)];
+        return squares;
     }
 
 private:
+    double side_;
     CubeTable table_;
     std::vector<std::uint32_t> first_;  // entry of each slot; the last is the number of all
     std::vector<Entry> entries_;

@@ -39,11 +39,12 @@ struct Feet {
     }
 };
 
-// Tests every triangle against the samples of a layer within its reach.
-void offer_near(Feet& feet, const TriangleLayers& near, double reach, int k) {
-    const Grid& layout = feet.layout;
+// Calls offer(sample, position, triangle, corners) for every triangle and the samples of a layer within its reach.
+template <class Offer>
+void offer_near(const Grid& layout, const geometry::TriangleSurface& surface, const TriangleLayers& near, double reach,
+                int k, const Offer& offer) {
     for (const std::int32_t triangle : near[k]) {
-        const auto corners = corners_of(feet.surface, triangle);
+        const auto corners = corners_of(surface, triangle);
         const IndexBox box = samples_near(layout, corners, reach);
         const Vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
         const double twice_area = glm::length(across);
@@ -52,7 +53,7 @@ void offer_near(Feet& feet, const TriangleLayers& near, double reach, int k) {
             int first = box.low[0], last = box.high[0];
             plane.narrow(layout, Vec3(0.0), j, k, first, last);
             for (int i = first; i <= last; ++i)
-                feet.offer(layout.index(i, j, k), layout.position(i, j, k), triangle, corners);
+                offer(layout.index(i, j, k), layout.position(i, j, k), triangle, corners);
         }
     }
 }
@@ -175,13 +176,24 @@ void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, 
     count = static_cast<std::int16_t>(count - s0);
 }
 
+void turn_inside(Grid& distance, const geometry::TriangleSurface& surface, const RunJobs& run) {
+    const auto winding = winding_numbers(distance, surface, run);
+    for (std::size_t n = 0; n < winding.size(); ++n)
+        if (winding[n] != 0) distance.values[n] = -distance.values[n];
+}
+
 }  // namespace
 
 std::vector<float> surface_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
     Feet feet{layout, surface};
     const double widest = widest_of(layout), reach = 1.5 * widest;
     const TriangleLayers near(layout, surface, reach);
-    run(layout.size[2], [&](int k) { offer_near(feet, near, reach, k); });
+    run(layout.size[2], [&](int k) {
+        offer_near(layout, surface, near, reach, k,
+                   [&feet](std::size_t sample, const Vec3& p, std::int32_t triangle, const auto& corners) {
+                       feet.offer(sample, p, triangle, corners);
+                   });
+    });
     if (const SurfaceCells cells = surface_cells(layout, surface, run); !cells.at.empty()) {
         const std::vector<std::int32_t> nearest = geometry::nearest_points(layout, cells.at, run);
         const Far far{feet,
@@ -222,9 +234,25 @@ std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::Tr
 
 Grid signed_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
     Grid grid{layout.size, layout.origin, layout.spacing, surface_distance(layout, surface, run)};
-    const auto winding = winding_numbers(layout, surface, run);
-    for (std::size_t n = 0; n < winding.size(); ++n)
-        if (winding[n] != 0) grid.values[n] = -grid.values[n];
+    turn_inside(grid, surface, run);
+    return grid;
+}
+
+Grid signed_distance_near(const Grid& layout, const geometry::TriangleSurface& surface, double reach,
+                          const RunJobs& run) {
+    const auto most2 = static_cast<float>(reach * reach);
+    Grid grid{layout.size, layout.origin, layout.spacing, std::vector<float>(layout.count(), most2)};
+    const TriangleLayers near(layout, surface, reach);
+    run(layout.size[2], [&](int k) {
+        offer_near(layout, surface, near, reach, k,
+                   [&grid](std::size_t sample, const Vec3& p, std::int32_t, const std::array<Vec3, 3>& corners) {
+                       const Vec3 d = geometry::closest_on_triangle(p, corners[0], corners[1], corners[2]) - p;
+                       grid.values[sample] = std::min(grid.values[sample], static_cast<float>(glm::dot(d, d)));
+                   });
+        for (std::size_t n = layout.index(0, 0, k); n < layout.index(0, 0, k + 1); ++n)
+            grid.values[n] = std::sqrt(grid.values[n]);
+    });
+    turn_inside(grid, surface, run);
     return grid;
 }
 

@@ -27,4 +27,9 @@ std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::Tr
 /// Signed distance to a closed surface at the samples of `layout`, m, negative where the winding number is not 0.
 Grid signed_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run = run_in_turn);
 
+/// The same near the surface only: exact within `reach` (m), and `reach` with its sign beyond. Faster where the rest is
+/// not needed, and uses 6 bytes per sample.
+Grid signed_distance_near(const Grid& layout, const geometry::TriangleSurface& surface, double reach,
+                          const RunJobs& run = run_in_turn);
+
 }  // namespace tactus::volume

@@ -2,6 +2,7 @@
 #include "assets/bone/mesh_part.hpp"
 
 #include "assets/bone/import.hpp"
+#include "dsp/contact/sample_surface.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <vector>
 
 using namespace tactus;
 
@@ -21,6 +23,32 @@ void write_block(const std::filesystem::path& path) {
         for (const char* corner : {"0 0", "20 0", "20 30", "0 30"}) file << "v " << corner << ' ' << z << '\n';
     file << "f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 "
             "8\n";
+}
+
+// A lumpy ball of about 12 mm across, in triangles of a millimetre.
+void write_ball(const std::filesystem::path& path) {
+    std::ofstream file(path);
+    constexpr int around = 36, rings = 17;
+    const auto at = [&](double polar, double turn) {
+        const double r = 6.0 + 0.6 * std::sin(5.0 * polar) * std::cos(3.0 * turn);
+        file << "v " << r * std::sin(polar) * std::cos(turn) << ' ' << r * std::sin(polar) * std::sin(turn) << ' '
+             << r * std::cos(polar) << '\n';
+    };
+    constexpr double pi = 3.14159265358979;
+    for (int ring = 1; ring <= rings; ++ring)
+        for (int n = 0; n < around; ++n) at(pi * ring / (rings + 1), 2.0 * pi * n / around);
+    at(0.0, 0.0);
+    at(pi, 0.0);
+    const auto id = [&](int ring, int n) { return (ring - 1) * around + n % around + 1; };
+    const int top = rings * around + 1, end = top + 1;
+    for (int n = 0; n < around; ++n) {
+        file << "f " << top << ' ' << id(1, n) << ' ' << id(1, n + 1) << '\n';
+        file << "f " << end << ' ' << id(rings, n + 1) << ' ' << id(rings, n) << '\n';
+        for (int ring = 1; ring < rings; ++ring) {
+            file << "f " << id(ring, n) << ' ' << id(ring + 1, n) << ' ' << id(ring + 1, n + 1) << '\n';
+            file << "f " << id(ring, n) << ' ' << id(ring + 1, n + 1) << ' ' << id(ring, n + 1) << '\n';
+        }
+    }
 }
 
 volume::Grid imported(const std::filesystem::path& path) {
@@ -76,4 +104,21 @@ TEST_CASE("a coarse mesh has an eighth of the voxels and the same size") {
         return static_cast<double>(inside) * g.spacing.x * g.spacing.y * g.spacing.z;
     };
     CHECK(volume_of(coarse) == Approx(24e-6).epsilon(0.1));
+}
+
+TEST_CASE("a mesh is sampled to the same points from distances near its surface as from all of them") {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.path / "ball.obj";
+    write_ball(path);
+    const volume::Grid near = bone::distance_of_mesh(
+        {.input = path, .unit = "mm", .is_coarse = false, .within = {}, .is_surface_only = true, .run = run_in_turn});
+    const std::vector<contact::SurfacePoint> points = contact::sample_surface(near, {}),
+                                             whole = contact::sample_surface(imported(path), {});
+    REQUIRE(points.size() == whole.size());
+    REQUIRE(points.size() > 1'000);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        REQUIRE(points[n].position == whole[n].position);
+        REQUIRE(points[n].normal == whole[n].normal);
+        REQUIRE(points[n].area == whole[n].area);
+    }
 }

@@ -45,6 +45,7 @@ struct BarOptions {
     double gap = 0.0;        ///< m of bone lost
     double chipped = 0.0;    ///< share of the break, in stripes across, chipped off the left half to 1.6 mm
     Vec3 far{0.0};           ///< where the file has the half
+    bool is_flat = false;    ///< the section is a rectangle, not an ellipse
     double bend = 1.0;       ///< ratio of the section's lower half width to the upper one
 };
 
@@ -58,6 +59,8 @@ struct Half {
 /// A bar of elliptic section, 12 by 24 mm, 18 mm of it to the left (side −1) or right (+1) of the break.
 inline Half bar_half(double side, const Relief& relief, const BarOptions& o = {}) {
     const auto bar = [&o](const Vec3& p) {
+        if (o.is_flat)
+            return std::max({std::abs(p.y) - 6.0 * mm, std::abs(p.z) - 12.0 * mm, std::abs(p.x) - 18.0 * mm});
         const double width = 6.0 * mm * (p.z < 0.0 ? o.bend : 1.0);
         const double r = std::hypot(p.y / width, p.z / (12.0 * mm));
         const double steep = std::hypot(p.y / (width * width), p.z / (144.0 * mm * mm)) / std::max(r, 1e-9);

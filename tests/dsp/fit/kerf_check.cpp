@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/kerf_check.hpp"
 
+#include "dsp/fit/fit_energy.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -16,14 +18,15 @@ struct Oblique {
     Half left, right;
     fit::FitSurface moving, fixed;
 
-    Oblique(double gap, double height, double slope = 0.35)
-        : left(half(-1.0, gap, height, slope)),
-          right(half(1.0, gap, height, slope)),
+    Oblique(double gap, double height, double slope = 0.35, bool is_flat = false)
+        : left(half(-1.0, gap, height, slope, is_flat)),
+          right(half(1.0, gap, height, slope, is_flat)),
           moving(left.surface()),
           fixed(right.surface()) {}
-    static Half half(double side, double gap, double height, double slope) {
+    static Half half(double side, double gap, double height, double slope, bool is_flat) {
         const Relief rough = rough_relief(3, height);
-        return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; }, {.gap = gap});
+        return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; },
+                        {.gap = gap, .is_flat = is_flat});
     }
     fit::KerfEstimate check(double told, const Pose& pose = {}) const {
         return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
@@ -58,6 +61,39 @@ TEST_CASE("dsp: a kerf that is wrong by millimetres is found out as well as one 
         CHECK(bar.opening(pose).excess == Approx(wrong).epsilon(0.25));
         CHECK(bar.check(0.3 * mm + wrong, pose).is_contradicted);
     }
+}
+
+TEST_CASE("dsp: a kerf that is wrong by millimetres is found out on a bone of flat sides, of which only two tell it") {
+    const Oblique bar(0.5 * mm, 0.02 * mm, 0.8, true);
+    const Vec3 away = fit::opening_direction(bar.moving, bar.fixed, {});
+    const double wrong = 3.5 * mm;  // lifts the sides by more than 2 mm
+    const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
+    CHECK(bar.opening(pose).excess == Approx(wrong).epsilon(0.25));
+    CHECK(bar.check(0.3 * mm + wrong, pose).is_contradicted);
+}
+
+TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and none where none is") {
+    const Oblique lost(1.4 * mm, 0.1 * mm), whole(0.0, 0.1 * mm);
+    CHECK_FALSE(whole.check(0.0).is_doubtful());
+    // Fitted without a kerf, the faces lie on each other.
+    const double cosine = glm::length(0.5 * (lost.fixed.mean_normal - lost.moving.mean_normal));
+    const Pose closed{-1.4 * mm / cosine * fit::opening_direction(lost.moving, lost.fixed, {}), {1.0, 0.0, 0.0, 0.0}};
+    const fit::KerfEstimate seen = lost.check(0.0, closed);
+    CHECK(seen.is_contradicted);
+    CHECK(seen.kerf == Approx(1.4 * mm).margin(0.4 * mm));
+}
+
+TEST_CASE("dsp: a kerf opens along the plane of the break, wherever the relief leans at its rim") {
+    // The mean normal of a relief that rises towards one side leans to the other.
+    const Relief leaning = [](double y, double z) { return 0.35 * y + 0.5 * mm * std::sin(z / (3.2 * mm)); };
+    const Half left = bar_half(-1.0, leaning), right = bar_half(1.0, leaning);
+    const fit::FitSurface moving = left.surface(), fixed = right.surface();
+    const Vec3 plane = glm::normalize(Vec3(1.0, -0.35, 0.0));
+    const Vec3 mean = glm::normalize(fixed.mean_normal - moving.mean_normal),
+               opening = fit::opening_direction(moving, fixed, {});
+    CAPTURE(mean, opening);
+    CHECK(std::abs(glm::dot(opening, plane)) > std::cos(0.03));
+    CHECK(std::abs(glm::dot(mean, plane)) < std::cos(0.1));
 }
 
 TEST_CASE("dsp: a wide kerf across rough faces is not known to half a millimetre") {

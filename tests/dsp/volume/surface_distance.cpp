@@ -103,3 +103,22 @@ TEST_CASE("a surface beside the grid, or none, makes samples outside of it and n
     layout.origin = Vec3(1.05, 1.0 - 14e-3, 1.0 - 14e-3);
     for (const float d : volume::signed_distance(layout, lumps(2e-3)).values) CHECK(d > 0.0f);
 }
+
+TEST_CASE("distances near a surface are those of the whole computation, and its reach with their sign beyond") {
+    const geometry::TriangleSurface surface = lumps(1e-3);
+    const volume::Grid layout = layout_of(Vec3(0.7e-3));
+    const double reach = 2.1e-3;
+    const volume::Grid whole = volume::signed_distance(layout, surface),
+                       near = volume::signed_distance_near(layout, surface, reach);
+    int beyond = 0;
+    for (std::size_t n = 0; n < whole.values.size(); ++n) {
+        const float there = whole.values[n];
+        if (std::abs(there) < static_cast<float>(reach)) {
+            REQUIRE(near.values[n] == there);
+        } else {
+            ++beyond;
+            REQUIRE(near.values[n] == Approx(std::copysign(reach, static_cast<double>(there))));
+        }
+    }
+    CHECK(beyond > 1000);
+}

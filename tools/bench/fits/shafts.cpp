@@ -41,6 +41,7 @@ struct Shaft {
     std::string verdict;
     double area = 0.0, angle = 0.0, error = 0.0;  ///< m², degrees, m on the axis, 150 mm from the face
     double open = 0.0;  ///< m, how far apart the faces stay that a blade has parted
+    std::optional<fit::KerfEstimate> kerf;
 };
 
 /// The middle of a fragment's paint and its area.
@@ -87,7 +88,8 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         found = matching.near(arrangement, 1, study::Partners::all);
     }
     const Pose& pose = found.match.pose;
-    Shaft shaft{number, std::string(fit::name_of(found.match.verdict)), area, 0.0, 0.0, found.match.quality.gap};
+    Shaft shaft{number,    std::string(fit::name_of(found.match.verdict)), area, 0.0, 0.0, found.match.quality.gap,
+                found.kerf};
     shaft.angle = glm::length(rotation_between(truth.orientation, pose.orientation)) / degree;
     const Vec3 end = face + far_from_face * glm::normalize(study::middle_of(moving.bone.points) - face);
     shaft.error = glm::length(pose.apply(end) - truth.apply(end));
@@ -119,9 +121,16 @@ int bench_shafts(const ShaftsChoice& choice) {
                         {"angle_deg", shaft.angle},
                         {"error_mm", shaft.error * 1e3},
                         {"gap_mm", shaft.open * 1e3}});
+        if (shaft.kerf) {
+            rows.back()["kerf_seen_mm"] = shaft.kerf->kerf * 1e3;
+            rows.back()["kerf_spread_mm"] = shaft.kerf->spread * 1e3;
+        }
         if (choice.json) continue;
-        fmt::print("shaft {}: {}, face {:.0f} mm²: {:.3f}°, {:.3f} mm at 150 mm, gap {:.3f} mm\n", n, shaft.verdict,
-                   shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3);
+        fmt::print("shaft {}: {}, face {:.0f} mm²: {:.3f}°, {:.3f} mm at 150 mm, gap {:.3f} mm{}\n", n, shaft.verdict,
+                   shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3,
+                   shaft.kerf
+                       ? fmt::format(", kerf seen {:.2f} ± {:.2f} mm", shaft.kerf->kerf * 1e3, shaft.kerf->spread * 1e3)
+                       : "");
         std::fflush(stdout);
     }
     const Json total{{"shafts", choice.count},

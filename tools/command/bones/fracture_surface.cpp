@@ -68,6 +68,7 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     study::FractureSurfaceSettings settings = choice.settings;
     settings.reach = choice.reach * 1e-3;
     if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
+    settings.whole = extension == ".vdb";
     const study::FractureSurface found = study::propose_fracture_surface(settings);
     if (!found.note.empty()) fmt::print(stderr, "note: {}\n", found.note);
     std::vector<cases::PaintedFace> faces;

@@ -3,10 +3,10 @@
 
 #include "assets/cases/paint_file.hpp"
 #include "assets/cases/propose_paint.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/intact_side.hpp"
 #include "tools/study/bones/kept_numbers.hpp"
+#include "tools/study/bones/kept_points.hpp"
 
 #include <algorithm>
 
@@ -14,32 +14,26 @@ namespace tactus::study {
 
 namespace {
 
-std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::path& path) {
-    const bone::Bone bone = bone_of_file(path);
-    return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
-}
-
-// To be raised with every change of code that changes a registration or what propose_inside labels.
+// To be raised with every change of code that changes a registration or what broken_inside finds.
 constexpr int algorithm = 1;
 
-std::vector<contact::SurfacePoint> points_of_main(const std::vector<contact::SurfacePoint>& points,
-                                                  const FractureSurfaceSettings& settings) {
-    return settings.main.empty() ? points : points_of_fragment(settings.main);
+/// The registration of the unbroken bone: kept apart, because it is the same for all fragments of a case that name the
+/// same main one, and however they are painted.
+std::vector<double> intact_on_main(IntactBone& intact, const FractureSurfaceSettings& settings, std::string& note) {
+    const std::filesystem::path& main = settings.main.empty() ? settings.bone : settings.main;
+    ResultKey key("unbroken bone on a fragment", algorithm);
+    key.add_file(settings.intact).add_file(main).add("mirror", settings.mirror ? 1.0 : 0.0);
+    return result_of(key, intact_numbers, note, [&] { return intact.numbers_on(points_of_fragment(main, note)); });
 }
 
-/// The registration and the numbers of the labelled points.
-std::vector<double> proposal_by_intact(std::vector<contact::SurfacePoint> points,
-                                       const FractureSurfaceSettings& settings, const cases::IntactOptions& options,
-                                       std::string& note) {
-    // Kept apart from the paint: the same for all fragments of a case that name the same main one.
-    ResultKey key("unbroken bone on a fragment", algorithm);
-    key.add_file(settings.intact).add_file(settings.main.empty() ? settings.bone : settings.main);
-    key.add("mirror", settings.mirror ? 1.0 : 0.0);
+/// The registrations and the numbers of the broken points.
+std::vector<double> broken_by_intact(const std::vector<contact::SurfacePoint>& points,
+                                     const FractureSurfaceSettings& settings, std::string& note) {
     IntactBone intact(settings.intact, settings.mirror);
-    NumberReader known(
-        result_of(key, intact_numbers, note, [&] { return intact.numbers_on(points_of_main(points, settings)); }));
+    NumberReader known(intact_on_main(intact, settings, note));
     const fit::Registration on_main = known.registration();
     const fit::RegistrationTarget target(intact.laid(known));
+    if (note.empty()) note = intact.note();
     std::vector<double> numbers;
     add_registration(numbers, on_main);
     Pose place;
@@ -50,30 +44,27 @@ std::vector<double> proposal_by_intact(std::vector<contact::SurfacePoint> points
         add_registration(numbers, own);
         place = own.pose;
     }
-    cases::propose_inside(points, target, place, options);
+    const std::vector<std::uint8_t> broken = cases::broken_inside(points, target, place);
     for (std::size_t n = 0; n < points.size(); ++n)
-        if (points[n].label == contact::surface_label::fracture) numbers.push_back(static_cast<double>(n));
+        if (broken[n]) numbers.push_back(static_cast<double>(n));
     return numbers;
 }
 
 /// Labels the points inside the unbroken bone; returns its registration to the fragments.
 LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
-                             std::string& note) {
-    cases::IntactOptions options;
-    if (settings.least_area) options.least_area = *settings.least_area;
-    ResultKey key("paint inside of the unbroken bone", algorithm);
+                             double least_area, std::string& note) {
+    ResultKey key("points inside of the unbroken bone", algorithm);
     key.add_file(settings.bone).add_file(settings.intact);
     if (!settings.main.empty()) key.add_file(settings.main);
-    key.add("mirror", settings.mirror ? 1.0 : 0.0).add("least area", options.least_area);
-    key.add("points", static_cast<double>(points.size()));
-    NumberReader read(
-        result_of(key, std::nullopt, note, [&] { return proposal_by_intact(points, settings, options, note); }));
+    key.add("mirror", settings.mirror ? 1.0 : 0.0).add("points", static_cast<double>(points.size()));
+    NumberReader read(result_of(key, std::nullopt, note, [&] { return broken_by_intact(points, settings, note); }));
     LaidIntact laid{read.registration(), std::nullopt};
     if (!settings.main.empty()) laid.on_bone = read.registration();
-    for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+    std::vector<std::uint8_t> broken(points.size(), 0);
     while (!read.is_at_end())
         if (const double n = read.next(); n >= 0.0 && n < static_cast<double>(points.size()))
-            points[static_cast<std::size_t>(n)].label = contact::surface_label::fracture;
+            broken[static_cast<std::size_t>(n)] = 1;
+    cases::label_broken(points, broken, least_area);
     return laid;
 }
 
@@ -81,13 +72,13 @@ bool is_painted(const contact::SurfacePoint& p) { return p.label == contact::sur
 
 /// Labels what faces at least one of the fragments.
 void propose_by_facing(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
-                       double least_area) {
+                       double least_area, std::string& note) {
     cases::FacingOptions options;
     options.reach = settings.reach;
     options.least_area = least_area;
     std::vector<char> faces(points.size(), 0);
     for (const std::filesystem::path& other : settings.facing) {
-        cases::propose_facing(points, points_of_fragment(other), options);
+        cases::propose_facing(points, points_of_fragment(other, note), options);
         for (std::size_t n = 0; n < points.size(); ++n) faces[n] = faces[n] || is_painted(points[n]);
     }
     for (std::size_t n = 0; n < points.size(); ++n)
@@ -101,13 +92,13 @@ std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, co
     double least_area = settings.least_area.value_or(20e-6);
     if (!settings.intact.empty()) {
         least_area = settings.least_area.value_or(cases::IntactOptions{}.least_area);
-        laid = propose_by_intact(points, settings, note);
+        laid = propose_by_intact(points, settings, least_area, note);
         std::vector<contact::SurfacePoint> others;
         for (const std::filesystem::path& other : settings.facing)
-            for (const contact::SurfacePoint& p : points_of_fragment(other)) others.push_back(p);
+            for (const contact::SurfacePoint& p : points_of_fragment(other, note)) others.push_back(p);
         if (!settings.facing.empty()) cases::keep_patches_near(points, others, settings.reach);
     } else if (!settings.facing.empty()) {
-        propose_by_facing(points, settings, least_area);
+        propose_by_facing(points, settings, least_area, note);
     } else {
         cases::ProposalOptions options;
         options.roughness = settings.roughness;
@@ -121,9 +112,9 @@ std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, co
 }  // namespace
 
 FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings) {
-    FractureSurface out{bone_of_file(settings.bone), std::nullopt, ""};
+    FractureSurface out{settings.whole ? bone_of_file(settings.bone) : bone::Bone{}, std::nullopt, ""};
     std::vector<contact::SurfacePoint>& points = out.bone.points;
-    if (points.empty()) points = contact::sample_surface(out.bone.distance, {});
+    if (points.empty()) points = points_of_fragment(settings.bone, out.note);
     const bool has_paint = std::ranges::any_of(points, is_painted);
     const bool is_asked = !settings.facing.empty() || !settings.intact.empty();
     const std::vector<contact::SurfacePoint> before = points;

@@ -24,6 +24,7 @@ struct FractureSurfaceSettings {
     std::optional<double> least_area;  ///< m²; none: the default of each method
     bool mirror = false;               ///< `intact` is from the other side of the body
     bool correct = false;              ///< apply `paint` on top of the proposal
+    bool whole = true;  ///< also loads the bone's volume, to be written
     bool keep = false;                 ///< keep the paint of the bone file; `facing` and `intact` add to it
 };
 
@@ -34,7 +35,7 @@ struct LaidIntact {
 };
 
 struct FractureSurface {
-    bone::Bone bone;  ///< its points are labelled
+    bone::Bone bone;  ///< its points are labelled; only they are there unless `whole`
     std::optional<LaidIntact> intact;
     std::string note;  ///< about a kept result (see kept_result.hpp) that was no use; else empty
 };

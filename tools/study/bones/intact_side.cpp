@@ -5,10 +5,18 @@
 #include "dsp/fit/registration/mirror.hpp"
 #include "dsp/volume/outer_shell.hpp"
 #include "tools/study/bones/fragment_file.hpp"
+#include "tools/study/bones/kept_points.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/workers.hpp"
 
 namespace tactus::study {
+
+namespace {
+
+// To be raised with every change of code that changes these points: import of scans, outer shell, sampling.
+constexpr int sampling = 1;
+
+}  // namespace
 
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder) {
     return fit::mirrored(points_of_file(cases::file_of(target.file, folder)),
@@ -18,10 +26,13 @@ std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target
 const std::vector<contact::SurfacePoint>& IntactBone::points() {
     // Half the width of the openings that connect marrow to the outside at a threshold for cortex.
     constexpr double closing = 3e-3;
-    if (points_.empty())
-        points_ = is_mesh(file_) ? points_of_file(file_)
-                                 : contact::sample_surface(
-                                       volume::outer_shell(bone_of_file(file_).distance, closing, on_threads()), {});
+    if (!points_.empty()) return points_;
+    if (is_mesh(file_)) return points_ = points_of_file(file_);
+    ResultKey key("outer shell of a bone", sampling);
+    key.add_file(file_).add("closing", closing);
+    points_ = points_of_key(key, note_, [&] {
+        return contact::sample_surface(volume::outer_shell(bone_of_file(file_).distance, closing, on_threads()), {});
+    });
     return points_;
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,8 @@ public:
     /// Registers it to a fragment from any position: the registration of the fragment's points to it, and how it lies
     /// on the fragment. Throws Error for a file without surface.
     std::vector<double> numbers_on(std::span<const contact::SurfacePoint> main);
+    /// About kept points that were no use; else empty.
+    const std::string& note() const { return note_; }
     /// Its points in the frame of the fragment, from these numbers after the registration.
     std::vector<contact::SurfacePoint> laid(NumberReader& numbers);
 
@@ -38,6 +41,7 @@ private:
     std::filesystem::path file_;
     bool mirror_;
     std::vector<contact::SurfacePoint> points_;
+    std::string note_;
 };
 
 }  // namespace tactus::study

@@ -119,6 +119,19 @@ std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings)
                        settings.most_rms * settings.sigma * 1e3);
 }
 
+std::string doubt_of(const fit::KerfEstimate& kerf) {
+    std::string said = kerf.told > 0.0 ? fmt::format("unsure: told a kerf of {:.1f} mm", kerf.told * 1e3)
+                                       : "unsure: the faces lie on each other, and the cortex beyond them does not";
+    if (!kerf.is_contradicted)
+        return said + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";
+    const double seen = std::round(kerf.kerf * 1e4) / 10.0;  // mm
+    if (!(seen > 0.0)) return said + ", and the cortex beyond the faces says that no bone is lost: leave --kerf out";
+    return fmt::format(
+        "{}; a kerf of about {:.1f} mm is seen ({:.1f} ± {:.1f} mm): --kerf \"{:.1f} mm\" if so much bone is lost, "
+        "or place it by hand",
+        said, seen, seen, kerf.spread * 1e3, seen);
+}
+
 }  // namespace
 
 std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matching,
@@ -131,15 +144,7 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
                                  ? "bring it nearer to its place, correct the paint, or use --mode global"
                              : only == fit::Arrangement::none ? "name the partner, or correct the paint"
                                                               : "correct the paint";
-    if (found.kerf && found.kerf->is_doubtful()) {
-        const fit::KerfEstimate& kerf = *found.kerf;
-        const std::string lost =
-            fmt::format("told a kerf of {:.1f} mm, and the cortex beyond the faces says {:.1f} ± {:.1f} mm",
-                        kerf.told * 1e3, kerf.kerf * 1e3, kerf.spread * 1e3);
-        return kerf.is_contradicted
-                   ? "unsure: " + lost + "; measure the lost bone and correct --kerf, or place it by hand"
-                   : "unsure: " + lost + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";
-    }
+    if (found.kerf && found.kerf->is_doubtful()) return doubt_of(*found.kerf);
     if (found.inside != fit::Arrangement::none) {
         const std::string& other = plan.fragments[static_cast<std::size_t>(found.inside)].name;
         return fmt::format(

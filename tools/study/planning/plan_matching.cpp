@@ -125,7 +125,7 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
         fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (found.match.verdict == fit::FitVerdict::fit) {
-        if (settings().fit.kerf > 0.0) found.kerf = estimate_kerf(found, arrangement);
+        found.kerf = estimate_kerf(found, arrangement);
         if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
     }
     if (found.match.verdict == fit::FitVerdict::fit) {

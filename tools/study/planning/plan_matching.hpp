@@ -25,7 +25,7 @@ struct PlanMatch {
     bool was_painted = false; ///< the paint comes from the file; false: it was proposed
     int inside = fit::Arrangement::none;  ///< fragment that it would lie in; the verdict is `blocked`
     double inside_volume = 0.0;  ///< m³ of both
-    std::optional<fit::KerfEstimate> kerf;  ///< where faces fit with a told kerf; a doubt is `ambiguous`
+    std::optional<fit::KerfEstimate> kerf;  ///< where faces fit; a doubt is `ambiguous`
     bool is_apart = false;  ///< it fits a fragment that is not connected to what stands, and nothing of that
 };
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 using nlohmann::json;
 using tactus::test::Folder;
@@ -161,4 +162,32 @@ TEST_CASE("the shifted part of a pelvis is found and laid on its reference by it
     CHECK(region["away"]["angle_deg"].get<double>() == Approx(1.43).margin(0.3));
     CHECK(region["median_mm"].get<double>() < 0.13);
     CHECK(region["median_mm"].get<double>() < 0.85 * plain["median_mm"].get<double>());
+}
+
+TEST_CASE("which areas of a broken hip the other side proposes stays the same, from files and from what is kept",
+          "[slow]") {
+    const auto healthy = shared() / "hip003_intact_side_ct.nrrd";
+    if (!has(healthy)) return;
+    const Folder folder;
+    const std::string main = (shared() / "hip003_frag1.stl").string(), part = (shared() / "hip003_frag2.stl").string();
+    const auto areas = [&](const std::string& arguments) {
+        const Outcome done =
+            folder.tactus("fracture-surface " + arguments + " -o " + (folder.path / "p.json").string() + " --intact " +
+                          healthy.string() + " --mirror --json");
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        std::vector<double> found;
+        const json faces = json::parse(done.out)["faces"];
+        for (const json& face : faces) found.push_back(face["area_mm2"].get<double>());
+        return found;
+    };
+    const auto is_near = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+        CAPTURE(found, wanted);
+        REQUIRE(found.size() == wanted.size());
+        for (std::size_t n = 0; n < wanted.size(); ++n) CHECK(found[n] == Approx(wanted[n]).epsilon(0.03));
+    };
+    // What it proposed before anything was kept.
+    is_near(areas(part + " --main " + main), {428.0, 165.0, 135.0, 119.0});
+    is_near(areas(main + " --facing " + part), {585.0, 335.0, 126.0});
+    is_near(areas(main + " --facing " + part + " --least-area 200"), {585.0, 335.0});
 }

@@ -3,27 +3,15 @@
 
 #include "dsp/geometry/point_tree.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/run_command.hpp"
+#include "tests/tools/kept_cache.hpp"
 
-#include <cstdlib>
 #include <fstream>
 
 using namespace tactus;
 using study::ResultKey;
 
-namespace {
-
-/// A cache folder of its own, for as long as this lives.
-struct Cache {
-    test::Folder folder;
-    Cache() { ::setenv("XDG_CACHE_HOME", folder.path.c_str(), 1); }
-    ~Cache() { ::unsetenv("XDG_CACHE_HOME"); }
-};
-
-}  // namespace
-
 TEST_CASE("a kept result is found by its own key only, to the bit") {
-    const Cache cache;
+    const test::KeptCache cache;
     const auto file = cache.folder.write("bone.stl", "some bytes");
     const auto key = [&](int version, double option) {
         return ResultKey("registration", version).add_file(file).add("mirror", option);
@@ -41,7 +29,7 @@ TEST_CASE("a kept result is found by its own key only, to the bit") {
 }
 
 TEST_CASE("a damaged or foreign kept result is ignored with a note, and made again") {
-    const Cache cache;
+    const test::KeptCache cache;
     const ResultKey key = ResultKey("registration", 1).add("mirror", 1.0);
     const std::vector<double> numbers{1.0, 2.5};
     study::keep_result(key, numbers);
@@ -67,7 +55,7 @@ TEST_CASE("a damaged or foreign kept result is ignored with a note, and made aga
 }
 
 TEST_CASE("no result is kept for a header that names other files, and none without a folder that can be written") {
-    const Cache cache;
+    const test::KeptCache cache;
     const auto header = cache.folder.write("scan.nrrd", "NRRD0004\nsizes: 2 2 2\nData File: scan.raw\n\n");
     CHECK(ResultKey("x", 1).add_file(header).text().empty());
     const auto whole = cache.folder.write("whole.nrrd", "NRRD0004\nsizes: 2 2 2\n\n12345678");

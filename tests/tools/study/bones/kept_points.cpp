@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/bones/kept_points.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/kept_cache.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+using namespace tactus;
+using study::ResultKey;
+
+namespace {
+
+const std::vector<contact::SurfacePoint> surface{{Vec3(0.1, 1.0 / 3.0, -0.0), Vec3(0.0, 0.6, 0.8), 1e-7, 1},
+                                                 {Vec3(1e-300, 2.0, 3.0), Vec3(1.0, 0.0, 0.0), 2e-7, 0}};
+
+bool same(const std::vector<contact::SurfacePoint>& a, const std::vector<contact::SurfacePoint>& b) {
+    return std::ranges::equal(a, b, [](const contact::SurfacePoint& p, const contact::SurfacePoint& q) {
+        return p.position == q.position && p.normal == q.normal && p.area == q.area && p.label == q.label;
+    });
+}
+
+}  // namespace
+
+TEST_CASE("kept points come back to the bit, and damaged ones are made again with a note") {
+    const test::KeptCache cache;
+    const ResultKey key = ResultKey("points", 1).add("spacing", 0.5);
+    std::string note;
+    int made = 0;
+    const auto make = [&] { return ++made, surface; };
+    CHECK(same(study::points_of_key(key, note, make), surface));
+    CHECK(same(study::points_of_key(key, note, make), surface));
+    CHECK(made == 1);
+    CHECK(note.empty());
+    const auto file = study::file_of_points(key);
+    const std::string good = test::slurp(file);
+    std::string other = good;
+    other[other.size() - 3] ^= 1;
+    for (const std::string& text : {other, good.substr(0, good.size() - 10), std::string("[]"), std::string()}) {
+        std::ofstream(file, std::ios::binary) << text;
+        made = 0;
+        note.clear();
+        CHECK(same(study::points_of_key(key, note, make), surface));
+        CHECK(made == 1);
+        CHECK(note.find(file.string()) != std::string::npos);
+        CHECK(same(study::points_of_key(key, note, make), surface));
+        CHECK(made == 1);
+    }
+}
+
+TEST_CASE("no more than 32 surfaces are kept, and the oldest goes first") {
+    const test::KeptCache cache;
+    std::string note;
+    const auto key = [](int n) { return ResultKey("points", 1).add("number", n); };
+    const auto now = std::filesystem::file_time_type::clock::now();
+    for (int n = 0; n < 40; ++n) {
+        study::points_of_key(key(n), note, [] { return surface; });
+        std::filesystem::last_write_time(study::file_of_points(key(n)), now - std::chrono::seconds(100 - n));
+    }
+    int left = 0;
+    for (int n = 0; n < 40; ++n) left += std::filesystem::exists(study::file_of_points(key(n)));
+    CHECK(left == 32);
+    CHECK_FALSE(std::filesystem::exists(study::file_of_points(key(7))));
+    CHECK(std::filesystem::exists(study::file_of_points(key(8))));
+}
