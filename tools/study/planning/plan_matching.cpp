@@ -210,8 +210,10 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
         fit::SurfaceGap gap = fit::gap_between(a.bone.points, at, b.map, bt);
-        if (!pair && !(gap.facing_area > 5e-6)) return;
-        found.push_back({i, j, std::move(gap), fit::overlap_volume(a.bone.distance, at, b.map, bt)});
+        const double overlap = fit::overlap_volume(a.bone.distance, at, b.map, bt);
+        // What lies deep inside of another does not face it.
+        if (!pair && !(gap.facing_area > 5e-6) && !(overlap > 5e-9)) return;
+        found.push_back({i, j, std::move(gap), overlap});
     };
     if (pair) look(pair->first, pair->second);
     else
