@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/match_reason.hpp"
 #include "tools/study/planning/plan_assembly.hpp"
 #include "tools/study/planning/plan_words.hpp"
@@ -29,9 +30,9 @@ void add_steps(cases::CasePlan& plan, const study::PlanAssembly& made) {
 }
 
 std::string residual_words(const study::FragmentResidual& r) {
-    return r.faces == 0
-               ? "no face lies on another"
-               : fmt::format("{:.3f} mm rms over {} pairs of faces, {:.0f} mm²", r.rms * 1e3, r.faces, r.area * 1e6);
+    return r.faces == 0 ? "no face lies on another"
+                        : fmt::format("{:.3f} mm rms over {} of faces, {:.0f} mm²", r.rms * 1e3,
+                                      counted(r.faces, "pair"), r.area * 1e6);
 }
 
 struct Told {

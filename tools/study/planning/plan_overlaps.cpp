@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tactus::study {
 
 std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder) {
@@ -29,6 +31,11 @@ std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::f
                                      loaded[static_cast<std::size_t>(b)].map, state.arrangement.pose(b))});
         }
     return found;
+}
+
+double deepest_between(const CaseFragment& a, const Pose& at, const CaseFragment& b, const Pose& there) {
+    return std::max(fit::gap_between(a.bone.points, at, b.map, there).deepest,
+                    fit::gap_between(b.bone.points, there, a.map, at).deepest);
 }
 
 std::string overlap_words(const cases::CasePlan& plan, const PlanOverlap& overlap) {

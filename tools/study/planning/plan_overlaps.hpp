@@ -18,6 +18,9 @@ struct PlanOverlap {
 /// plan. Throws Error for a file that is missing or has changed.
 std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder);
 
+/// m, how deep two placed fragments lie in each other: points of either inside of the other; 0 when they do not.
+double deepest_between(const CaseFragment& a, const Pose& at, const CaseFragment& b, const Pose& there);
+
 /// "'a' and 'b' lie in each other with 12 mm³; move or hide one of them".
 std::string overlap_words(const cases::CasePlan& plan, const PlanOverlap& overlap);
 

@@ -192,6 +192,8 @@ TEST_CASE("a locked fragment is said to be held by its lock only when its partne
     CHECK_FALSE(says(apart.out, "box stays apart"));
     CHECK_FALSE(says(apart.out, "and so is what it would go to"));
     CHECK(says(apart.out, " stay apart: "));
+    CHECK(says(apart.out, ": fit, 1 face, score "));
+    CHECK(says(apart.out, " over 1 pair of faces, "));
     REQUIRE(run("undo", "--steps 2").code == 0);
     REQUIRE(run("hide", "box").code == 0);
     REQUIRE(run("lock", "one two").code == 0);

@@ -182,6 +182,8 @@ TEST_CASE("a fragment deep inside of another is told by its overlap, though no s
     INFO(gap.out << gap.err);
     CHECK(says(gap.out, "large and small: do not face each other within 3 mm; 27"));
     CHECK_FALSE(says(gap.out, "no two shown fragments"));
+    // The small one's points are deep in the large one; those of the large one are nowhere in the small one.
+    CHECK(json::parse(folder.tactus("plan gap " + plan + " --json").out)[0]["deepest_mm"].get<double>() > 4.0);
     CHECK(folder.tactus("plan check " + plan).code == 1);
 }
 
