@@ -62,9 +62,11 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
 
 void check_files(const CasePlan& plan, const std::filesystem::path& folder) {
     const auto problems = changed_files(plan, folder);
-    if (!problems.empty())
-        throw Error(fmt::format("{}{}; put the file back, or make a plan of the new one", problems.front(),
-                                problems.size() > 1 ? fmt::format(" (and {} more)", problems.size() - 1) : ""));
+    if (problems.empty()) return;
+    const bool is_fragment = problems.front().starts_with("fragment");
+    throw Error(fmt::format("{}{}; put the file back, {}or make a plan of the new one", problems.front(),
+                            problems.size() > 1 ? fmt::format(" (and {} more)", problems.size() - 1) : "",
+                            is_fragment ? "take it when only its paint differs ('tactus plan repaint'), " : ""));
 }
 
 CaseBones load_case(const std::filesystem::path& path) {

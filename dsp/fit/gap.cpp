@@ -33,8 +33,9 @@ SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose
     std::vector<double> values, weights;
     for (std::size_t n = 0; n < points.size(); ++n) {
         const volume::Sample here = other.sample(into.apply(points[n].position));
-        if (!here.inside || !(std::abs(here.value) < settings.near)) continue;
+        if (!here.inside) continue;
         if (here.value < 0.0) gap.deepest = std::max(gap.deepest, -here.value);
+        if (!(std::abs(here.value) < settings.near)) continue;
         if (!(glm::dot(into.rotate(points[n].normal), here.gradient) < -0.3)) continue;
         gap.distance[n] = static_cast<float>(here.value);
         gap.facing_area += points[n].area;

@@ -53,6 +53,7 @@
     X(plan_unlock, planning)      \
     X(plan_hide, planning)        \
     X(plan_unhide, planning)      \
+    X(plan_repaint, planning)     \
     X(plan_undo, planning)        \
     X(plan_redo, planning)        \
     X(plan_alternative, planning) \

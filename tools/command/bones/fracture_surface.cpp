@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/bones/intact_side.hpp"
 
 #include <fmt/format.h>
 
@@ -27,12 +28,26 @@ struct FractureSurfaceChoice {
 
 Json residual_json(const fit::Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
 
+bool is_doubtful(const study::FractureSurface& found) {
+    return found.intact && found.intact->on_main.median > study::most_intact_median;
+}
+
+std::string doubt_words(const FractureSurfaceChoice& choice) {
+    return fmt::format(
+        "the unbroken bone lies more than {:.0f} mm away from half of the {}fragment: what is proposed is not its "
+        "fracture; {}check that it is the same bone{}",
+        study::most_intact_median * 1e3, choice.settings.main.empty() ? "" : "main ",
+        choice.settings.main.empty() ? "name the largest fragment of the same scan with --main, and " : "",
+        choice.settings.mirror ? "" : ", and --mirror if it is from the other side of the body");
+}
+
 Json json_of(const FractureSurfaceChoice& choice, const study::FractureSurface& found,
              const std::vector<cases::PaintedFace>& faces) {
     Json json{{"file", choice.out.string()}, {"faces", Json::array()}};
     if (found.intact) {
         json["intact"] = {{"file", choice.settings.intact.string()}, {"on_main", residual_json(found.intact->on_main)}};
         if (found.intact->on_bone) json["intact"]["on_bone"] = residual_json(*found.intact->on_bone);
+        json["intact"]["doubt"] = is_doubtful(found) ? Json(doubt_words(choice)) : Json(nullptr);
     }
     for (const cases::PaintedFace& f : faces) {
         const Vec3 p = f.middle * 1e3;
@@ -78,8 +93,11 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
         bone::save_bone(found.bone, choice.out);
     }
     if (choice.json) fmt::print("{}\n", json_of(choice, found, faces).dump(2));
-    else print(found, faces);
-    return faces.empty() ? answer_is_no : done;
+    else {
+        print(found, faces);
+        if (is_doubtful(found)) fmt::print("! {}\n", doubt_words(choice));
+    }
+    return faces.empty() || is_doubtful(found) ? answer_is_no : done;
 }
 
 Action add(VerbOptions& verb) {
@@ -122,7 +140,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb fracture_surface_verb() {
-    return {"fracture-surface", "propose the fracture surface of a fragment; 1: none found", add};
+    return {"fracture-surface",
+            "propose the fracture surface of a fragment; 1: none found, or the unbroken bone does not lie on it", add};
 }
 
 }  // namespace tactus::command

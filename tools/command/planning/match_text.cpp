@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/planning/match_text.hpp"
 
+#include "tools/counted.hpp"
+
 #include <fmt/format.h>
 
 namespace tactus::command {
@@ -10,8 +12,8 @@ void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, con
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     if (match.partner == fit::Arrangement::none) fmt::print("{} stays where it is: {}\n", name(match.moving), reason);
     else {
-        fmt::print("{} to {}: {}, {} faces, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
-                   name(match.moving), name(match.partner), fit::name_of(match.verdict), match.faces,
+        fmt::print("{} to {}: {}, {}, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
+                   name(match.moving), name(match.partner), fit::name_of(match.verdict), counted(match.faces, "face"),
                    match.quality.score, match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
                    match.verdict == fit::FitVerdict::fit ? "" : "; it stays where it was");
         if (!reason.empty()) fmt::print("{}\n", reason);

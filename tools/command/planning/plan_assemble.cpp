@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan assemble: puts all shown fragments of a plan together as far as their fractures say how.
 #include "assets/file/json.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/match_reason.hpp"
 #include "tools/study/planning/plan_assembly.hpp"
 #include "tools/study/planning/plan_words.hpp"
@@ -28,9 +30,9 @@ void add_steps(cases::CasePlan& plan, const study::PlanAssembly& made) {
 }
 
 std::string residual_words(const study::FragmentResidual& r) {
-    return r.faces == 0
-               ? "no face lies on another"
-               : fmt::format("{:.3f} mm rms over {} pairs of faces, {:.0f} mm²", r.rms * 1e3, r.faces, r.area * 1e6);
+    return r.faces == 0 ? "no face lies on another"
+                        : fmt::format("{:.3f} mm rms over {} of faces, {:.0f} mm²", r.rms * 1e3,
+                                      counted(r.faces, "pair"), r.area * 1e6);
 }
 
 struct Told {
@@ -41,10 +43,11 @@ struct Told {
 Told told_of(const cases::CasePlan& plan, const study::PlanMatching& matching, const study::PlanAssembly& made,
              const cases::PlanState& state) {
     Told told;
-    for (const study::PlanMatch& stays : made.stays) {
+    for (std::size_t n = 0; n < made.stays.size(); ++n) {
+        const study::PlanMatch& stays = made.stays[n];
         std::string reason =
             stays.as_scanned ? std::string(as_scanned_note)
-            : !state.arrangement.can_move(stays.match.moving)
+            : made.is_locked_apart[n]
                 ? "it is locked, and so is what it would go to; unlock one of them ('tactus plan unlock')"
             : matching.faces_of(stays.match.moving) == 0
                 ? "it has no painted fracture; paint it, see 'tactus fracture-surface'"
@@ -52,10 +55,7 @@ Told told_of(const cases::CasePlan& plan, const study::PlanMatching& matching, c
                                         study::MatchWay::anywhere);
         told.reasons.push_back(std::move(reason));
     }
-    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
-    for (const study::PlanOverlap& o : made.overlaps)
-        told.problems.push_back(fmt::format("'{}' and '{}' lie in each other with {:.0f} mm³; move or hide one of them",
-                                            name(o.first), name(o.second), o.volume * 1e9));
+    for (const study::PlanOverlap& o : made.overlaps) told.problems.push_back(study::overlap_words(plan, o));
     return told;
 }
 
@@ -112,6 +112,8 @@ int assemble(const PlanChoice& choice) {
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const cases::PlanState before = cases::state_of(plan);
+    if (study::assembly_names(plan, before).empty())
+        throw Error("no fragment is shown; show some with 'tactus plan unhide'");
     study::PlanMatching matching(plan, choice.plan.parent_path(), fit_way(choice));
     const study::PlanAssembly made = study::assemble(matching, before.arrangement, before.fits);
     add_steps(plan, made);

@@ -35,8 +35,9 @@ void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps)
     if (gaps.empty()) fmt::print("no two shown fragments face each other within 3 mm\n");
     for (const study::PlanGap& g : gaps)
         if (!(g.gap.facing_area > 0.0))
-            fmt::print("{} and {}: do not face each other within 3 mm; {:.1f} mm³ overlap\n", name(g.first),
-                       name(g.second), g.overlap * 1e9);
+            fmt::print("{} and {}: do not face each other within 3 mm; {:.1f} mm³ overlap{}\n", name(g.first),
+                       name(g.second), g.overlap * 1e9,
+                       g.gap.deepest > 0.0 ? fmt::format(", {:.2f} mm deep", g.gap.deepest * 1e3) : "");
         else
             fmt::print(
                 "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "

@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
+#include "tools/study/bones/intact_side.hpp"
 
 #include <fmt/format.h>
 
@@ -51,8 +52,21 @@ void print_comparison(const std::string& fragment, const std::string& main, cons
     print_faces(fragment, "there", main, c.after);
 }
 
-Json json_of(const std::string& main, const fit::MirrorFit& fit, const Json& others) {
-    return {{"on", main},
+/// Nothing is moved to a mirrored side that lies wrongly itself.
+bool is_doubtful(const fit::MirrorFit& fit) { return fit.registration.median > study::most_intact_median; }
+
+std::string doubt_words(const MirrorChoice& choice) {
+    return fmt::format(
+        "the mirrored side lies more than {:.0f} mm away from half of '{}', so that it is no target{}: name the "
+        "largest fragment first, check that {} is the same bone of the other side, and undo this step ('tactus plan "
+        "undo')",
+        study::most_intact_median * 1e3, choice.names[0], choice.settle ? ", and nothing was moved" : "",
+        choice.healthy.string());
+}
+
+Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& others) {
+    return {{"on", choice.names[0]},
+            {"doubt", is_doubtful(fit) ? Json(doubt_words(choice)) : Json(nullptr)},
             {"residual_mm", fit.registration.median * 1e3},
             {"residual_p90_mm", fit.registration.p90 * 1e3},
             {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
@@ -80,15 +94,17 @@ int mirror(const MirrorChoice& choice) {
         const study::MirrorComparison found = laid.compare(other, cases::state_of(plan).arrangement.pose(other));
         others.push_back(comparison_json(choice.names[n], found));
         if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
-        if (choice.settle)
+        if (choice.settle && !is_doubtful(laid.fit()))
             study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
     }
     for (const std::string& note : laid.notes()) fmt::print(stderr, "note: {}\n", note);
-    if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit(), others).dump(2));
-    else
+    if (choice.json) fmt::print("{}\n", json_of(choice, laid.fit(), others).dump(2));
+    else {
         fmt::print("mirrored side on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", choice.names[0],
                    laid.fit().registration.median * 1e3, laid.fit().registration.p90 * 1e3);
-    return done;
+        if (is_doubtful(laid.fit())) fmt::print("! {}\n", doubt_words(choice));
+    }
+    return is_doubtful(laid.fit()) ? answer_is_no : done;
 }
 
 Action add(VerbOptions& verb) {
@@ -103,7 +119,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_mirror_verb() {
-    return {"mirror", "mirror the healthy side and register it to a fragment, as a target", add};
+    return {"mirror", "mirror the healthy side and register it to a fragment, as a target; 1: it does not lie on it",
+            add};
 }
 
 }  // namespace tactus::command

@@ -153,6 +153,23 @@ display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Vec3&
     return mesh;
 }
 
+/// The view from as near as shows all of the meshes in a square picture: a bounding sphere is larger than its content.
+display::View closest(display::View view, const std::vector<display::PictureMesh>& meshes) {
+    constexpr double rim = 1.08;
+    const Vec3 into = glm::normalize(view.target - view.eye), right = glm::normalize(glm::cross(into, view.up)),
+               up = glm::cross(right, into);
+    const double slope = std::tan(0.5 * view.vertical_field_of_view_rad) / rim;
+    double away = 1e-6;
+    for (const display::PictureMesh& mesh : meshes)
+        for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
+            const Vec3 p = Vec3(mesh.positions[n], mesh.positions[n + 1], mesh.positions[n + 2]) - view.target;
+            const double aside = std::max(std::abs(glm::dot(p, right)), std::abs(glm::dot(p, up)));
+            away = std::max(away, aside / slope - glm::dot(p, into));
+        }
+    view.eye = view.target - away * into;
+    return view;
+}
+
 }  // namespace
 
 void write_picture(const study::Inspection& found, const std::filesystem::path& path) {
@@ -169,9 +186,7 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
         if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, middle));
     const auto view = [&](const std::string& name, const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
-        display::View from = display::fit_view(low - middle, high - middle, direction, up);
-        // The bounding sphere of the box is larger than its content.
-        from.eye = from.target + (from.eye - from.target) * 0.85;
+        const display::View from = closest(display::fit_view(low - middle, high - middle, direction, up), meshes);
         canvas.paste(display::render_picture(meshes, from, panel, panel), left, top);
         label(canvas, name, left, top);
     };

@@ -12,6 +12,7 @@
 #include "tools/picture/report/plan_picture.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
+#include "tools/study/planning/plan_overlaps.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
@@ -239,7 +240,8 @@ Gaps gaps(const Case& c) {
                 "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3, overlap * 1e9);
+                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3),
+                study::deepest_between(c.fragments[i], c.pose(i), c.fragments[j], c.pose(j)) * 1e3, overlap * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
     if (rows.empty()) {

@@ -19,6 +19,10 @@ namespace tactus::study {
 /// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder);
 
+/// m, median. The two sides of a body, and two scans, differ by about a millimetre; a bone that lies wrongly, or another
+/// bone, is off by several.
+inline constexpr double most_intact_median = 2e-3;
+
 /// Numbers of a registration of the unbroken bone, see IntactBone.
 inline constexpr std::size_t intact_numbers = 11 + 4 + 7;
 

@@ -181,7 +181,13 @@ std::vector<std::vector<int>> AssemblyParts::lists() const {
         if (part_[n] >= 0) by_part[part_[n]].push_back(static_cast<int>(n));
     std::vector<std::vector<int>> all;
     for (auto& [part, list] : by_part) all.push_back(std::move(list));
-    std::ranges::stable_sort(all, std::ranges::greater{}, &std::vector<int>::size);
+    const auto rank = [&](const std::vector<int>& list) {
+        double area = 0.0;
+        for (const int n : list) area += size_[static_cast<std::size_t>(n)];
+        const auto at = static_cast<std::size_t>(base_of(list));
+        return std::tuple(locked_[at] != 0, first_[at] != 0, list.size(), area);
+    };
+    std::ranges::stable_sort(all, std::ranges::greater{}, rank);
     return all;
 }
 

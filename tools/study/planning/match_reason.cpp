@@ -104,6 +104,18 @@ std::string not_found(const cases::CasePlan& plan, const PlanMatching& matching,
         settings.near * 1e3, turn);
 }
 
+/// The next step where paint is in doubt. What the program has proposed is often only a part of the fracture.
+std::string correct_the_paint(const cases::CasePlan& plan, const PlanMatching& matching,
+                              const fit::FragmentMatch& match) {
+    std::string proposed;
+    for (const int n : {match.moving, match.partner})
+        if (!matching.fragment(n).was_painted)
+            proposed += (proposed.empty() ? "'" : " and '") + plan.fragments[static_cast<std::size_t>(n)].name + "'";
+    return "correct the paint" +
+           (proposed.empty() ? std::string() : fmt::format(", which is only proposed on {}", proposed)) +
+           " ('tactus fracture-surface', then 'tactus plan repaint')";
+}
+
 std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings) {
     if (q.score < settings.least_score)
         return fmt::format("the faces do not match: the score is below {:.2f}", settings.least_score);
@@ -140,10 +152,10 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
     if (match.verdict == fit::FitVerdict::fit || found.as_scanned) return "";
     if (match.partner == fit::Arrangement::none) return not_found(plan, matching, arrangement, match.moving, only, way);
     const fit::FitSettings& settings = matching.settings().fit;
-    const char* const next = way == MatchWay::near
-                                 ? "bring it nearer to its place, correct the paint, or use --mode global"
-                             : only == fit::Arrangement::none ? "name the partner, or correct the paint"
-                                                              : "correct the paint";
+    const std::string correct = correct_the_paint(plan, matching, match);
+    const std::string next = way == MatchWay::near ? "bring it nearer to its place, use --mode global, or " + correct
+                             : only == fit::Arrangement::none ? "name its partner at 'tactus plan snap', or " + correct
+                                                              : correct;
     if (found.kerf && found.kerf->is_doubtful()) return doubt_of(*found.kerf);
     if (found.inside != fit::Arrangement::none) {
         const std::string& other = plan.fragments[static_cast<std::size_t>(found.inside)].name;
@@ -157,8 +169,9 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
             return "the faces are too smooth to hold it in one place; paint more of the fracture, or place it by hand";
         case fit::FitVerdict::ambiguous:
             return fmt::format("another pose fits as well: the margin is below {:.2f}; {}", settings.least_margin,
-                               only == fit::Arrangement::none ? "name the partner, or paint more of the fracture"
-                                                              : "paint more of the fracture");
+                               only == fit::Arrangement::none
+                                   ? "name its partner at 'tactus plan snap', or paint more of the fracture"
+                                   : "paint more of the fracture");
         case fit::FitVerdict::blocked: return fmt::format("the bones would lie in each other; {}", next);
         default: return fmt::format("{}; {}", no_match(match.quality, settings), next);
     }

@@ -283,7 +283,11 @@ private:
                 motion_between(placed.from, placed.match.pose, middle_of(matching_.fragment(link.a).bone.points));
             made.placed.push_back(placed);
         }
-        for (std::size_t n = 1; n < made.parts.size(); ++n) made.stays.push_back(why_apart(made.parts[n]));
+        for (std::size_t n = 1; n < made.parts.size(); ++n) {
+            made.stays.push_back(why_apart(made.parts[n]));
+            made.is_locked_apart.push_back(made.stays.back().match.partner == Arrangement::none &&
+                                           is_locked_apart(made.parts[n]));
+        }
         for (int a = 0; a < static_cast<int>(arrangement_.size()); ++a)
             for (int b = a + 1; b < static_cast<int>(arrangement_.size()); ++b)
                 if (!arrangement_.is_hidden(a) && !arrangement_.is_hidden(b) &&
@@ -318,6 +322,15 @@ private:
             why.was_painted = matching_.fragment(part.front()).was_painted;
         }
         return why;
+    }
+
+    /// Whether a pair of faces between this part and another was not tried because neither can move.
+    bool is_locked_apart(const std::vector<int>& part) const {
+        const int mine = parts_.part_of(part.front());
+        return !parts_.can_move(mine) && std::ranges::any_of(edges_, [&](const Edge& e) {
+            const int p = parts_.part_of(e.a), q = parts_.part_of(e.b);
+            return p != q && (p == mine || q == mine) && !parts_.can_move(p) && !parts_.can_move(q);
+        });
     }
 
     PlanMatching& matching_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/study/planning/plan_matching.hpp"
+#include "tools/study/planning/plan_overlaps.hpp"
 
 #include <utility>
 #include <vector>
@@ -16,20 +17,19 @@ struct FragmentResidual {
     int faces = 0;  ///< pairs of faces
 };
 
-struct PlanOverlap {
-    int first = 0, second = 0;
-    double volume = 0.0;  ///< m³ of both
-};
-
 struct PlanAssembly {
     std::vector<Pose> poses;  ///< of all fragments
     /// Fits in the order of their steps: each fragment goes to a partner that is in its place by then. A fragment that
     /// already lies there, by a fit that holds, has none.
     std::vector<PlanMatch> placed;
-    /// Shown fragments that stay and that no fit connects to the largest part, each with the best that was refused; its
+    /// Shown fragments that stay and that no fit connects to the first part, each with the best that was refused; its
     /// partner is none when nothing was near to a fit.
     std::vector<PlanMatch> stays;
-    std::vector<std::vector<int>> parts;  ///< of the shown fragments, the largest first
+    /// Per entry of `stays`: its faces may fit a part, and nothing was tried because both are locked.
+    std::vector<bool> is_locked_apart;
+    /// Of the shown fragments. The one that stands is first: what is locked, else the largest connected part of the
+    /// plan, else the most fragments, of which the largest.
+    std::vector<std::vector<int>> parts;
     std::vector<FragmentResidual> residuals;  ///< per fragment
     std::vector<PlanOverlap> overlaps;  ///< shown fragments that lie in each other in the end
 };

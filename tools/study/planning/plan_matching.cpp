@@ -6,6 +6,7 @@
 #include "dsp/fit/as_scanned.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "tools/study/bones/intact_side.hpp"
+#include "tools/study/planning/plan_overlaps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -210,8 +211,12 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
         fit::SurfaceGap gap = fit::gap_between(a.bone.points, at, b.map, bt);
-        if (!pair && !(gap.facing_area > 5e-6)) return;
-        found.push_back({i, j, std::move(gap), fit::overlap_volume(a.bone.distance, at, b.map, bt)});
+        const double overlap = fit::overlap_volume(a.bone.distance, at, b.map, bt);
+        // The points of a large bone may reach less deep into a small one than the other way round.
+        if (gap.deepest > 0.0 || overlap > 0.0) gap.deepest = deepest_between(a, at, b, bt);
+        // What lies deep inside of another does not face it.
+        if (!pair && !(gap.facing_area > 5e-6) && !(overlap > 5e-9)) return;
+        found.push_back({i, j, std::move(gap), overlap});
     };
     if (pair) look(pair->first, pair->second);
     else

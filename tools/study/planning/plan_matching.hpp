@@ -99,7 +99,7 @@ struct PlanGap {
     fit::SurfaceGap gap;
     double overlap = 0.0;  ///< m³
 };
-/// Gaps of one pair, or of all visible pairs that face each other. Throws Error.
+/// Gaps of one pair, or of all visible pairs that face each other or lie in each other. Throws Error.
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair);
 

@@ -161,6 +161,9 @@ TEST_CASE("gap and overlap of two balls are those of the formula") {
     const fit::SurfaceGap deep = fit::gap_between(points, inside, map, {});
     CHECK(deep.deepest == Approx(1.82 * mm).epsilon(0.02));
     CHECK(deep.contact_area > 60e-6);
+    // 12 mm apart they do not face each other in the middle, and are 8 mm deep there all the same.
+    const Pose deeper{Vec3(12.0, 0.0, 0.0) * mm, {1.0, 0.0, 0.0, 0.0}};
+    CHECK(fit::gap_between(points, deeper, map, {}).deepest == Approx(7.8 * mm).epsilon(0.04));
     // Far from the origin the numbers are the same.
     const Pose far{Vec3(1.0, 2.0, -1.0), rotation_by({0.3, 0.2, 0.1})};
     CHECK(fit::overlap_volume(still, far * inside, map, far) == Approx(caps).epsilon(0.03));

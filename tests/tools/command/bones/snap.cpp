@@ -4,6 +4,7 @@
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
+#include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -133,6 +134,22 @@ TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itse
     REQUIRE(far.code == 0);
     CHECK(area(json::parse(far.out)) == Approx(wanted).epsilon(0.25));
     CHECK(folder.tactus("fracture-surface " + file("bar.vdb") + " -o " + file("n.json") + " --mirror").code == 2);
+}
+
+TEST_CASE("an unbroken bone that does not lie on the fragment is said, with the next step", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(bar(), file("bar.vdb"));
+    folder.write("other.stl", test::box_stl(Vec3(0.0, 0.0, 0.0), Vec3(60.0, 60.0, 60.0)));
+    const std::string verb =
+        "fracture-surface " + file("bar.vdb") + " -o " + file("p.json") + " --intact " + file("other.stl");
+    const Outcome doubted = folder.tactus(verb);
+    INFO(doubted.out << doubted.err);
+    CHECK(doubted.code == 1);
+    CHECK(doubted.out.find("! the unbroken bone lies more than 2 mm away from half of the fragment") !=
+          std::string::npos);
+    CHECK(doubted.out.find("--main") != std::string::npos);
+    CHECK(json::parse(folder.tactus(verb + " --json").out)["intact"]["doubt"].is_string());
 }
 
 TEST_CASE("snap and fracture refuse what they cannot use with one clear line", "[slow]") {

@@ -3,6 +3,8 @@
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/tools/bar.hpp"
+#include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -166,4 +168,39 @@ TEST_CASE("where the middle piece is missing the others stay apart, and what is 
     CHECK(says(apart.out, "stays apart: "));
     CHECK(says(apart.out, "connected to nothing: "));
     for (const char* name : {"f1", "f2", "f3"}) CHECK(glm::length(fibula.planned(name).position) == 0.0);
+}
+
+TEST_CASE("a locked fragment is said to be held by its lock only when its partner is locked too", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(test::bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    folder.write("box.stl", test::box_stl(Vec3(50.0, -5.0, -8.0), Vec3(58.0, 5.0, 8.0)));
+    const std::string plan = file("case.plan.json");
+    const auto run = [&](const std::string& verb, const std::string& rest = "") {
+        return folder.tactus("plan " + verb + " " + plan + " " + rest);
+    };
+    REQUIRE(
+        run("new", "one=" + file("f/fragment_01.vdb") + " two=" + file("f/fragment_02.vdb") + " box=" + file("box.stl"))
+            .code == 0);
+    // Nothing fits the box, which stands: the others may move, so no lock is to blame.
+    REQUIRE(run("lock", "box").code == 0);
+    const Outcome apart = run("assemble");
+    INFO(apart.out);
+    CHECK(apart.code == 1);
+    CHECK_FALSE(says(apart.out, "box stays apart"));
+    CHECK_FALSE(says(apart.out, "and so is what it would go to"));
+    CHECK(says(apart.out, " stay apart: "));
+    CHECK(says(apart.out, ": fit, 1 face, score "));
+    CHECK(says(apart.out, " over 1 pair of faces, "));
+    REQUIRE(run("undo", "--steps 2").code == 0);
+    REQUIRE(run("hide", "box").code == 0);
+    REQUIRE(run("lock", "one two").code == 0);
+    const Outcome held = run("assemble");
+    INFO(held.out);
+    CHECK(held.code == 1);
+    CHECK(says(held.out, "it is locked, and so is what it would go to"));
+    REQUIRE(run("unlock", "two").code == 0);
+    CHECK(run("assemble").code == 0);
 }

@@ -128,6 +128,25 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     CHECK(row.run("check").code == 0);
 }
 
+TEST_CASE("a plan is not finished while a fragment lies in another", "[slow]") {
+    const Row row;
+    // Two millimetres deep, though every fragment is connected by a fit that holds.
+    row.fit("b", "a", "-3,0,0,1,0,0,0");
+    row.fit("c", "b", "-4,0,0,1,0,0,0");
+    row.fit("d", "c", "-5,0,0,1,0,0,0");
+    const Outcome deep = row.run("check");
+    INFO(deep.out);
+    CHECK(deep.code == 1);
+    CHECK(says(deep.out, "'a' and 'b' lie in each other with "));
+    CHECK_FALSE(says(deep.out, "'b' and 'c'"));
+    CHECK_FALSE(says(deep.out, "none lies in another"));
+    const json told = json::parse(row.run("check", "--json").out);
+    CHECK(told["ok"] == false);
+    CHECK(told["problems"].size() == 1);
+    REQUIRE(row.run("hide", "a").code == 0);
+    CHECK(row.run("check").code == 0);
+}
+
 TEST_CASE("a fit to the healthy side is refused where the plan has none") {
     const Row row;
     for (const char* verb : {"snap", "settle", "assemble"}) {
@@ -150,6 +169,49 @@ TEST_CASE("a gap between fragments that do not face each other is not told as a 
     CHECK(pair["gap_median_mm"].is_null());
     CHECK(pair["gap_p95_mm"].is_null());
     CHECK(json::parse(row.run("gap", "c d --json").out)[0]["gap_median_mm"].get<double>() == Approx(1.0).margin(0.1));
+}
+
+TEST_CASE("a fragment deep inside of another is told by its overlap, though no surfaces face each other", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    folder.write("large.stl", test::box_stl(Vec3(0.0, 0.0, 0.0), Vec3(24.0, 24.0, 24.0)));
+    folder.write("small.stl", test::box_stl(Vec3(5.0, 5.0, 5.0), Vec3(19.0, 19.0, 19.0)));
+    const std::string plan = file("case.plan.json");
+    REQUIRE(folder.tactus("plan new " + plan + " " + file("large.stl") + " " + file("small.stl")).code == 0);
+    const Outcome gap = folder.tactus("plan gap " + plan);
+    INFO(gap.out << gap.err);
+    CHECK(says(gap.out, "large and small: do not face each other within 3 mm; 27"));
+    CHECK_FALSE(says(gap.out, "no two shown fragments"));
+    // The small one's points are deep in the large one; those of the large one are nowhere in the small one.
+    CHECK(json::parse(folder.tactus("plan gap " + plan + " --json").out)[0]["deepest_mm"].get<double>() > 4.0);
+    CHECK(folder.tactus("plan check " + plan).code == 1);
+}
+
+TEST_CASE("a healthy side that does not lie on the fragment is said to be none, and nothing moves to it", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(test::bar(), file("bar.vdb"));
+    folder.write("a.stl", test::box_stl(Vec3(30.0, 0.0, 0.0), Vec3(40.0, 12.0, 14.0)));
+    folder.write("other.stl", test::box_stl(Vec3(0.0, 0.0, 0.0), Vec3(60.0, 60.0, 60.0)));
+    const std::string plan = file("case.plan.json");
+    REQUIRE(folder.tactus("plan new " + plan + " " + file("bar.vdb") + " " + file("a.stl")).code == 0);
+    const Outcome laid = folder.tactus("plan mirror " + plan + " " + file("other.stl") + " bar a --settle");
+    INFO(laid.out << laid.err);
+    CHECK(laid.code == 1);
+    CHECK(says(laid.out, "! the mirrored side lies more than 2 mm away from half of 'bar'"));
+    const json shown = json::parse(folder.tactus("plan show " + plan + " --json").out);
+    CHECK(shown["fragments"][1]["pose"]["position_mm"] == json::array({0.0, 0.0, 0.0}));
+    CHECK(shown["steps_in_all"] == 1);
+}
+
+TEST_CASE("a plan of which nothing is shown is not finished", "[slow]") {
+    const Row row;
+    REQUIRE(row.run("hide", "a b c d").code == 0);
+    const Outcome check = row.run("check");
+    INFO(check.out);
+    CHECK(check.code == 1);
+    CHECK(says(check.out, "no fragment is shown; show some with 'tactus plan unhide'"));
+    CHECK(row.run("assemble").code == 2);
 }
 
 TEST_CASE("a pose too far away for a body is refused, and the plan is as it was", "[slow]") {
