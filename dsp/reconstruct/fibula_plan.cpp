@@ -236,6 +236,10 @@ void measure_faces(FibulaPlan& plan, const FibulaInputs& inputs, const Cuts& cut
         for (std::size_t end = 0; end < 2; ++end) {
             s.area[end] = overlap_area(cuts[n][end], cuts[n][end], s.donor_plane[end]);
             *plan.kerf_loss += *s.area[end] * inputs.kerf;
+            double farthest = 0.0;
+            for (const Vec3& p : cuts[n][end].points)
+                farthest = std::max(farthest, glm::length(p - s.donor_plane[end].origin));
+            s.farthest[end] = farthest;
         }
         if (n + 1 == plan.segments.size()) continue;
         const FibulaSegment& after = plan.segments[n + 1];
