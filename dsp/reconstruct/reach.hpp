@@ -30,11 +30,12 @@ struct SiteReach {
     double in_situ = 0.0;  ///< m: the pedicle's length in the leg
     double free = 0.0;     ///< m: cut free, rope::free_over_in_situ of it
     double path = 0.0;  ///< m: the shortest way from the bone to the site that keeps the vessel's radius from bone
-    bool is_settled = true;  ///< the way stands still to 0.1 %
+    bool is_settled = true;  ///< the way stands still to 0.1 %, outside of bone
     double slack = 0.0;  ///< m: free - path; 0 when the path is longer
     double strain = 0.0;  ///< path / free - 1; 0 when slack
     std::optional<double> tension;  ///< N, of an artery: rope::artery() at this strain; a vein has reach only
-    double bend_radius = 0.0;  ///< m: least over 10 mm of vessel, with the last 10 mm on the bone
+    double bend_radius = 0.0;  ///< m: least over 10 mm of the shortest way and the last 10 mm on the bone; a slack
+        ///< vessel can be laid in a wider bend
     std::optional<double>
         twist;  ///< rad: the vein's side of the artery at the site against the side that is carried along
         ///< from the bone (Bishop frame), for an artery with a vein at hand
@@ -62,6 +63,8 @@ struct FlapMeasures {
     std::vector<FlapWarning> warnings;
 };
 
+Reach reach_at(double strain, const FlapLimits& limits);
+
 /// The reach in `all` of that vessel that is best: least strain, then most slack. None: null.
 const SiteReach* best_of(std::span<const SiteReach> all, const std::string& vessel);
 
@@ -69,5 +72,8 @@ const SiteReach* best_of(std::span<const SiteReach> all, const std::string& vess
 /// Allocates.
 FlapMeasures measure_flap(const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap,
                           const rope::Obstacle* bone, std::span<const Vec3> tumour = {});
+
+/// Fills `warnings` from the other measures; measure_flap has done so.
+void add_warnings(FlapMeasures& measures, const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap);
 
 }  // namespace tactus::reconstruct
