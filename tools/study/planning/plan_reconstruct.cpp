@@ -8,6 +8,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/bodies.hpp"
 #include "dsp/reconstruct/cut.hpp"
+#include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -130,9 +131,9 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
         cut = cut_jaw(inputs, plan);
     } catch (const Error& error) {
         const bool misses = error.message().find("misses") != std::string::npos;
-        throw Error(fmt::format("the jaw: {}{}", error.message(),
-                                misses ? "; for a jaw that is resected already, the inputs need \"resection\": \"none\""
-                                       : ""));
+        throw Error(
+            fmt::format("the jaw: {}{}", error.message(),
+                        misses ? "; for a jaw that is resected already, the inputs need \"resection\": \"none\"" : ""));
     }
     std::vector<Piece> kept;
     std::vector<const RestPiece*> loose;
@@ -161,13 +162,6 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
     for (std::size_t n = 0; n < loose.size(); ++n) append(*goes_to[n], loose[n]->surface);
     if (!cut.between.triangles.empty()) pieces.push_back({"resected", std::move(cut.between), CutBy::none});
     for (Piece& piece : kept) pieces.push_back(std::move(piece));
-}
-
-/// Where a mesh lies as seen from the plan, and the hash of its bytes.
-reconstruct::MeshFile mesh_file(const fs::path& file, const fs::path& folder) {
-    cases::CasePlan none;
-    cases::add_fragment(none, "mesh", file, folder, Vec3(0.0));
-    return {none.fragments[0].file, none.fragments[0].hash};
 }
 
 cases::PlanStep step_that_holds(const reconstruct::ReconstructionInputs& given, const fs::path& folder) {
