@@ -53,14 +53,21 @@ private:
     }
 
     void of_perforators() {
+        double low = infinity, high = -infinity;
+        for (const FibulaSegment& s : plan_.segments)
+            for (const double along : s.along_line) low = std::min(low, along), high = std::max(high, along);
         for (const Perforator& p : flap_.perforators) {
             const std::string name = fmt::format("perforator '{}'", p.name);
             const double away = distance_to_cuts(plan_, p.at);
-            if (segment_at(plan_, p.at) == plan_.segments.size())
-                add(FlapTrouble::perforator_lost,
-                    fmt::format("{} leaves the donor {:.1f} mm outside of the kept segments", name, away / mm), name,
-                    "", away);
-            else if (away < flap_.limits.perforator_to_cut - 1e-9)
+            if (segment_at(plan_, p.at) == plan_.segments.size()) {
+                // Those beyond the flap stay in the leg.
+                const double along = glm::dot(p.at - inputs_.line_point, glm::normalize(inputs_.line_direction));
+                if (along > low && along < high)
+                    add(FlapTrouble::perforator_lost,
+                        fmt::format("{} lies in the wedge between two segments, {:.1f} mm from the nearest one", name,
+                                    away / mm),
+                        name, "", away);
+            } else if (away < flap_.limits.perforator_to_cut - 1e-9)
                 add(FlapTrouble::perforator_on_cut,
                     fmt::format("{} lies {:.1f} mm from an osteotomy, less than {:.1f} mm: move the cut by {:.1f} mm",
                                 name, away / mm, flap_.limits.perforator_to_cut / mm,

@@ -11,7 +11,7 @@ enum class FlapTrouble {
     near_vessel,     ///< a plate, screw or implant
     near_hardware,   ///< plates, screws, implants
     perforator_on_cut,
-    perforator_lost,  ///< its bone is not kept
+    perforator_lost,  ///< its bone is in a wedge
     paddle_without_perforator,
     tumour_margin,
     no_artery,
