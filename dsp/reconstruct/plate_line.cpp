@@ -115,12 +115,17 @@ private:
             const Vec3 next = place + (k == 0 ? first_station : set_.screw_spacing) * along;
             const Section section = section_of(*in_.jaw, {next, along}, &next);
             if (section.points.empty() || section.away > farthest_from_limb) break;
-            const Vec3 out = outward_at(section.centre, along);
-            const auto point = farthest(section, section.centre, out, along);
+            // Straight on as long as there is bone, else at the height of the limb's middle.
+            Vec3 out = outward_at(next, along);
+            auto point = farthest(section, next, out, along);
+            if (!point) {
+                out = outward_at(section.centre, along);
+                point = farthest(section, section.centre, out, along);
+            }
             if (!point) break;
             all.push_back({*point, out});
-            // The limb bends: half of the way follows its middle.
-            const Vec3 on = 0.5 * (next + section.centre);
+            // The limb bends: a part of the way follows its middle.
+            const Vec3 on = next + 0.2 * (section.centre - next);
             along = glm::normalize(on - place);
             place = on;
         }

@@ -136,7 +136,7 @@ constexpr const char* view_names[] = {"seen from the front; up: medial", "seen f
 
 Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                      const reconstruct::Flap& flap) {
-    constexpr double width = 900.0, left = 20.0, high = 190.0;
+    constexpr double width = 900.0, left = 20.0, high = 230.0;
     Figure figure(width, 2.0 * high + 20.0);
     const std::array<BoneView, 2> views = views_of(inputs);
     const double length = views[0].station.back(), pixels = (width - 2.0 * left) / length;
@@ -177,8 +177,8 @@ Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct:
         for (std::size_t n = 0; n < dimensions.size(); ++n) {
             const auto& [at, name] = dimensions[n];
             const FigurePoint foot = place.point(at, 0.0);
-            const double low = place.middle + 44.0 + 15.0 * static_cast<double>(n % 3);
-            figure.line({{foot.x, place.middle + 28.0}, {foot.x, low - 10.0}}, soft, 0.7);
+            const double low = place.middle + 84.0 + 15.0 * static_cast<double>(n % 3);
+            figure.line({{foot.x, place.middle + 30.0}, {foot.x, low - 10.0}}, soft, 0.7);
             figure.text({foot.x, low}, fmt::format("{}: {:.1f} mm", name, at * to_mm), 10.0, ink,
                         display::TextAnchor::middle);
         }

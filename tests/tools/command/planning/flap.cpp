@@ -152,6 +152,18 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
     CHECK((!hidden("segment-1") && hidden("segment-1-reversed") && hidden("resected")));
     CHECK(made.folder.tactus("plan reconstruct " + made.plan + " " + file + " --alternative reversed").code == 2);
 
+    // For 3D Slicer: the planes map to each other by the transforms that are exported.
+    REQUIRE(made.folder.tactus("plan export " + made.plan + " -o " + (made.folder.path / "out").string()).code == 0);
+    for (const char* file : {"segment-1.stl", "segment-1.tfm", "fibula-cut-1-2.mrk.json", "jaw-plane-2.mrk.json",
+                             "vessel-artery-on-bone.mrk.json", "vessel-artery-pedicle.mrk.json", "sites.mrk.json"})
+        CHECK(fs::exists(made.folder.path / "out" / file));
+    const json cut = json::parse(test::slurp(made.folder.path / "out" / "jaw-plane-2.mrk.json"))["markups"][0];
+    CHECK(cut["type"] == "Plane");
+    CHECK(cut["coordinateSystem"] == "LPS");
+    const json origin = made.inputs()["mandible_planes"][1]["origin"];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        CHECK(cut["center"][axis].get<double>() == Approx(origin[axis].get<double>()).margin(1e-9));
+
     const fs::path page = made.folder.path / "case.html", pdf = made.folder.path / "case.pdf";
     const test::Outcome reported = made.folder.tactus("plan report " + made.plan + " --pdf " + pdf.string());
     if (reported.err.find("OpenGL") != std::string::npos) return;
