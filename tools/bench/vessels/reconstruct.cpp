@@ -157,12 +157,18 @@ int optimal(int curves) {
     return found;
 }
 
+struct Published {
+    bool is_there = false;
+    double distance = 0.0, angle = 0.0;  // mm, degrees
+};
+
 /// Greatest distance (mm) and angle (degrees) of the rims of the published pieces from the planes of the jaw, when the
 /// pieces are mapped by our transforms.
-std::optional<std::array<double, 2>> published(const fs::path& folder) {
+Published published(const fs::path& folder) {
     if (!fs::exists(folder / "brp_plan_inputs.json")) return {};
     FibulaInputs in = read_fibula_inputs(folder / "brp_plan_inputs.json");
-    std::array<double, 2> worst{0.0, 0.0};
+    Published worst;
+    worst.is_there = true;
     std::vector<std::array<std::vector<Vec3>, 2>> rims;
     const Vec3 axis = glm::normalize(in.line_direction);
     for (int n = 0; n < 3; ++n) {
@@ -198,36 +204,38 @@ std::optional<std::array<double, 2>> published(const fs::path& folder) {
                     if (glm::length(cross) > glm::length(fitted)) fitted = cross;
                 }
             const double cosine = std::abs(glm::dot(s.donor_to_target.rotate(glm::normalize(fitted)), normal));
-            worst[1] = std::max(worst[1], std::acos(std::min(1.0, cosine)) * 180.0 / std::numbers::pi);
+            worst.angle = std::max(worst.angle, std::acos(std::min(1.0, cosine)) * 180.0 / std::numbers::pi);
             for (const Vec3& p : rims[n][end])
-                worst[0] = std::max(
-                    worst[0], 1e3 * std::abs(glm::dot(s.donor_to_target.apply(p) - in.planes[n + end].origin, normal)));
+                worst.distance =
+                    std::max(worst.distance,
+                             1e3 * std::abs(glm::dot(s.donor_to_target.apply(p) - in.planes[n + end].origin, normal)));
         }
     return worst;
 }
 
 int run(bool json) {
     const char* const data = std::getenv("TACTUS_SHARED_DATA");
-    const auto golden = data ? published(fs::path(data) / "foff") : std::nullopt;
+    const Published golden = data ? published(fs::path(data) / "foff") : Published{};
     std::size_t triangles = 0;
     const Times dragged = drag(triangles), rank = ranking();
     const int best = optimal(100);
     if (json) {
-        fmt::print("{}\n",
-                   file::Json{{"published_distance_mm", golden ? file::Json((*golden)[0]) : file::Json(nullptr)},
-                              {"published_angle_deg", golden ? file::Json((*golden)[1]) : file::Json(nullptr)},
-                              {"drag_triangles", triangles},
-                              {"drag_median_ms", dragged.median},
-                              {"drag_p95_ms", dragged.p95},
-                              {"rank_median_ms", rank.median},
-                              {"rank_p95_ms", rank.p95},
-                              {"optimal_of_100", best}}
-                       .dump(2));
+        fmt::print(
+            "{}\n",
+            file::Json{{"published_distance_mm", golden.is_there ? file::Json(golden.distance) : file::Json(nullptr)},
+                       {"published_angle_deg", golden.is_there ? file::Json(golden.angle) : file::Json(nullptr)},
+                       {"drag_triangles", triangles},
+                       {"drag_median_ms", dragged.median},
+                       {"drag_p95_ms", dragged.p95},
+                       {"rank_median_ms", rank.median},
+                       {"rank_p95_ms", rank.p95},
+                       {"optimal_of_100", best}}
+                .dump(2));
         return done;
     }
-    if (golden)
-        fmt::print("published plan: rims meet the planes of the jaw within {:.4f} mm and {:.4f}°\n", (*golden)[0],
-                   (*golden)[1]);
+    if (golden.is_there)
+        fmt::print("published plan: rims meet the planes of the jaw within {:.4f} mm and {:.4f}°\n", golden.distance,
+                   golden.angle);
     else fmt::print("published plan: skipped, TACTUS_SHARED_DATA names no folder with foff/brp_plan_inputs.json\n");
     fmt::print("a plane dragged, four planes, {} triangles: median {:.1f} ms, p95 {:.1f} ms of processor time\n",
                triangles, dragged.median, dragged.p95);
