@@ -3,6 +3,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -16,15 +17,16 @@ namespace tactus::cases {
 
 namespace {
 
-constexpr std::string_view kinds[] = {"place", "group",  "add",  "remove", "ungroup",
-                                      "lock",  "unlock", "hide", "show",   "mirror"};
+constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",    "lock",
+                                      "unlock", "hide",  "show", "mirror", "reconstruct"};
 
 [[noreturn]] void refuse(const PlanStep& step, const std::string& why) {
     throw Error(fmt::format("step '{}': {}", name_of(step.kind), why));
 }
 
 void check_fragments(const CasePlan& plan, const PlanStep& step) {
-    if (step.fragments.empty() && step.kind != StepKind::ungroup && step.kind != StepKind::mirror)
+    if (step.fragments.empty() && step.kind != StepKind::ungroup && step.kind != StepKind::mirror &&
+        step.kind != StepKind::reconstruct)
         refuse(step, "names no fragment");
     for (std::size_t n = 0; n < step.fragments.size(); ++n) {
         const int fragment = step.fragments[n];
@@ -66,6 +68,19 @@ void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     a.fit(step.fragments[0], partner == plan.fragments.end() ? fit::Arrangement::none
                                                              : static_cast<int>(partner - plan.fragments.begin()));
     state.fits[static_cast<std::size_t>(step.fragments[0])] = step.fit;
+}
+
+void reconstruct(const CasePlan& plan, const PlanStep& step, PlanState& state) {
+    if (!step.reconstruction) refuse(step, "has no reconstruction");
+    fit::Arrangement& a = state.arrangement;
+    if (state.pieces != step.fragments)
+        for (const int piece : step.fragments) a.hide(piece, false);
+    for (const PlanStep& other : plan.steps)
+        if (other.kind == StepKind::reconstruct && other.fragments != step.fragments)
+            for (const int piece : other.fragments)
+                if (std::ranges::find(step.fragments, piece) == step.fragments.end()) a.hide(piece, true);
+    state.reconstruction = step.reconstruction;
+    state.pieces = step.fragments;
 }
 
 void forget_groups_that_are_gone(PlanState& state) {
@@ -131,6 +146,7 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
             if (!step.mirror) refuse(step, "has no target");
             state.mirror = step.mirror;
             break;
+        case StepKind::reconstruct: reconstruct(plan, step, state); break;
     }
     forget_groups_that_are_gone(state);
 }
@@ -139,8 +155,12 @@ namespace {
 
 PlanState as_scanned(const CasePlan& plan) {
     const fit::Arrangement arrangement(plan.fragments.size());
-    return {arrangement, std::vector<std::string>(arrangement.most_groups()),
-            std::vector<std::optional<PlanFit>>(plan.fragments.size()), std::nullopt};
+    return {arrangement,
+            std::vector<std::string>(arrangement.most_groups()),
+            std::vector<std::optional<PlanFit>>(plan.fragments.size()),
+            std::nullopt,
+            {},
+            {}};
 }
 
 }  // namespace
@@ -270,7 +290,13 @@ std::vector<std::string> changed_files(const CasePlan& plan, const std::filesyst
     };
     for (const PlanFragment& fragment : plan.fragments)
         look("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
-    if (const auto mirror = state_of(plan).mirror) look("mirror target", mirror->file, mirror->hash);
+    const PlanState state = state_of(plan);
+    if (state.mirror) look("mirror target", state.mirror->file, state.mirror->hash);
+    if (const auto& all = state.reconstruction) {
+        look("donor", all->donor.file, all->donor.hash);
+        if (all->jaw) look("jaw", all->jaw->file, all->jaw->hash);
+        if (all->tumour) look("tumour", all->tumour->file, all->tumour->hash);
+    }
     return problems;
 }
 

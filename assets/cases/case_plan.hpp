@@ -10,10 +10,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace tactus::reconstruct {
+struct Reconstruction;
+}
 
 namespace tactus::cases {
 
@@ -42,7 +47,19 @@ struct PlanFit {
     double overlap = 0.0;  ///< m²
 };
 
-enum class StepKind : std::uint8_t { place, group, add, remove, ungroup, lock, unlock, hide, show, mirror };
+enum class StepKind : std::uint8_t {
+    place,
+    group,
+    add,
+    remove,
+    ungroup,
+    lock,
+    unlock,
+    hide,
+    show,
+    mirror,
+    reconstruct
+};
 std::string_view name_of(StepKind kind);
 
 /// A step. Fragments are referred to by their index in the plan.
@@ -57,6 +74,8 @@ struct PlanStep {
     std::string group;  ///< name of the group concerned
     std::optional<PlanFit> fit;
     std::optional<MirrorTarget> mirror;
+    /// The whole reconstruction of a jaw; `fragments` are its pieces.
+    std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};
 };
 
 /// A named path through the steps.
@@ -84,6 +103,8 @@ struct PlanState {
     std::vector<std::string> group_names;  ///< per group of the arrangement, "" for an unnamed one
     std::vector<std::optional<PlanFit>> fits;  ///< per fragment: its last fit, which may be void
     std::optional<MirrorTarget> mirror;
+    std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the last one; null: none
+    std::vector<int> pieces{};  ///< the fragments of the reconstruction
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;
@@ -95,7 +116,8 @@ struct PlanState {
 PlanState state_of(const CasePlan& plan, int head);
 PlanState state_of(const CasePlan& plan);
 
-/// Applies a step to `state`. Throws Error when the step is not valid there.
+/// Applies a step to `state`. A step `reconstruct` hides the pieces of all other reconstructions of the plan, which
+/// belong to other alternatives. Throws Error when the step is not valid there.
 void apply(const CasePlan& plan, const PlanStep& step, PlanState& state);
 
 /// Calls visit(number, from, to) for every step of the tree, with the states before and after it; a step comes after

@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -65,6 +66,7 @@ Json json_of(const CasePlan& plan, const PlanStep& step) {
     if (!step.group.empty()) json["group"] = step.group;
     if (step.fit) json["fit"] = json_of(*step.fit);
     if (step.mirror) json["mirror"] = json_of(*step.mirror);
+    if (step.reconstruction) json["reconstruction"] = reconstruct::json_of(*step.reconstruction);
     return json;
 }
 
@@ -85,6 +87,8 @@ public:
         throw Error(fmt::format("{}: {} {}", file_, where_.empty() ? "the plan" : where_, what));
     }
     bool has(const char* key) const { return json_.contains(key); }
+    /// The place of a member, for messages.
+    std::string place(const char* key) const { return fmt::format("{}: {}", file_, inside(key)); }
     const Json& at(const char* key) const {
         const auto found = json_.find(key);
         if (!found) fail(fmt::format("has no '{}'", key));
@@ -164,7 +168,7 @@ MirrorTarget read_mirror(const Item& item) {
 
 StepKind read_kind(const Item& item) {
     const std::string name = item.text("kind");
-    for (int n = 0; n <= static_cast<int>(StepKind::mirror); ++n)
+    for (int n = 0; n <= static_cast<int>(StepKind::reconstruct); ++n)
         if (name == name_of(static_cast<StepKind>(n))) return static_cast<StepKind>(n);
     item.fail(fmt::format("has the unknown kind '{}'", name));
 }
@@ -193,6 +197,9 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
     }
     if (item.has("fit")) step.fit = read_fit(item.item("fit"));
     if (item.has("mirror")) step.mirror = read_mirror(item.item("mirror"));
+    if (item.has("reconstruction"))
+        step.reconstruction = std::make_shared<reconstruct::Reconstruction>(
+            reconstruct::reconstruction_of(item.at("reconstruction"), item.place("reconstruction")));
     return step;
 }
 

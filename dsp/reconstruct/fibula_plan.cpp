@@ -2,6 +2,7 @@
 #include "dsp/reconstruct/fibula_plan.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/reconstruct/slabs.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -109,6 +110,7 @@ struct Donor {
     Vec3 axis;
     Mat3 frame{1.0};
     std::optional<geometry::TriangleSurface> bone;  ///< the parts of the donor's surface that the line follows
+    std::optional<Slabs> slabs;  ///< of the bone
     Extent whole{};
 
     explicit Donor(const FibulaInputs& inputs_)
@@ -122,14 +124,17 @@ struct Donor {
         if (!inputs.donor) return;
         bone = parts_near_line(*inputs.donor, inputs.line_point, axis, inputs.farthest_from_line);
         for (const Vec3& v : bone->vertices) whole.add(along(v));
+        slabs.emplace(*bone, inputs.line_point, axis);
     }
+    Donor(const Donor&) = delete;
+    Donor& operator=(const Donor&) = delete;
 
     double along(const Vec3& p) const { return glm::dot(p - inputs.line_point, axis); }
     Vec3 at(double s) const { return inputs.line_point + s * axis; }
 
     /// Throws Error when the plane does not meet the bone round the line.
     Section section(const Plane& plane, std::size_t segment) const {
-        Section found = section_of(*bone, plane, &plane.origin);
+        Section found = slabs->section(plane, &plane.origin);
         const double s = along(plane.origin);
         if (found.points.empty())
             throw Error(
@@ -182,7 +187,7 @@ double start_for(const JawSide& jaw, const Donor& donor, std::size_t n, double l
     double start = low;
     for (int round = 0; round < 30; ++round) {
         const Plane plane = segment_at(jaw, donor, n, start).donor_plane[0];
-        const Section section = section_of(*donor.bone, plane, &plane.origin);
+        const Section section = donor.slabs->section(plane, &plane.origin);
         // Just below the bone's end there is no section yet.
         const double change = section.points.empty() ? 1.0 * mm : low - donor.extent(section).low;
         start += change;
@@ -236,6 +241,10 @@ void measure_faces(FibulaPlan& plan, const FibulaInputs& inputs, const Cuts& cut
         for (std::size_t end = 0; end < 2; ++end) {
             s.area[end] = overlap_area(cuts[n][end], cuts[n][end], s.donor_plane[end]);
             *plan.kerf_loss += *s.area[end] * inputs.kerf;
+            double farthest = 0.0;
+            for (const Vec3& p : cuts[n][end].points)
+                farthest = std::max(farthest, glm::length(p - s.donor_plane[end].origin));
+            s.farthest[end] = farthest;
         }
         if (n + 1 == plan.segments.size()) continue;
         const FibulaSegment& after = plan.segments[n + 1];

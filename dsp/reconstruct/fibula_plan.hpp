@@ -64,6 +64,7 @@ struct FibulaSegment {
     std::array<double, 2> tilt{};  ///< rad, between each plane's normal and the axis
     std::array<double, 2> lean_medial{}, lean_anterior{};  ///< rad: each cut's tilt seen along the other of the two
     std::array<std::optional<double>, 2> area{};  ///< m², of each cut, without the marrow cavity
+    std::array<std::optional<double>, 2> farthest{};  ///< m: of each cut's outline from where the line meets the plane
     double end_angle = 0.0;  ///< rad, between its two planes
     std::array<double, 2> along_line{};  ///< m, where the line meets its planes, from line_point; falls when reversed
     std::array<Plane, 2> donor_plane;  ///< normals along the line

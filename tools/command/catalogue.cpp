@@ -65,7 +65,13 @@
     X(plan_export, planning)      \
     X(plan_report, planning)      \
     X(plan_fibula, planning)      \
-    X(plan_reconstruct, planning)
+    X(plan_reconstruct, planning) \
+    X(plan_plate, planning)       \
+    X(plan_implant, planning)     \
+    X(plan_vessel, planning)      \
+    X(plan_site, planning)        \
+    X(plan_margin, planning)      \
+    X(plan_reach, planning)
 
 namespace tactus::command {
 

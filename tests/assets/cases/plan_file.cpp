@@ -2,6 +2,7 @@
 #include "assets/cases/plan_file.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
@@ -216,4 +217,110 @@ TEST_CASE("a file that is gone or has changed since is named, and names of fragm
                Catch::Matchers::ContainsSubstring("has changed since the plan was made"));
     std::filesystem::remove(file);
     CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Matchers::ContainsSubstring("is missing"));
+}
+
+namespace {
+
+/// A reconstruction with something of each kind, and numbers that have no short decimals.
+reconstruct::Reconstruction jaw_of(double third) {
+    reconstruct::Reconstruction all;
+    reconstruct::FibulaInputs& in = all.inputs;
+    in.planes = {{{third, 0.0, 0.0}, Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0)},
+                 {{0.04, third, 0.0}, {}, {}},
+                 {{0.08, 0.0, 0.0}, Vec3(0.6, 0.8, 0.0), {}}};
+    in.line_point = {0.0, third, -0.1};
+    in.leg = reconstruct::Leg::right;
+    in.along_line = {0.08 + third, 0.12};
+    in.roll = 1.0 / 3.0;
+    in.reversed = true;
+    in.resection = reconstruct::Resection::after_first;
+    in.from_curve = reconstruct::CurveSplit{{{0.0, 0.0, third}, {0.04, 0.0, 0.0}}, third * 1e-3, 1e-3};
+    all.donor = {"fibula.stl", 5};
+    all.jaw = reconstruct::MeshFile{"jaw.stl", 6};
+    all.tumour = reconstruct::MeshFile{"tumour.stl", 7};
+    all.flap.vessels = {{"a", reconstruct::VesselKind::artery, 1.5e-3, {{0, 0, third}, {0, 0, 0.2}}},
+                        {"v", reconstruct::VesselKind::vein, 2e-3, {{0, 0, 0.1}, {0, third, 0.2}}}};
+    all.flap.perforators = {{"p", {third, 0.0, 0.1}}};
+    all.flap.sites = {{"facial", reconstruct::VesselKind::artery, {0.0, 0.05, third}}};
+    all.flap.plates = {{"plate", 7e-3, 2.5e-3, {{0, 0, 0}, {third, 0, 0}}, {{0, 0, 1}, {0, 0, 1}}, {}}};
+    all.flap.plates[0].screws = {{{0.0, third, 0.0}, {0.0, 0.6, 0.8}, 12e-3, 2e-3}};
+    all.flap.implants = {{"molar", {third, 0.0, 0.0}, {0.0, 0.0, -1.0}, 4e-3, 14e-3}};
+    all.flap.paddle = reconstruct::SkinPaddle{{0.0, third, 0.1}, 0.06, 0.04};
+    all.flap.margin = third;
+    return all;
+}
+
+cases::PlanStep reconstructing(std::vector<int> pieces, double third) {
+    cases::PlanStep step = meaning(cases::StepKind::reconstruct, std::move(pieces));
+    step.reconstruction = std::make_shared<reconstruct::Reconstruction>(jaw_of(third));
+    return step;
+}
+
+}  // namespace
+
+TEST_CASE("a plan carries a whole reconstruction, to the bit, and undo takes it back") {
+    cases::CasePlan plan = four();
+    cases::add_step(plan, reconstructing({0, 1}, 0.1 / 3.0));
+    cases::add_step(plan, reconstructing({0, 1}, 0.1 / 7.0));
+    const cases::CasePlan again = cases::read_plan_text(cases::plan_text(plan), "p");
+    CHECK(cases::plan_text(again) == cases::plan_text(plan));
+    const auto found = cases::state_of(again).reconstruction;
+    REQUIRE(found);
+    const reconstruct::Reconstruction meant = jaw_of(0.1 / 7.0);
+    // Every number of every part is in the text that is compared; here is one of each, against a text that leaves it out.
+    CHECK(found->inputs.planes[1].origin == meant.inputs.planes[1].origin);
+    CHECK_FALSE(found->inputs.planes[1].normal);
+    CHECK(found->inputs.planes[0].y == meant.inputs.planes[0].y);
+    CHECK(found->inputs.along_line == meant.inputs.along_line);
+    CHECK(found->inputs.roll == meant.inputs.roll);
+    CHECK(found->inputs.reversed);
+    CHECK(found->inputs.leg == reconstruct::Leg::right);
+    CHECK(found->inputs.resection == reconstruct::Resection::after_first);
+    CHECK(found->inputs.from_curve->joints == meant.inputs.from_curve->joints);
+    CHECK(found->tumour->hash == 7);
+    CHECK(found->flap.vessels[1].kind == reconstruct::VesselKind::vein);
+    CHECK(found->flap.vessels[1].points == meant.flap.vessels[1].points);
+    CHECK(found->flap.perforators[0].at == meant.flap.perforators[0].at);
+    CHECK(found->flap.sites[0].at == meant.flap.sites[0].at);
+    CHECK(found->flap.plates[0].screws[0].axis == meant.flap.plates[0].screws[0].axis);
+    CHECK(found->flap.implants[0].head == meant.flap.implants[0].head);
+    CHECK(found->flap.paddle->at == meant.flap.paddle->at);
+    CHECK(found->flap.margin == meant.flap.margin);
+    plan.place() = fit::undone(plan.before(), plan.place());
+    CHECK(cases::state_of(plan).reconstruction->flap.margin == 0.1 / 3.0);
+    plan.place() = fit::undone(plan.before(), plan.place());
+    CHECK_FALSE(cases::state_of(plan).reconstruction);
+}
+
+TEST_CASE("each alternative of a reconstruction shows its own pieces") {
+    cases::CasePlan plan = four();
+    cases::add_step(plan, reconstructing({0, 1}, 0.01));
+    cases::add_step(plan, meaning(cases::StepKind::hide, {0}));
+    plan.alternatives.push_back({"other", plan.place()});
+    plan.current = 1;
+    cases::add_step(plan, reconstructing({2, 3}, 0.02));
+    const auto hidden = [&](int n) { return cases::state_of(plan).arrangement.is_hidden(n); };
+    CHECK((hidden(0) && hidden(1) && !hidden(2) && !hidden(3)));
+    plan.current = 0;
+    CHECK((hidden(0) && !hidden(1) && hidden(2) && hidden(3)));
+    // A change of the same pieces, such as a plate that moved, shows nothing that was hidden.
+    cases::add_step(plan, reconstructing({0, 1}, 0.03));
+    CHECK((hidden(0) && !hidden(1) && hidden(2) && hidden(3)));
+}
+
+TEST_CASE("a reconstruction that cannot be is refused with its place") {
+    cases::CasePlan plan = four();
+    cases::add_step(plan, reconstructing({0, 1}, 0.01));
+    const std::string text = cases::plan_text(plan);
+    const auto refused = [&](const std::string& what, const std::string& by, const std::string& says) {
+        CHECK_THROWS_WITH(cases::read_plan_text(replaced(text, what, by), "p"),
+                          Catch::Matchers::ContainsSubstring(says));
+    };
+    refused("\"right\"", "\"middle\"", "must have the 'leg'");
+    refused("\"kind\": \"vein\"", "\"kind\": \"nerve\"", "steps[0].reconstruction: vessels[1] must have");
+    refused("\"radius_m\": 0.0015", "\"radius_m\": -1", "not above 0");
+    refused("\"thickness_m\": 0.0025", "\"thickness_m\": \"thin\"", "not a number");
+    refused("\"name\": \"v\"", "\"name\": \"a\"", "two vessels of the name 'a'");
+    refused("\"reconstruction\": {", "\"rebuilt\": {", "has no reconstruction");
+    refused("\"margin_m\": 0.01", "\"margin_m\": 1e9", "beyond 100 m");
 }

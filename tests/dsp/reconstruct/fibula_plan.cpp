@@ -2,6 +2,8 @@
 #include "dsp/reconstruct/fibula_plan.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/reconstruct/slabs.hpp"
 #include "tests/dsp/reconstruct/donors.hpp"
 #include "tests/support/catch.hpp"
 
@@ -344,4 +346,27 @@ TEST_CASE("dsp: sections overlap by their common area without the marrow cavity"
           Approx(lens).epsilon(0.005));
     for (Vec3& p : aside.points) p.x += 10.0 * mm;
     CHECK(overlap_area(ring, aside, across) == 0.0);
+}
+
+TEST_CASE("sections by slabs are those of the whole surface, to the bit") {
+    const Vec3 from(0.1, 0.05, -0.3), axis = glm::normalize(Vec3(0.1, -0.05, 1.0));
+    const geometry::TriangleSurface leg = lower_leg(from, axis);
+    const Slabs slabs(leg, from, axis);
+    const Random random{12};
+    std::size_t met = 0;
+    for (std::uint64_t n = 0; n < 400; ++n) {
+        const Vec3 lean(random.normal(5 * n), random.normal(5 * n + 1), random.normal(5 * n + 2));
+        const Plane plane{from + (-0.05 + 0.45 * random.uniform(5 * n + 3)) * axis,
+                          glm::normalize(axis + random.uniform(5 * n + 4) * 1.5 * lean)};
+        for (const Vec3* near : {static_cast<const Vec3*>(nullptr), &plane.origin}) {
+            const Section a = section_of(leg, plane, near), b = slabs.section(plane, near);
+            REQUIRE(a.points.size() == b.points.size());
+            CHECK(a.points == b.points);
+            CHECK(a.pieces == b.pieces);
+            CHECK(a.centre == b.centre);
+            CHECK(a.away == b.away);
+            met += !a.points.empty();
+        }
+    }
+    CHECK(met > 300);
 }

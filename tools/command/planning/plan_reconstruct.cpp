@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan reconstruct: cuts jaw and fibula as planned, and makes the plan of the case with the pieces in place.
 #include "tools/study/planning/plan_reconstruct.hpp"
-#include "assets/reconstruct/fibula_inputs.hpp"
+#include "assets/reconstruct/flap_files.hpp"
 #include "tools/command/planning/plan_options.hpp"
 
 #include <fmt/format.h>
@@ -12,14 +12,16 @@ namespace {
 
 struct ReconstructChoice : PlanChoice {
     std::filesystem::path inputs;
+    std::string alternative;
 };
 
 int run(const ReconstructChoice& choice) {
-    const study::Reconstruction made =
-        study::make_reconstruction(reconstruct::read_fibula_inputs(choice.inputs), choice.plan);
+    const study::MadeReconstruction made = study::make_reconstruction(
+        reconstruct::read_reconstruction_inputs(choice.inputs), choice.plan, choice.alternative);
     if (choice.json) return show_change(choice);
     fmt::print("{}:", choice.plan.string());
-    for (const cases::PlanFragment& fragment : made.plan.fragments) fmt::print(" {}", fragment.name);
+    for (const int piece : cases::state_of(made.plan).pieces)
+        fmt::print(" {}", made.plan.fragments[static_cast<std::size_t>(piece)].name);
     fmt::print("\n");
     for (const reconstruct::FibulaWarning& w : made.fibula.warnings) fmt::print("warning: {}\n", w.text);
     fmt::print("for research, not a medical device\n");
@@ -31,6 +33,8 @@ Action add(VerbOptions& verb) {
     add_plan_options(verb, *choice);
     verb.add("inputs", choice->inputs, "inputs as of 'plan fibula', with 'donor' and, if wanted, 'jaw' (.json)")
         .required();
+    verb.add("--alternative", choice->alternative,
+             "add the reconstruction to the plan that is there, as an alternative of this name");
     return [choice] { return run(*choice); };
 }
 

@@ -2,6 +2,7 @@
 // tactus plan show: the content of a plan as text or JSON.
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/json.hpp"
+#include "tools/command/planning/flap_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/counted.hpp"
@@ -80,6 +81,7 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
     }
     for (const cases::PlanAlternative& a : plan.alternatives)
         json["alternatives"].push_back({{"name", a.name}, {"steps", fit::steps_to(before, a.place.head).size()}});
+    if (state.reconstruction) json["reconstruction"] = reconstruction_json(*state.reconstruction);
     if (state.mirror)
         json["mirror"] = {{"file", state.mirror->file},
                           {"plane_normal",
@@ -114,6 +116,7 @@ int show_plan(const PlanChoice& choice) {
         fmt::print("  {}: at {:.2f} {:.2f} {:.2f} mm, turned {:.2f}°{}\n", f.name, pose.position.x * 1e3,
                    pose.position.y * 1e3, pose.position.z * 1e3, study::angle_deg(pose), marks);
     }
+    if (state.reconstruction) print_reconstruction(*state.reconstruction);
     for (const std::string& line : study::connection_words(plan, state)) fmt::print("  {}\n", line);
     for (const std::string& problem : problems) fmt::print("! {}\n", problem);
     return done;

@@ -319,7 +319,7 @@ std::string mirror(const Case& c) {
 }  // namespace
 
 std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy) {
+                      std::vector<std::optional<double>> to_healthy, const std::string& first) {
     Case c;
     c.plan = plan;
     c.state = cases::state_of(c.plan);
@@ -341,7 +341,7 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
         fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     counted(c.fragments.size(), "fragment")) +
-        warnings(c, overlaps) + connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) +
+        first + warnings(c, overlaps) + connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) +
         alternatives(c.plan);
     return html::page(c.plan.title, body);
 }

@@ -11,8 +11,8 @@
 namespace tactus::picture {
 
 /// `fragments`: of the plan, in its order; `to_healthy`: m, the median distance of each from the healthy side where it is
-/// planned, as far as there is one. Throws Error when pictures cannot be made.
+/// planned, as far as there is one; `first`: HTML that comes before all else. Throws Error when pictures cannot be made.
 std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy = {});
+                      std::vector<std::optional<double>> to_healthy = {}, const std::string& first = "");
 
 }  // namespace tactus::picture

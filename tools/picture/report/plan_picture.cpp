@@ -47,49 +47,59 @@ private:
     double pixels_, away_;
 };
 
-std::string text(double x, double y, const char* anchor, const std::string& what) {
-    return fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
-                       html::escaped(what));
-}
+using Texts = std::vector<PictureText>;
 
-std::string sides(const Camera& camera) {
-    return "<g font-size=\"20\" font-weight=\"bold\">\n" +
-           text(10, 0.5 * height + 7, "start", sides_along(-camera.right())) +
-           text(width - 10, 0.5 * height + 7, "end", sides_along(camera.right())) +
-           text(0.5 * width, 24, "middle", sides_along(camera.up())) +
-           text(0.5 * width, height - 12, "middle", sides_along(-camera.up())) + "</g>\n";
+void add_sides(Texts& texts, const Camera& camera) {
+    const auto add = [&](double x, double y, char anchor, const Vec3& direction) {
+        texts.push_back({x, y, anchor, 20.0, sides_along(direction), {}});
+    };
+    add(10, 0.5 * height + 7, 's', -camera.right());
+    add(width - 10, 0.5 * height + 7, 'e', camera.right());
+    add(0.5 * width, 24, 'm', camera.up());
+    add(0.5 * width, height - 12, 'm', -camera.up());
 }
 
 /// A bar of 1, 2 or 5 times a power of ten mm, at most a fifth of the picture.
-std::string scale_bar(const Camera& camera) {
+void add_scale(LabelledPicture& picture, const Camera& camera) {
     const double most = 0.2 * width / camera.pixels_per_metre() * 1e3;
     const double ten = std::pow(10.0, std::floor(std::log10(most)));
     const double mm = ten * (most >= 5.0 * ten ? 5.0 : most >= 2.0 * ten ? 2.0 : 1.0);
-    const double length = mm * 1e-3 * camera.pixels_per_metre(), x = width - 14.0 - length, y = height - 14.0;
-    return fmt::format("<path d=\"M{0:.1f} {1} v8 h{2:.1f} v-8\" fill=\"none\" stroke=\"#000\" stroke-width=\"2\"/>\n",
-                       x, y - 8.0, length) +
-           text(x + 0.5 * length, y - 12.0, "middle", fmt::format("{:g} mm", mm));
+    picture.bar_length = mm * 1e-3 * camera.pixels_per_metre();
+    picture.bar_x = width - 14.0 - picture.bar_length;
+    picture.bar_y = height - 14.0;
+    picture.texts.push_back(
+        {picture.bar_x + 0.5 * picture.bar_length, picture.bar_y - 12.0, 'm', 13.0, fmt::format("{:g} mm", mm), {}});
 }
 
 /// Each name at the middle of its fragment; one that would hide another goes below it.
-std::string names(const Camera& camera, std::span<const PictureLabel> labels) {
+void add_names(Texts& texts, const Camera& camera, std::span<const PictureLabel> labels) {
     constexpr double wide = 100.0;  // pixels
     std::vector<std::pair<std::array<double, 2>, const PictureLabel*>> placed;
     for (const PictureLabel& label : labels) placed.emplace_back(camera.pixel(label.at), &label);
     std::ranges::sort(placed, [](const auto& a, const auto& b) { return a.first[1] < b.first[1]; });
-    std::string out;
     for (std::size_t n = 0; n < placed.size(); ++n) {
         auto& [x, y] = placed[n].first;
         for (std::size_t k = 0; k < n; ++k)
             if (std::abs(placed[k].first[0] - x) < wide) y = std::max(y, placed[k].first[1] + line);
-        const Vec3 c = 255.0 * placed[n].second->colour;
-        out += fmt::format(
-                   "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"10\" height=\"10\" stroke=\"#333\" "
-                   "fill=\"rgb({:.0f},{:.0f},{:.0f})\"/>\n",
-                   x - 7.0, y - 10.0, c.x, c.y, c.z) +
-               text(x + 7.0, y, "start", placed[n].second->text);
+        texts.push_back({x + 7.0, y, 's', 13.0, placed[n].second->text, placed[n].second->colour});
     }
-    return out;
+}
+
+std::string svg_of(const PictureText& t) {
+    std::string out;
+    if (t.mark) {
+        const Vec3 c = 255.0 * *t.mark;
+        out = fmt::format(
+            "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"10\" height=\"10\" stroke=\"#333\" "
+            "fill=\"rgb({:.0f},{:.0f},{:.0f})\"/>\n",
+            t.x - 14.0, t.y - 10.0, c.x, c.y, c.z);
+    }
+    return out + fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\"{}>{}</text>\n", t.x, t.y,
+                             t.anchor == 's'   ? "start"
+                             : t.anchor == 'e' ? "end"
+                                               : "middle",
+                             t.size > 13.0 ? fmt::format(" font-size=\"{:.0f}\" font-weight=\"bold\"", t.size) : "",
+                             html::escaped(t.text));
 }
 
 }  // namespace
@@ -106,8 +116,10 @@ std::string sides_along(const Vec3& direction) {
     return all;
 }
 
-std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
-                         const std::string& caption, std::span<const PictureLabel> labels) {
+LabelledPicture labelled_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
+                                 const std::string& caption, std::span<const PictureLabel> labels) {
+    LabelledPicture picture;
+    picture.caption = caption;
     Vec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
     for (const display::PictureMesh& mesh : meshes)
         for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
@@ -115,21 +127,38 @@ std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const 
             low = glm::min(low, p);
             high = glm::max(high, p);
         }
-    if (!(low.x <= high.x)) return "<p>All fragments are hidden.</p>\n";
+    if (!(low.x <= high.x)) return picture;
     display::View view =
         display::fit_view(low, high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
     view.eye = view.target + (view.eye - view.target) * 0.85;
     const Camera camera(view);
+    picture.image = display::render_picture(meshes, view, width, height);
+    add_names(picture.texts, camera, labels);
+    add_sides(picture.texts, camera);
+    add_scale(picture, camera);
+    return picture;
+}
+
+std::string html_of(const LabelledPicture& picture) {
+    if (picture.image.rgb.empty()) return "<p>All fragments are hidden.</p>\n";
+    std::string texts;
+    for (const PictureText& text : picture.texts) texts += svg_of(text);
+    const std::string bar =
+        fmt::format("<path d=\"M{0:.1f} {1} v8 h{2:.1f} v-8\" fill=\"none\" stroke=\"#000\" stroke-width=\"2\"/>\n",
+                    picture.bar_x, picture.bar_y - 8.0, picture.bar_length);
     return fmt::format(
         "<figure><div style=\"position:relative;max-width:{0}px\"><img alt=\"{2}\" width=\"{0}\" "
         "style=\"display:block;width:100%\" src=\"data:image/png;base64,{3}\"><svg viewBox=\"0 0 {0} {1}\" "
         "style=\"position:absolute;left:0;top:0;width:100%\" font-family=\"sans-serif\" font-size=\"13\" "
         "paint-order=\"stroke\" stroke-linejoin=\"round\"><style>text{{stroke:#fff;stroke-width:3px;"
-        "paint-order:stroke;fill:#000}}</style>\n{4}{5}{6}</svg></div><figcaption class=\"small\">{2}</figcaption>"
+        "paint-order:stroke;fill:#000}}</style>\n{4}{5}</svg></div><figcaption class=\"small\">{2}</figcaption>"
         "</figure>\n",
-        width, height, html::escaped(caption),
-        display::base64(display::png_bytes(display::render_picture(meshes, view, width, height))),
-        names(camera, labels), sides(camera), scale_bar(camera));
+        width, height, html::escaped(picture.caption), display::base64(display::png_bytes(picture.image)), texts, bar);
+}
+
+std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
+                         const std::string& caption, std::span<const PictureLabel> labels) {
+    return html_of(labelled_picture(meshes, direction, caption, labels));
 }
 
 }  // namespace tactus::picture

@@ -4,6 +4,7 @@
 
 #include "devices/display/offscreen.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,29 @@ struct PictureLabel {
 /// The sides of the patient towards which a direction in LPS points, the nearest first: "L", "AL". One of three letters
 /// at most is left out.
 std::string sides_along(const Vec3& direction);
+
+/// What is written over a picture; pixels from its left upper corner.
+struct PictureText {
+    double x = 0.0, y = 0.0;  ///< of the base line
+    char anchor = 's';  ///< start, middle, end
+    double size = 13.0;
+    std::string text;
+    std::optional<Vec3> mark;  ///< colour of a square before it
+};
+
+struct LabelledPicture {
+    display::Image image;  ///< empty: nothing was shown
+    std::vector<PictureText> texts;
+    double bar_x = 0.0, bar_y = 0.0, bar_length = 0.0;  ///< the scale's bar
+    std::string caption;
+};
+
+/// A picture seen along `direction`. Throws Error when none can be made.
+LabelledPicture labelled_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
+                                 const std::string& caption, std::span<const PictureLabel> labels = {});
+
+/// A figure of HTML; without an image a paragraph that says so.
+std::string html_of(const LabelledPicture& picture);
 
 /// A figure of HTML, seen along `direction`. Nothing to show: a paragraph that says so. Throws Error when no picture
 /// can be made.

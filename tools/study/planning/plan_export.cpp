@@ -7,6 +7,8 @@
 #include "dsp/core/error.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/bones/surface_file.hpp"
+#include "tools/study/planning/flap_export.hpp"
+#include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -86,15 +88,6 @@ std::string markup_of(const std::string& fragment, const std::vector<Landmark>& 
     return json.dump(2) + "\n";
 }
 
-/// Replaces characters of a fragment's name that a file name must not contain.
-std::string file_name_of(const std::string& fragment) {
-    std::string name = fragment;
-    for (char& c : name)
-        if (c == '/' || c == '\\' || c == ':') c = '_';
-    if (name.starts_with('.')) name[0] = '_';
-    return name;
-}
-
 }  // namespace
 
 std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
@@ -124,6 +117,11 @@ std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std
         file::write_whole_file(out / files[2], markup_of(fragment.name, marks, {}));
         file::write_whole_file(out / files[3], markup_of(fragment.name, marks, pose));
         written.push_back({fragment.name, pose, files});
+    }
+    if (state.reconstruction) {
+        FlapStudy study(plan, state, folder);
+        written.push_back(
+            {"reconstruction", {}, export_flap(study.inputs(), study.fibula(), study.flap(), study.measures(), out)});
     }
     return written;
 }

@@ -16,6 +16,7 @@ struct ExportedFragment {
     std::vector<std::string> files;  ///< in the folder
 };
 
+/// A plan with a reconstruction has a last entry of that name, with its markups (flap_export.hpp).
 /// `folder`: of the plan; `out`: is made; `format`: "stl" or "ply". Throws Error.
 std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                           const std::filesystem::path& out, const std::string& format);

@@ -8,6 +8,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/bodies.hpp"
 #include "dsp/reconstruct/cut.hpp"
+#include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 
 namespace tactus::study {
@@ -128,7 +130,10 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
     try {
         cut = cut_jaw(inputs, plan);
     } catch (const Error& error) {
-        throw Error(fmt::format("the jaw: {}", error.message()));
+        const bool misses = error.message().find("misses") != std::string::npos;
+        throw Error(
+            fmt::format("the jaw: {}{}", error.message(),
+                        misses ? "; for a jaw that is resected already, the inputs need \"resection\": \"none\"" : ""));
     }
     std::vector<Piece> kept;
     std::vector<const RestPiece*> loose;
@@ -159,22 +164,47 @@ void add_jaw(std::vector<Piece>& pieces, const FibulaInputs& inputs, const Fibul
     for (Piece& piece : kept) pieces.push_back(std::move(piece));
 }
 
-}  // namespace
+cases::PlanStep step_that_holds(const reconstruct::ReconstructionInputs& given, const fs::path& folder) {
+    reconstruct::Reconstruction all;
+    all.inputs = given.inputs;
+    all.inputs.donor.reset();
+    all.inputs.jaw.reset();
+    all.flap = given.flap;
+    all.donor = mesh_file(given.donor, folder);
+    if (!given.jaw.empty()) all.jaw = mesh_file(given.jaw, folder);
+    if (!given.tumour.empty()) all.tumour = mesh_file(given.tumour, folder);
+    cases::PlanStep step;
+    step.kind = cases::StepKind::reconstruct;
+    step.by = "command";
+    step.reconstruction = std::make_shared<reconstruct::Reconstruction>(std::move(all));
+    return step;
+}
 
-Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& path) {
-    if (!inputs.donor) throw Error("the inputs name no 'donor': its surface is what is cut");
-    if (fs::exists(path))
-        throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", path.string()));
-    const cases::PlanLock lock(path);
-    Reconstruction made;
-    made.fibula = reconstruct::plan_fibula(inputs);
+/// An empty plan, or the one that is there, at a new alternative that begins as scanned.
+cases::CasePlan begun(const fs::path& path, const std::string& alternative) {
+    if (alternative.empty()) {
+        if (fs::exists(path))
+            throw Error(
+                fmt::format("{}: the file exists already; a plan is never overwritten. --alternative NAME adds another "
+                            "reconstruction to it",
+                            path.string()));
+        return {};
+    }
+    cases::CasePlan plan = cases::load_case_plan(path);
+    if (std::ranges::find(plan.alternatives, alternative, &cases::PlanAlternative::name) != plan.alternatives.end())
+        throw Error(fmt::format("{}: the alternative '{}' exists already", path.string(), alternative));
+    plan.alternatives.push_back({alternative, {}});
+    plan.current = static_cast<int>(plan.alternatives.size()) - 1;
+    return plan;
+}
+
+std::vector<Piece> pieces_of(const FibulaInputs& inputs, const FibulaPlan& fibula) {
     std::vector<Piece> pieces;
-    if (inputs.jaw) add_jaw(pieces, inputs, made.fibula);
-    const std::size_t jaw_pieces = pieces.size();
+    if (inputs.jaw) add_jaw(pieces, inputs, fibula);
     const TriangleSurface donor = reconstruct::parts_near_line(
         *inputs.donor, inputs.line_point, glm::normalize(inputs.line_direction), inputs.farthest_from_line);
-    for (std::size_t n = 0; n < made.fibula.segments.size(); ++n) {
-        const auto& planes = made.fibula.segments[n].donor_plane;
+    for (std::size_t n = 0; n < fibula.segments.size(); ++n) {
+        const auto& planes = fibula.segments[n].donor_plane;
         const std::size_t low = inputs.reversed ? 1 : 0;
         try {
             pieces.push_back({fmt::format("segment-{}", n + 1),
@@ -183,31 +213,52 @@ Reconstruction make_reconstruction(const FibulaInputs& inputs, const fs::path& p
             throw Error(fmt::format("segment {} of the donor: {}", n + 1, error.message()));
         }
     }
-    const std::string name = path.stem().stem().string();
+    return pieces;
+}
+
+}  // namespace
+
+MadeReconstruction make_reconstruction(const reconstruct::ReconstructionInputs& given, const fs::path& path,
+                                       const std::string& alternative) {
+    const FibulaInputs& inputs = given.inputs;
+    if (!inputs.donor) throw Error("the inputs name no 'donor': its surface is what is cut");
+    if (alternative.find_first_of("/\\:") != std::string::npos || alternative.starts_with('.'))
+        throw Error(fmt::format("'{}' cannot be the name of an alternative that has a folder", alternative));
+    const cases::PlanLock lock(path);
+    MadeReconstruction made;
+    made.plan = begun(path, alternative);
+    made.fibula = reconstruct::plan_fibula(inputs);
+    const std::vector<Piece> pieces = pieces_of(inputs, made.fibula);
+    const std::string name = path.stem().stem().string(), tail = alternative.empty() ? "" : "-" + alternative;
     const fs::path folder = path.parent_path();
-    NewFolder files(folder / (name + "-pieces"));
+    NewFolder files(folder / (name + tail + "-pieces"));
     cases::CasePlan& plan = made.plan;
-    plan.title = name;
+    if (alternative.empty()) plan.title = name;
+    cases::PlanStep whole = step_that_holds(given, folder);
     for (const Piece& piece : pieces) {
         const fs::path file = files.path / (piece.name + ".stl");
         mesh::write_mesh(std::vector<mesh::ColouredSurface>{{piece.surface, {}}}, file);
-        cases::add_fragment(plan, piece.name, file, folder,
-                            bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
+        whole.fragments.push_back(static_cast<int>(plan.fragments.size()));
+        cases::add_fragment(plan, piece.name + tail, file, folder,
+                            bone::label_colour(static_cast<int>(whole.fragments.size())));
         load_fragment(plan.fragments.back(), folder);
     }
     const auto add = [&plan](cases::PlanStep step) {
         step.time = cases::time_of_day();
         cases::add_step(plan, std::move(step));
     };
+    const std::vector<int> numbers = whole.fragments;
+    add(std::move(whole));
     if (inputs.jaw && inputs.resection != reconstruct::Resection::none) {
         cases::PlanStep hide;
         hide.kind = cases::StepKind::hide;
         hide.by = "command";
-        hide.fragments = {0};
+        hide.fragments = {numbers[0]};
         add(hide);
     }
+    const std::size_t first = numbers.size() - made.fibula.segments.size();
     for (std::size_t n = 0; n < made.fibula.segments.size(); ++n)
-        add(cases::placing(plan, static_cast<int>(jaw_pieces + n), made.fibula.segments[n].donor_to_target, "command"));
+        add(cases::placing(plan, numbers[first + n], made.fibula.segments[n].donor_to_target, "command"));
     cases::save_case_plan(plan, path);
     files.is_kept = true;
     return made;

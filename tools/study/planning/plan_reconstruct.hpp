@@ -3,23 +3,28 @@
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
+#include "assets/reconstruct/flap_files.hpp"
 #include "dsp/reconstruct/fibula_plan.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace tactus::study {
 
-struct Reconstruction {
+struct MadeReconstruction {
     cases::CasePlan plan;
     reconstruct::FibulaPlan fibula;
 };
 
 /// Cuts the donor at the planned planes and the jaw, when there is one, at the first and last of its planes, writes the
-/// pieces into "NAME-pieces" beside the plan (STL, mm, LPS) and saves a plan with a step that hides the resected piece
-/// and one per segment that places it. Bodies of the jaw of at most 2 cm³, such as teeth, go with the piece that is
-/// nearest to their middle; what is left of one that a plane cuts goes with the jaw on its side. Throws Error when there
-/// is no donor, when the plan or the folder exists, and as plan_fibula, cut_between and load_fragment do; then nothing
-/// is left behind.
-Reconstruction make_reconstruction(const reconstruct::FibulaInputs& inputs, const std::filesystem::path& plan);
+/// pieces into "NAME-pieces" beside the plan (STL, mm, LPS) and saves a plan with a step that holds the whole
+/// reconstruction, one that hides the resected piece and one per segment that places it. Bodies of the jaw of at most
+/// 2 cm³, such as teeth, go with the piece that is nearest to their middle; what is left of one that a plane cuts goes
+/// with the jaw on its side. With `alternative` the plan must exist: the pieces go to "NAME-ALTERNATIVE-pieces", their
+/// names end with the alternative's, and the steps begin at the plan as scanned.
+/// Throws Error when there is no donor, when the plan (without `alternative`), the alternative or the folder exists, and
+/// as plan_fibula, cut_between and load_fragment do; then nothing is left behind.
+MadeReconstruction make_reconstruction(const reconstruct::ReconstructionInputs& inputs,
+                                       const std::filesystem::path& plan, const std::string& alternative = "");
 
 }  // namespace tactus::study

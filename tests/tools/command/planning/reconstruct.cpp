@@ -2,9 +2,8 @@
 // tactus plan reconstruct on a jaw and a fibula of known shape.
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
-#include "tests/dsp/reconstruct/donors.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/run_command.hpp"
+#include "tests/tools/command/planning/jaw_case.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -18,53 +17,12 @@
 using namespace tactus;
 using nlohmann::json;
 namespace fs = std::filesystem;
+using test::half_ring;
+using Case = test::JawCase;
 
 namespace {
 
 constexpr double mm = 1e-3, pi = std::numbers::pi;
-
-// A jaw as half a ring of radius 40 mm with its chin at y = -40 mm; a part of it from `from` to `to`, 0 to 1.
-geometry::TriangleSurface half_ring(double thick = 6.0 * mm, double from = 0.0, double to = 1.0) {
-    geometry::TriangleSurface ring = reconstruct::closed_tube(Vec3(0.0, 0.0, from), Vec3(0.0, 0.0, 1.0), to - from, 40,
-                                                              81, [&](double, double) { return thick; });
-    for (Vec3& v : ring.vertices) {
-        const double a = pi * v.z;
-        v = (40.0 * mm + v.x) * Vec3(-std::cos(a), -std::sin(a), 0.0) + Vec3(0.0, 0.0, -v.y);
-    }
-    if (mesh::volume_of(ring) < 0.0)
-        for (auto& t : ring.triangles) std::swap(t[1], t[2]);
-    return ring;
-}
-
-json at(double turn) { return {-40.0 * std::cos(turn), -40.0 * std::sin(turn), 0.0}; }
-
-struct Case {
-    test::Folder folder;
-    std::string plan = (folder.path / "case.plan.json").string();
-
-    Case() {
-        geometry::TriangleSurface bone = reconstruct::closed_tube(Vec3(0.1, 0.0, -0.2), Vec3(0.0, 0.0, 1.0), 0.33, 40,
-                                                                  61, [](double, double) { return 7.0 * mm; });
-        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{bone, {}}}, folder.path / "fibula.stl");
-        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{half_ring(), {}}}, folder.path / "jaw.stl");
-    }
-    json inputs() const {
-        // Both end planes reach through both rami.
-        return {{"mandible_planes",
-                 {{{"origin", at(0.8)}, {"normal", {0.717, -0.697, 0.0}}},
-                  {{"origin", at(1.57)}},
-                  {{"origin", at(2.2)}, {"normal", {0.808, 0.589, 0.0}}}}},
-                {"fibula_line", {{"point", {100, 0, -200}}, {"direction", {0, 0, 1}}}},
-                {"donor", "fibula.stl"},
-                {"jaw", "jaw.stl"}};
-    }
-    test::Outcome run(const json& with) const {
-        return folder.tactus("plan reconstruct " + plan + " " + folder.write("inputs.json", with.dump()).string());
-    }
-    double volume(const std::string& piece) const {
-        return mesh::volume_of(mesh::load_mesh(folder.path / "case-pieces" / (piece + ".stl"))) * 1e-9;
-    }
-};
 
 }  // namespace
 
@@ -86,7 +44,7 @@ TEST_CASE("plan reconstruct makes a plan of the pieces with each segment in plac
     for (std::size_t n = 0; n < 2; ++n) {
         const std::string name = "segment-" + std::to_string(n + 1);
         const mesh::Mesh segment = mesh::load_mesh(made.folder.path / "case-pieces" / (name + ".stl"));
-        const json& step = plan["steps"][n + 1];
+        const json& step = plan["steps"][n + 2];
         const json& pose = step["poses"][0];
         const auto number = [](const json& j, std::size_t i) { return j[i].get<double>(); };
         const json &p = pose["position_m"], &q = pose["quaternion_wxyz"];
@@ -131,7 +89,7 @@ TEST_CASE("plan reconstruct takes half a jaw with its end, and a jaw that is res
     REQUIRE(other.run(whole).code == 0);
     CHECK(other.volume("jaw-1") == Approx(all).epsilon(1e-4));
     CHECK_FALSE(fs::exists(other.folder.path / "case-pieces" / "resected.stl"));
-    CHECK(json::parse(test::slurp(other.plan))["steps"].size() == 2);
+    CHECK(json::parse(test::slurp(other.plan))["steps"].size() == 3);
 }
 
 TEST_CASE("a tooth in the resected part of a jaw is resected with it", "[slow]") {
@@ -246,6 +204,10 @@ TEST_CASE("plan reconstruct that is refused leaves nothing behind") {
     json hole = made.inputs();
     hole["jaw"] = "open.stl";
     refused(hole, "the jaw: its mesh is open at 3 edges");
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{half_ring(6.0 * mm, 0.5, 1.0), {}}},
+                     made.folder.path / "jaw.stl");
+    // The first plane lies where this jaw ends already.
+    refused(made.inputs(), "\"resection\": \"none\"");
     json beside = made.inputs();
     for (json& plane : beside["mandible_planes"]) plane["origin"][2] = 300.0;
     beside["mandible_planes"][0]["normal"] = {0.0, 0.1, 1.0};

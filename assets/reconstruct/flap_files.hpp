@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of a reconstruction: inputs with the flap, vessels, marked points.
+#pragma once
+
+#include "assets/reconstruct/reconstruction.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::reconstruct {
+
+struct MarkedPoint {
+    std::string name;
+    Vec3 at{0.0};  ///< m, LPS
+};
+
+/// The control points of all markups of a file of 3D Slicer (.mrk.json), LPS or RAS, mm. Throws Error.
+std::vector<MarkedPoint> read_marks(const std::filesystem::path& path);
+/// The same from the text of a file; `file` is the name in messages.
+std::vector<MarkedPoint> marks_of_text(std::string_view text, const std::string& file);
+
+/// A vessel from a table as 'tactus vessel' writes it (.csv; its branch 0, with the mean radius) or from a curve of 3D
+/// Slicer (.mrk.json). Its name is that of the file. Throws Error.
+FlapVessel read_vessel(const std::filesystem::path& path, VesselKind kind);
+FlapVessel vessel_of_table(std::string_view text, const std::string& file);
+
+/// "artery" or "vein" in the name of a mark. Throws Error for neither or both.
+VesselKind kind_in(const std::string& name, const std::string& where);
+
+struct ReconstructionInputs {
+    FibulaInputs inputs;  ///< with surfaces
+    Flap flap;
+    std::filesystem::path donor, jaw, tumour;  ///< files; empty: none
+};
+
+/// What read_fibula_inputs reads, and of the flap
+///     "vessels": [{"name": "peroneal", "kind": "artery", "radius_mm": 1.5, "file": "artery.csv"}, ...],
+///     "perforators": "marks.mrk.json", "sites": "sites.mrk.json", "plates": [...], "implants": [...], "paddle": {...},
+///     "tumour": "tumour.stl", "margin_mm": 10
+/// A vessel may have "points_mm" in place of "file"; its name may be left out with a file. Perforators and sites may be
+/// lists of objects, {"name", "at_mm"}, sites with "kind", which otherwise stands in the name of each mark. Paths are
+/// relative to the file. Throws Error.
+ReconstructionInputs read_reconstruction_inputs(const std::filesystem::path& path);
+
+/// A mesh in m, frame LPS; mm unless it states another unit.
+geometry::TriangleSurface read_surface(const std::filesystem::path& path);
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bone round which a flap's vessels run: the jaw, and the segments of the donor where they are planned.
+#pragma once
+
+#include "dsp/reconstruct/fibula_plan.hpp"
+#include "dsp/rope/obstacle.hpp"
+
+#include <span>
+#include <vector>
+
+namespace tactus::reconstruct {
+
+/// The fields that it is made of must outlive it.
+class FlapObstacle final : public rope::Obstacle {
+public:
+    /// `jaw`: what is kept of it, in its frame; `donor`: the whole bone in its frame, or null; `is_mirrored`: the plan is
+    /// that of the other leg, with the donor reflected at x = 0.
+    FlapObstacle(const FibulaPlan& plan, std::span<const rope::Obstacle* const> jaw, const rope::Obstacle* donor,
+                 bool is_mirrored = false);
+
+    double distance(const Vec3& place, Vec3& normal) const noexcept override;
+    double free_way(const Vec3& place, double now, double near) const noexcept override;
+
+private:
+    struct Segment {
+        Pose to_jaw, to_donor;
+        Plane low, high;
+    };
+    /// Lower bound of the distance to a segment, by its two cuts alone; `normal` in the frame of the donor.
+    static double beyond_cuts(const Segment& segment, const Vec3& at, Vec3& normal) noexcept;
+    double donor_distance(const Vec3& at, Vec3& normal) const noexcept;
+
+    std::vector<const rope::Obstacle*> jaw_;
+    const rope::Obstacle* donor_;
+    bool is_mirrored_;
+    std::vector<Segment> segments_;
+};
+
+}  // namespace tactus::reconstruct

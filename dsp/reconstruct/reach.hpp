@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a flap's vessels reach their sites, and what they pass; everything that may be wrong with a flap.
+#pragma once
+
+#include "dsp/reconstruct/clearance.hpp"
+#include "dsp/reconstruct/fibula_plan.hpp"
+#include "dsp/reconstruct/flap.hpp"
+#include "dsp/reconstruct/flap_warning.hpp"
+#include "dsp/rope/obstacle.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus::reconstruct {
+
+enum class Reach {
+    slack,      ///< without tension
+    in_situ,    ///< with at most the stretch that it has in the leg
+    stretched,  ///< with more
+    too_short   ///< with more than FlapLimits::over_in_situ beyond that
+};
+const char* name_of(Reach reach);  ///< "slack", "in-situ", "stretched", "too-short"
+
+/// A vessel's pedicle laid to a site.
+struct SiteReach {
+    std::string vessel, site;
+    VesselKind kind = VesselKind::artery;
+    double in_situ = 0.0;  ///< m: the pedicle's length in the leg
+    double free = 0.0;     ///< m: cut free, rope::free_over_in_situ of it
+    double path = 0.0;  ///< m: the shortest way from the bone to the site that keeps the vessel's radius from bone
+    bool is_settled = true;  ///< the way stands still to 0.1 %, outside of bone
+    double slack = 0.0;  ///< m: free - path; 0 when the path is longer
+    double strain = 0.0;  ///< path / free - 1; 0 when slack
+    std::optional<double> tension;  ///< N, of an artery: rope::artery() at this strain; a vein has reach only
+    double bend_radius = 0.0;  ///< m: least over 10 mm of the shortest way and the last 10 mm on the bone; a slack
+        ///< vessel can be laid in a wider bend
+    std::optional<double>
+        twist;  ///< rad: the vein's side of the artery at the site against the side that is carried along
+        ///< from the bone (Bishop frame), for an artery with a vein at hand
+    double contact = 0.0;  ///< m of the path that touches bone
+    std::optional<double> to_plate, to_screw;  ///< m, of the path
+    Reach reach = Reach::slack;
+    std::vector<Vec3> points;  ///< the path, frame of the jaw
+};
+
+/// A vessel between two segments.
+struct SpanReach {
+    std::string vessel;
+    std::size_t first = 0, second = 0;  ///< segments, in the vessel's order
+    double in_situ = 0.0;  ///< m
+    double path = 0.0;  ///< m, straight
+    double strain = 0.0;  ///< path / free - 1; 0 when slack
+};
+
+struct FlapMeasures {
+    std::vector<PlacedVessel> vessels;  ///< with the path to the site that each reaches best
+    std::vector<Clearance> clearances;
+    std::vector<SiteReach> reaches;  ///< every vessel to every site of its kind
+    std::vector<SpanReach> spans;
+    std::optional<double> tumour_margin;  ///< m: least distance of the tumour from the first and last cut, inside them
+    std::vector<FlapWarning> warnings;
+};
+
+Reach reach_at(double strain, const FlapLimits& limits);
+
+/// The reach in `all` of that vessel that is best: least strain, then most slack. None: null.
+const SiteReach* best_of(std::span<const SiteReach> all, const std::string& vessel);
+
+/// `bone`: what paths go round, frame of the jaw, or null; `tumour`: points of its surface, frame of the jaw.
+/// Allocates.
+FlapMeasures measure_flap(const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap,
+                          const rope::Obstacle* bone, std::span<const Vec3> tumour = {});
+
+/// Fills `warnings` from the other measures; measure_flap has done so.
+void add_warnings(FlapMeasures& measures, const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap);
+
+}  // namespace tactus::reconstruct

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verbs of a plan that change and measure a flap.
+#include "tests/support/catch.hpp"
+#include "tests/tools/command/planning/jaw_case.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+using namespace tactus;
+using nlohmann::json;
+namespace fs = std::filesystem;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+// A case with vessels, perforators and sites in files as other programs write them.
+struct FlapCase : test::JawCase {
+    FlapCase() {
+        std::string table = "branch,x_mm,y_mm,z_mm,radius_mm,contrast,confidence,parent\n", curve;
+        for (int z = -190; z <= 100; z += 5) {
+            table += "0,100,10," + std::to_string(z) + ",1.4,1,1," + std::to_string(z) + "\n";
+            curve += (curve.empty() ? "" : ",") + std::string("{\"label\":\"c\",\"position\":[-103,-10,") +
+                     std::to_string(z) + "]}";
+        }
+        table += "1,0,0,0,1,1,1,3\n1,0,5,0,1,1,1,3\n";
+        folder.write("artery.csv", table);
+        folder.write("vein.mrk.json",
+                     R"({"markups":[{"type":"Curve","coordinateSystem":"RAS","controlPoints":[)" + curve + "]}]}");
+        folder.write("sites.mrk.json",
+                     R"({"markups":[{"type":"Fiducial","coordinateSystem":"LPS","coordinateUnits":"mm",
+                         "controlPoints":[{"label":"facial artery","position":[45,20,-30]},
+                                          {"label":"facial vein","position":[48,20,-30]}]}]})");
+    }
+    json whole() const {
+        json all = inputs();
+        all["vessels"] = {{{"kind", "artery"}, {"file", "artery.csv"}},
+                          {{"name", "comitant"}, {"kind", "vein"}, {"file", "vein.mrk.json"}}};
+        all["sites"] = "sites.mrk.json";
+        all["perforators"] = {{{"name", "middle"}, {"at_mm", {100, 12, -100}}}};
+        all["margin_mm"] = 12;
+        return all;
+    }
+    json shown() const { return json::parse(folder.tactus("plan show " + plan + " --json").out)["reconstruction"]; }
+    test::Outcome change(const std::string& verb, const std::string& arguments) const {
+        return folder.tactus("plan " + verb + " " + plan + " " + arguments);
+    }
+    json reach(const std::string& more = "") const {
+        return json::parse(folder.tactus("plan reach " + plan + " --json" + more).out);
+    }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "a plan takes vessels, sites and marks from files, and each change of the flap is a step that undo takes back",
+    "[slow]") {
+    const FlapCase made;
+    const test::Outcome done = made.run(made.whole());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    json now = made.shown();
+    REQUIRE(now["vessels"].size() == 2);
+    CHECK(now["vessels"][0]["name"] == "artery");
+    CHECK(now["vessels"][0]["radius_mm"].get<double>() == Approx(1.4));
+    CHECK(now["vessels"][0]["length_mm"].get<double>() == Approx(290.0));
+    CHECK(now["vessels"][1]["length_mm"].get<double>() == Approx(290.0));
+    CHECK(now["sites"][1]["kind"] == "vein");
+    CHECK(now["margin_mm"].get<double>() == Approx(12.0));
+
+    CHECK(made.change("plate", "front --screws 3").code == 0);
+    CHECK(made.change("implant", "molar --at 0 -41 6 --axis 0 0 -1").code == 0);
+    CHECK(made.change("site", "'lingual artery' --at 30 0 -40").code == 0);
+    CHECK(made.change("site", "low --at 100 12 -110 --perforator").code == 0);
+    CHECK(made.change("vessel", "second --kind vein --file " + (made.folder.path / "artery.csv").string()).code == 0);
+    CHECK(made.change("margin", "--margin 5").code == 0);
+    now = made.shown();
+    // Two segments of three screws, and three on each of two stumps.
+    CHECK(now["plates"][0]["screws"] == 12);
+    CHECK(now["implants"][0]["length_mm"].get<double>() == Approx(14.0));
+    CHECK(now["sites"].size() == 3);
+    CHECK(now["perforators"].size() == 2);
+    CHECK(now["vessels"].size() == 3);
+    CHECK(now["margin_mm"].get<double>() == Approx(5.0));
+    for (int n = 0; n < 6; ++n) CHECK(made.change("undo", "").code == 0);
+    now = made.shown();
+    CHECK(now["plates"].empty());
+    CHECK(now["sites"].size() == 2);
+    CHECK(now["margin_mm"].get<double>() == Approx(12.0));
+    CHECK(made.change("redo", "--steps 6").code == 0);
+    CHECK(made.change("implant", "molar --remove").code == 0);
+    CHECK(made.shown()["implants"].empty());
+
+    // What cannot be is refused, and the plan stays.
+    const std::string before = test::slurp(made.plan);
+    CHECK_THAT(made.change("implant", "molar --remove").err, ContainsSubstring("no implant 'molar'"));
+    CHECK(made.change("implant", "x --at 0 0 0 --axis 0 0 0").code == 2);
+    CHECK(made.change("site", "nerve --at 0 0 0").code == 2);
+    CHECK(made.change("vessel", "third --kind vein --file none.csv").code == 2);
+    CHECK(made.change("margin", "none.stl").code == 2);
+    CHECK(test::slurp(made.plan) == before);
+}
+
+TEST_CASE("plan reach tells what the vessels do, and ranks eight candidates", "[slow]") {
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    const json found = made.reach(" --rank");
+    REQUIRE(found["reaches"].size() == 2);
+    const json& artery = found["reaches"][0];
+    CHECK(artery["site"] == "facial artery");
+    CHECK(artery["free_mm"].get<double>() == Approx(0.89 * artery["in_situ_mm"].get<double>()));
+    CHECK(artery["path_settled"] == true);
+    CHECK(artery["tension_n"].is_number());
+    CHECK(found["reaches"][1]["tension_n"].is_null());
+    CHECK(found["spans"].size() == 2);
+    REQUIRE(found["candidates"].size() == 8);
+    CHECK(std::ranges::count_if(found["candidates"], [](const json& c) { return c["as_given"] == true; }) == 1);
+    // A segment that was moved by hand takes the vessel along.
+    const json before = found["reaches"][0]["points_mm"][0];
+    REQUIRE(made.folder.tactus("plan undo " + made.plan).code == 0);
+    const json moved = made.reach()["reaches"][0]["points_mm"][0];
+    CHECK(std::abs(moved[0].get<double>() - before[0].get<double>()) > 10.0);
+    // A plan without a reconstruction is refused.
+    for (int n = 0; n < 3; ++n) REQUIRE(made.folder.tactus("plan undo " + made.plan).code == 0);
+    CHECK_THAT(made.folder.tactus("plan reach " + made.plan).err, ContainsSubstring("no reconstruction"));
+}
+
+TEST_CASE("a second reconstruction of a plan is an alternative with its own pieces, and the report shows both",
+          "[slow]") {
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    json other = made.whole();
+    other["reversed"] = true;
+    const std::string file = made.folder.write("other.json", other.dump()).string();
+    const test::Outcome added =
+        made.folder.tactus("plan reconstruct " + made.plan + " " + file + " --alternative reversed");
+    INFO(added.err);
+    REQUIRE(added.code == 0);
+    CHECK(fs::exists(made.folder.path / "case-reversed-pieces" / "segment-2.stl"));
+    const auto hidden = [&](const std::string& name) {
+        const json plan = json::parse(made.folder.tactus("plan show " + made.plan + " --json").out);
+        for (const json& f : plan["fragments"])
+            if (f["name"] == name) return f["hidden"].get<bool>();
+        return false;
+    };
+    CHECK(made.shown()["reversed"] == true);
+    CHECK((hidden("segment-1") && !hidden("segment-1-reversed") && hidden("resected-reversed")));
+    REQUIRE(made.folder.tactus("plan alternative " + made.plan + " main").code == 0);
+    CHECK(made.shown()["reversed"] == false);
+    CHECK((!hidden("segment-1") && hidden("segment-1-reversed") && hidden("resected")));
+    CHECK(made.folder.tactus("plan reconstruct " + made.plan + " " + file + " --alternative reversed").code == 2);
+
+    // For 3D Slicer: the planes map to each other by the transforms that are exported.
+    REQUIRE(made.folder.tactus("plan export " + made.plan + " -o " + (made.folder.path / "out").string()).code == 0);
+    for (const char* file : {"segment-1.stl", "segment-1.tfm", "fibula-cut-1-2.mrk.json", "jaw-plane-2.mrk.json",
+                             "vessel-artery-on-bone.mrk.json", "vessel-artery-pedicle.mrk.json", "sites.mrk.json"})
+        CHECK(fs::exists(made.folder.path / "out" / file));
+    const json cut = json::parse(test::slurp(made.folder.path / "out" / "jaw-plane-2.mrk.json"))["markups"][0];
+    CHECK(cut["type"] == "Plane");
+    CHECK(cut["coordinateSystem"] == "LPS");
+    const json origin = made.inputs()["mandible_planes"][1]["origin"];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        CHECK(cut["center"][axis].get<double>() == Approx(origin[axis].get<double>()).margin(1e-9));
+
+    const fs::path page = made.folder.path / "case.html", pdf = made.folder.path / "case.pdf";
+    const test::Outcome reported = made.folder.tactus("plan report " + made.plan + " --pdf " + pdf.string());
+    if (reported.err.find("OpenGL") != std::string::npos) return;
+    INFO(reported.err);
+    REQUIRE(reported.code == 0);
+    const std::string html = test::slurp(page), bytes = test::slurp(pdf);
+    for (const char* words : {"Osteotomies of the fibula", "Order of the operation", "Candidates, best first",
+                              "Alternatives side by side", "Alternative 'reversed'"})
+        CHECK_THAT(html, ContainsSubstring(words));
+    CHECK_THAT(html, ContainsSubstring("Segment 2, cut at plane 3 of the jaw"));
+    CHECK(bytes.starts_with("%PDF-1.4"));
+    const std::size_t start = bytes.rfind("startxref\n");
+    REQUIRE(start != std::string::npos);
+    CHECK(bytes.compare(std::stoul(bytes.substr(start + 10)), 4, "xref") == 0);
+}

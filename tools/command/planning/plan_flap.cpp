@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan plate, implant, vessel, site, margin: each changes the reconstruction of a plan by one step.
+#include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/reconstruct/plate_line.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/flap_study.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+using reconstruct::Flap;
+using reconstruct::Reconstruction;
+
+constexpr double mm = 1e-3;
+
+struct FlapChoice : PlanChoice {
+    std::string name, kind;
+    fs::path file;
+    bool remove = false, perforators = false;
+    std::vector<double> at, axis;
+    std::optional<double> radius, margin;
+    double diameter = 4.0, length = 14.0, height = 0.0, screw_length = 12.0;
+    int screws = 2;
+};
+
+template <class Named>
+auto find_named(std::vector<Named>& all, const std::string& name) {
+    return std::ranges::find(all, name, &Named::name);
+}
+
+/// Replaces what has that name, or adds it.
+template <class Named>
+void put(std::vector<Named>& all, Named one) {
+    if (const auto found = find_named(all, one.name); found != all.end()) *found = std::move(one);
+    else all.push_back(std::move(one));
+}
+
+template <class Named>
+void take_away(std::vector<Named>& all, const std::string& name, const char* what) {
+    const auto found = find_named(all, name);
+    if (found != all.end()) {
+        all.erase(found);
+        return;
+    }
+    std::vector<std::string> names;
+    for (const Named& one : all) names.push_back(one.name);
+    throw Error(fmt::format("the plan has no {} '{}'{}", what, name, did_you_mean(name, names)));
+}
+
+Vec3 in_metres(const std::vector<double>& mm_values) { return Vec3(mm_values[0], mm_values[1], mm_values[2]) * mm; }
+
+int changed(const FlapChoice& choice, const std::function<void(Reconstruction&, const cases::CasePlan&)>& change) {
+    study::change_reconstruction(choice.plan, change);
+    return show_change(choice);
+}
+
+int plate(const FlapChoice& choice) {
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan& plan) {
+        if (choice.remove) return take_away(all.flap.plates, choice.name, "plate");
+        const study::FlapStudy study(plan, cases::state_of(plan), choice.plan.parent_path());
+        reconstruct::PlateSettings settings;
+        settings.screws_per_segment = choice.screws;
+        settings.screw_length = choice.screw_length * mm;
+        settings.height = choice.height * mm;
+        reconstruct::Plate made = reconstruct::plate_on(study.inputs(), study.fibula(), settings);
+        made.name = choice.name;
+        put(all.flap.plates, std::move(made));
+    });
+}
+
+int implant(const FlapChoice& choice) {
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
+        if (choice.remove) return take_away(all.flap.implants, choice.name, "implant");
+        if (choice.at.empty() || choice.axis.empty()) throw Error("an implant needs --at and --axis");
+        const Vec3 axis = in_metres(choice.axis);
+        if (!(glm::length(axis) > 0.0)) throw Error("--axis: 0, 0, 0 is no direction");
+        put(all.flap.implants,
+            {choice.name, in_metres(choice.at), glm::normalize(axis), choice.diameter * mm, choice.length * mm});
+    });
+}
+
+int vessel(const FlapChoice& choice) {
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
+        if (choice.remove) return take_away(all.flap.vessels, choice.name, "vessel");
+        if (choice.file.empty()) throw Error("a vessel needs --file, a table (.csv) or a curve (.mrk.json)");
+        const auto kind = choice.kind.empty() ? reconstruct::kind_in(choice.name, "without --kind, the vessel's name")
+                          : choice.kind == "vein" ? reconstruct::VesselKind::vein
+                                                  : reconstruct::VesselKind::artery;
+        reconstruct::FlapVessel read = reconstruct::read_vessel(choice.file, kind);
+        read.name = choice.name;
+        if (choice.radius) read.radius = *choice.radius * mm;
+        put(all.flap.vessels, std::move(read));
+    });
+}
+
+void add_site(Flap& flap, const FlapChoice& choice, const std::string& name, const Vec3& at) {
+    if (choice.perforators) return put(flap.perforators, {name, at});
+    const auto kind = choice.kind.empty()     ? reconstruct::kind_in(name, "without --kind, the site's name")
+                      : choice.kind == "vein" ? reconstruct::VesselKind::vein
+                                              : reconstruct::VesselKind::artery;
+    put(flap.sites, {name, kind, at});
+}
+
+int site(const FlapChoice& choice) {
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
+        if (choice.remove)
+            return choice.perforators ? take_away(all.flap.perforators, choice.name, "perforator")
+                                      : take_away(all.flap.sites, choice.name, "site");
+        if (choice.file.empty() == choice.at.empty())
+            throw Error("a site needs a place: --at X Y Z, or --file MARKS.mrk.json for all of its marks");
+        if (!choice.at.empty()) {
+            if (choice.name.empty()) throw Error("--at needs a name");
+            return add_site(all.flap, choice, choice.name, in_metres(choice.at));
+        }
+        for (const reconstruct::MarkedPoint& mark : reconstruct::read_marks(choice.file))
+            add_site(all.flap, choice, mark.name, mark.at);
+    });
+}
+
+int margin(const FlapChoice& choice) {
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
+        if (choice.remove) all.tumour.reset();
+        if (!choice.file.empty()) {
+            reconstruct::read_surface(choice.file);  // refuses what is no mesh
+            all.tumour = study::mesh_file(choice.file, choice.plan.parent_path());
+        }
+        if (choice.margin) all.flap.margin = *choice.margin * mm;
+        if (!choice.remove && choice.file.empty() && !choice.margin)
+            throw Error("give the tumour's mesh, --margin, or --remove");
+    });
+}
+
+std::shared_ptr<FlapChoice> choice_of(VerbOptions& verb) {
+    auto choice = std::make_shared<FlapChoice>();
+    add_plan_options(verb, *choice);
+    return choice;
+}
+
+}  // namespace
+
+Verb plan_plate_verb() {
+    return {"plate", "lay a plate on the outer contour of the segments and the jaw's stumps, with screws",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add("name", choice->name, "name of the plate; one of that name is replaced").required();
+                verb.add("--screws", choice->screws, "screws per segment").range(0, 6).shows_default();
+                verb.add("--screw-length", choice->screw_length, "mm; the default is a placeholder")
+                    .range(1.0, 40.0)
+                    .shows_default();
+                verb.add("--height", choice->height, "mm by which it lies above the segments' axes")
+                    .range(-15.0, 15.0)
+                    .shows_default();
+                verb.flag("--remove", choice->remove, "take it away");
+                return [choice] { return plate(*choice); };
+            }};
+}
+
+Verb plan_implant_verb() {
+    return {"implant", "place a dental implant, in the frame of the jaw", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add("name", choice->name, "name of the implant; one of that name is replaced").required();
+                verb.add("--at", choice->at, "its head: X Y Z, mm").count(3);
+                verb.add("--axis", choice->axis, "direction into the bone: X Y Z").count(3);
+                verb.add("--diameter", choice->diameter, "mm").range(0.5, 15.0).shows_default();
+                verb.add("--length", choice->length, "mm").range(1.0, 40.0).shows_default();
+                verb.flag("--remove", choice->remove, "take it away");
+                return [choice] { return implant(*choice); };
+            }};
+}
+
+Verb plan_vessel_verb() {
+    return {"vessel", "add a vessel of the donor leg", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add("name", choice->name, "name of the vessel; one of that name is replaced").required();
+                verb.add("--file", choice->file, "table of 'tactus vessel' (.csv) or curve of 3D Slicer (.mrk.json)");
+                verb.add("--kind", choice->kind, "default: as its name says").one_of({"artery", "vein"});
+                verb.add("--radius", choice->radius, "mm (default: of the table; of a curve 1.5)").range(0.1, 10.0);
+                verb.flag("--remove", choice->remove, "take it away");
+                return [choice] { return vessel(*choice); };
+            }};
+}
+
+Verb plan_site_verb() {
+    return {"site", "mark vessels of the neck to which the flap's can be joined, or perforators of the leg",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add("name", choice->name, "name of the mark; one of that name is replaced");
+                verb.add("--at", choice->at, "X Y Z, mm; sites in the frame of the jaw, perforators in the donor's")
+                    .count(3);
+                verb.add("--file", choice->file, "take all marks of a file of 3D Slicer (.mrk.json)");
+                verb.add("--kind", choice->kind, "default: as its name says").one_of({"artery", "vein"});
+                verb.flag("--perforator", choice->perforators, "perforators of the leg instead of sites of the neck");
+                verb.flag("--remove", choice->remove, "take it away");
+                return [choice] { return site(*choice); };
+            }};
+}
+
+Verb plan_margin_verb() {
+    return {"margin", "set the tumour of the jaw and the margin that its cuts keep", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add("tumour", choice->file, "closed mesh, in the frame of the jaw");
+                verb.add("--margin", choice->margin, "mm").range(0.0, 100.0);
+                verb.flag("--remove", choice->remove, "take the tumour away");
+                return [choice] { return margin(*choice); };
+            }};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dimension drawings of the osteotomies of a donor: distances along the bone, angles in two planes.
+#pragma once
+
+#include "devices/display/figure.hpp"
+#include "dsp/reconstruct/fibula_plan.hpp"
+#include "dsp/reconstruct/flap.hpp"
+
+#include <cstddef>
+
+namespace tactus::picture {
+
+/// The donor from the ankle (left) to the knee, seen from the front and from the medial side, with all cuts, their
+/// distances from its end at the ankle, vessels and perforators. `inputs` have a donor.
+display::Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+                              const reconstruct::Flap& flap);
+
+/// One cut in the same two views, with its angles and where it meets the surface, mm from the end at the ankle.
+display::Figure osteotomy_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+                                  std::size_t segment, std::size_t end);
+
+}  // namespace tactus::picture

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/report/flap_report.hpp"
+
+#include "assets/reconstruct/flap_files.hpp"
+#include "dsp/reconstruct/pedicle.hpp"
+#include "tools/picture/report/flap_drawing.hpp"
+#include "tools/picture/report/flap_scene.hpp"
+#include "tools/study/planning/flap_study.hpp"
+#include "tools/study/planning/flap_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+namespace tactus::picture {
+
+namespace {
+
+namespace fs = std::filesystem;
+using reconstruct::FibulaSegment;
+
+constexpr double to_mm = 1e3, to_deg = 180.0 / std::numbers::pi;
+constexpr Vec3 from_front(0.25, 1.0, -0.35), from_left(-1.0, 0.25, -0.3), from_below(0.1, 0.3, 1.0);
+
+std::string mm(double metres) { return fmt::format("{:.1f}", metres * to_mm); }
+std::string degrees(double radians) { return fmt::format("{:.1f}", radians * to_deg + 0.0); }
+std::string mm2(const std::optional<double>& area) { return area ? fmt::format("{:.0f}", *area * 1e6) : "–"; }
+std::string mm(const std::optional<double>& metres) { return metres ? mm(*metres) : "–"; }
+
+/// One alternative of the plan with what was measured of it.
+struct Measured {
+    std::string name;
+    cases::PlanState state;
+    std::unique_ptr<study::FlapStudy> study;
+    reconstruct::FlapMeasures measures;
+};
+
+Measured measured(const cases::CasePlan& plan, const cases::PlanAlternative& alternative, const fs::path& folder) {
+    Measured m{alternative.name, cases::state_of(plan, alternative.place.head), nullptr, {}};
+    m.study = std::make_unique<study::FlapStudy>(plan, m.state, folder);
+    m.measures = m.study->measures();
+    return m;
+}
+
+LabelledPicture jaw_picture(const cases::CasePlan& plan, const Measured& m, const fs::path& folder, bool is_before,
+                            const Vec3& direction, const std::string& caption) {
+    std::vector<display::PictureMesh> meshes;
+    std::vector<PictureLabel> labels;
+    for (const int piece : m.state.pieces) {
+        const cases::PlanFragment& fragment = plan.fragments[static_cast<std::size_t>(piece)];
+        const bool is_segment = study::is_segment(fragment.name), is_resected = fragment.name.starts_with("resected");
+        if (is_before ? is_segment : m.state.arrangement.is_hidden(piece)) continue;
+        const geometry::TriangleSurface surface = reconstruct::read_surface(cases::file_of(fragment.file, folder));
+        const Pose pose = is_before ? Pose{} : m.state.arrangement.pose(piece);
+        const Vec3 colour = is_resected ? resected_colour : is_segment ? fragment.colour : Vec3(0.90, 0.86, 0.76);
+        meshes.push_back(picture_mesh(surface, pose, {&colour, 1}));
+        Vec3 middle(0.0);
+        for (const Vec3& v : surface.vertices) middle += pose.apply(v) / static_cast<double>(surface.vertices.size());
+        if (is_segment || is_resected) labels.push_back({fragment.name, middle, colour});
+    }
+    if (is_before) {
+        const Vec3 colour(0.45, 0.15, 0.45);
+        if (!m.study->tumour().empty())
+            meshes.push_back(
+                picture_mesh(reconstruct::read_surface(cases::file_of(m.study->reconstruction().tumour->file, folder)),
+                             {}, {&colour, 1}));
+    } else {
+        add_hardware(meshes, labels, m.study->flap());
+        add_vessels(meshes, labels, m.measures.vessels);
+    }
+    return labelled_picture(meshes, direction, caption, labels);
+}
+
+ReportTable osteotomies(const Measured& m) {
+    ReportTable table{
+        {"cut", "on the line, mm from line point", "leans medially, °", "leans anteriorly, °", "area, mm²"}, {}};
+    const auto& segments = m.study->fibula().segments;
+    for (std::size_t n = 0; n < segments.size(); ++n)
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+            const FibulaSegment& s = segments[n];
+            table.rows.push_back({fmt::format("segment {}, at plane {} of the jaw", n + 1, n + end + 1),
+                                  mm(s.along_line[end]), degrees(s.lean_medial[end]), degrees(s.lean_anterior[end]),
+                                  mm2(s.area[end])});
+        }
+    return table;
+}
+
+ReportTable segments(const Measured& m) {
+    ReportTable table{{"segment", "length, mm", "shortest, mm", "longest, mm", "angle between its cuts, °",
+                       "then: wedge, °", "bone between, mm", "cuts meet, mm²"},
+                      {}};
+    const reconstruct::FibulaPlan& plan = m.study->fibula();
+    for (std::size_t n = 0; n < plan.segments.size(); ++n) {
+        const FibulaSegment& s = plan.segments[n];
+        std::vector<std::string> row{fmt::format("{}", n + 1), mm(s.length_centre), mm(s.length_shortest),
+                                     mm(s.length_longest), degrees(s.end_angle)};
+        if (n < plan.wedges.size()) {
+            row.push_back(degrees(plan.wedges[n]));
+            row.push_back(mm(plan.clearances[n]));
+            row.push_back(mm2(plan.contact[n]));
+        }
+        row.resize(8);
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+ReportTable reaches(const Measured& m) {
+    ReportTable table{{"vessel", "site", "verdict", "in the leg, mm", "free, mm", "way, mm", "slack, mm", "strain, %",
+                       "tension, N", "bend, mm", "twist, °", "on bone, mm", "to plate, mm", "to screw, mm"},
+                      {}};
+    for (const reconstruct::SiteReach& r : m.measures.reaches)
+        table.rows.push_back(
+            {r.vessel, r.site, reconstruct::name_of(r.reach), mm(r.in_situ), mm(r.free), mm(r.path), mm(r.slack),
+             fmt::format("{:.0f}", 100.0 * r.strain), r.tension ? fmt::format("{:.2f}", *r.tension) : "–",
+             std::isfinite(r.bend_radius) ? mm(r.bend_radius) : "straight",
+             r.twist ? fmt::format("{:.0f}", *r.twist * to_deg) : "–", mm(r.contact), mm(r.to_plate), mm(r.to_screw)});
+    return table;
+}
+
+ReportTable clearances(const Measured& m) {
+    ReportTable table{{"object", "nearest cut", "mm", "nearest vessel", "mm", "nearest hardware", "mm"}, {}};
+    for (const reconstruct::Clearance& c : m.measures.clearances) {
+        if (table.rows.empty() || table.rows.back()[0] != c.object)
+            table.rows.push_back({c.object, "–", "–", "–", "–", "–", "–"});
+        const std::size_t column = 1 + 2 * static_cast<std::size_t>(c.nearness);
+        table.rows.back()[column] = c.other;
+        table.rows.back()[column + 1] = mm(c.distance);
+    }
+    return table;
+}
+
+/// The operation in order; a plan's proposal, not a rule.
+ReportTable operation(const Measured& m) {
+    ReportTable table{{"step", "what"}, {}};
+    const auto add = [&](std::string what) {
+        table.rows.push_back({fmt::format("{}", table.rows.size() + 1), std::move(what)});
+    };
+    const reconstruct::FibulaInputs& in = m.study->inputs();
+    const reconstruct::FibulaPlan& plan = m.study->fibula();
+    const std::size_t last = in.planes.size();
+    switch (in.resection) {
+        case reconstruct::Resection::between:
+            add(fmt::format("Jaw: cut at planes 1 and {}; take out what lies between.", last));
+            break;
+        case reconstruct::Resection::after_first: add("Jaw: cut at plane 1; take out all beyond it."); break;
+        case reconstruct::Resection::before_last:
+            add(fmt::format("Jaw: cut at plane {}; take out all before it.", last));
+            break;
+        case reconstruct::Resection::none: add("Jaw: nothing to cut; it is resected already."); break;
+    }
+    std::vector<std::pair<double, std::string>> cuts;
+    for (std::size_t n = 0; n < plan.segments.size(); ++n)
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+            cuts.emplace_back(plan.segments[n].along_line[end],
+                              fmt::format("segment {} at its plane {}", n + 1, n + end + 1));
+    std::ranges::sort(cuts);
+    for (const auto& [at, name] : cuts) add(fmt::format("Fibula: cut for {}, {} mm along the line.", name, mm(at)));
+    for (std::size_t n = 0; n < plan.segments.size(); ++n)
+        add(fmt::format("Place segment {} between planes {} and {}.", n + 1, n + 1, n + 2));
+    for (const reconstruct::Plate& plate : m.study->flap().plates)
+        add(fmt::format("Fix plate '{}' with {} screws.", plate.name, plate.screws.size()));
+    for (const reconstruct::FlapVessel& vessel : m.study->flap().vessels)
+        if (const auto* best = reconstruct::best_of(m.measures.reaches, vessel.name))
+            add(fmt::format("Join {} '{}' to '{}'.", reconstruct::name_of(vessel.kind), vessel.name, best->site));
+    for (const reconstruct::DentalImplant& implant : m.study->flap().implants)
+        add(fmt::format("Implant '{}'.", implant.name));
+    return table;
+}
+
+std::string best_words(const Measured& m, reconstruct::VesselKind kind) {
+    const reconstruct::SiteReach* best = nullptr;
+    for (const reconstruct::SiteReach& r : m.measures.reaches)
+        if (r.kind == kind && (!best || r.strain < best->strain || (r.strain == best->strain && r.slack > best->slack)))
+            best = &r;
+    return best ? fmt::format("{}, {} mm to '{}'", reconstruct::name_of(best->reach), mm(best->path), best->site) : "–";
+}
+
+ReportTable side_by_side(const std::vector<Measured>& all) {
+    ReportTable table{{""}, {}};
+    for (const Measured& m : all) table.head.push_back("alternative '" + m.name + "'");
+    const auto row = [&](const std::string& name, const auto& cell) {
+        std::vector<std::string> cells{name};
+        for (const Measured& m : all) cells.push_back(cell(m));
+        table.rows.push_back(std::move(cells));
+    };
+    row("leg", [](const Measured& m) { return m.study->inputs().leg == reconstruct::Leg::left ? "left" : "right"; });
+    row("pedicle at", [](const Measured& m) { return m.study->inputs().reversed ? "first plane" : "last plane"; });
+    row("roll, °", [](const Measured& m) { return degrees(m.study->inputs().roll); });
+    row("segments, mm", [](const Measured& m) {
+        std::string lengths;
+        for (const FibulaSegment& s : m.study->fibula().segments)
+            lengths += (lengths.empty() ? "" : " / ") + mm(s.length_centre);
+        return lengths;
+    });
+    row("bone lost to the kerf, mm³", [](const Measured& m) {
+        return m.study->fibula().kerf_loss ? fmt::format("{:.0f}", *m.study->fibula().kerf_loss * 1e9) : "–";
+    });
+    row("left at the ankle / knee, mm", [](const Measured& m) {
+        return mm(m.study->fibula().left_distal) + " / " + mm(m.study->fibula().left_proximal);
+    });
+    row("artery", [](const Measured& m) { return best_words(m, reconstruct::VesselKind::artery); });
+    row("vein", [](const Measured& m) { return best_words(m, reconstruct::VesselKind::vein); });
+    row("warnings", [](const Measured& m) {
+        std::string codes;
+        for (const auto& w : m.study->fibula().warnings)
+            codes += (codes.empty() ? "" : ", ") + std::string(reconstruct::name_of(w.code));
+        for (const auto& w : m.measures.warnings)
+            codes += (codes.empty() ? "" : ", ") + std::string(reconstruct::name_of(w.code));
+        return codes.empty() ? std::string("none") : codes;
+    });
+    return table;
+}
+
+ReportTable candidates(study::FlapStudy& study) {
+    ReportTable table{{"rank", "candidate", "artery", "vein", "why not, or warnings"}, {}};
+    for (const reconstruct::Candidate& c : study.candidates()) {
+        const auto reach = [&](reconstruct::VesselKind kind) {
+            const reconstruct::SiteReach* best = nullptr;
+            for (const reconstruct::SiteReach& r : c.measures.reaches)
+                if (r.kind == kind && (!best || r.strain < best->strain)) best = &r;
+            return std::string(best ? reconstruct::name_of(best->reach) : "–");
+        };
+        std::string why = c.excluded.empty() ? "" : "excluded: " + c.excluded;
+        for (const reconstruct::FlapWarning& w : c.measures.warnings)
+            if (c.excluded.empty()) why += (why.empty() ? "" : "; ") + w.text;
+        table.rows.push_back({fmt::format("{}", table.rows.size() + 1), study::candidate_words(c),
+                              reach(reconstruct::VesselKind::artery), reach(reconstruct::VesselKind::vein), why});
+    }
+    return table;
+}
+
+}  // namespace
+
+std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path& folder) {
+    const cases::PlanAlternative& current = plan.alternatives[static_cast<std::size_t>(plan.current)];
+    if (!cases::state_of(plan).reconstruction) return {};
+    std::vector<Measured> all;
+    all.push_back(measured(plan, current, folder));
+    for (const cases::PlanAlternative& other : plan.alternatives)
+        if (other.name != current.name && all.size() < 3 && cases::state_of(plan, other.place.head).reconstruction)
+            all.push_back(measured(plan, other, folder));
+    Measured& m = all[0];
+    const reconstruct::FibulaInputs& in = m.study->inputs();
+    std::vector<ReportBlock> out;
+    out.emplace_back(Heading{"Reconstruction"});
+    out.emplace_back(Paragraph{fmt::format(
+        "Alternative '{}': {} of the {} fibula{}, turned by {}° about its axis. Thresholds and their sources are in "
+        "the "
+        "how-to; placeholders are named there.",
+        m.name, in.planes.size() == 2 ? "one segment" : fmt::format("{} segments", in.planes.size() - 1),
+        in.leg == reconstruct::Leg::left ? "left" : "right", in.reversed ? ", reversed" : "", degrees(in.roll))});
+    if (m.study->fibula().warnings.empty() && m.measures.warnings.empty()) out.emplace_back(Paragraph{"No warnings."});
+    for (const auto& w : m.study->fibula().warnings)
+        out.emplace_back(Paragraph{fmt::format("{}: {}", reconstruct::name_of(w.code), w.text), true});
+    for (const auto& w : m.measures.warnings)
+        out.emplace_back(Paragraph{fmt::format("{}: {}", reconstruct::name_of(w.code), w.text), true});
+    if (in.jaw)
+        out.emplace_back(jaw_picture(plan, m, folder, true, from_front, "The jaw before; what is resected is red"));
+    out.emplace_back(jaw_picture(plan, m, folder, false, from_front, "As planned, from the front"));
+    out.emplace_back(jaw_picture(plan, m, folder, false, from_left, "As planned, from the patient's left"));
+    out.emplace_back(jaw_picture(plan, m, folder, false, from_below, "As planned, from below"));
+    out.emplace_back(Heading{"Osteotomies of the fibula"});
+    out.emplace_back(
+        Drawing{donor_drawing(in, m.study->fibula(), m.study->flap()),
+                "The donor from the ankle to the knee; a and b: the cut of a segment at the ankle's and at "
+                "the knee's side, mm on the line from the bone's end at the ankle; crosses: perforators"});
+    out.emplace_back(segments(m));
+    out.emplace_back(osteotomies(m));
+    for (std::size_t n = 0; n < m.study->fibula().segments.size(); ++n)
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+            out.emplace_back(Drawing{osteotomy_drawing(in, m.study->fibula(), n, end),
+                                     fmt::format("Segment {}, cut at plane {} of the jaw", n + 1, n + end + 1)});
+    out.emplace_back(Heading{"Order of the operation, as planned"});
+    out.emplace_back(operation(m));
+    if (!m.measures.reaches.empty()) {
+        out.emplace_back(Heading{"Vessels and sites"});
+        out.emplace_back(reaches(m));
+        out.emplace_back(Heading{"Candidates, best first"});
+        out.emplace_back(candidates(*m.study));
+    }
+    if (!m.measures.clearances.empty()) {
+        out.emplace_back(Heading{"Clearances"});
+        out.emplace_back(clearances(m));
+    }
+    if (all.size() > 1) {
+        out.emplace_back(Heading{"Alternatives side by side"});
+        out.emplace_back(side_by_side(all));
+        for (const Measured& one : all)
+            out.emplace_back(
+                jaw_picture(plan, one, folder, false, from_front, fmt::format("Alternative '{}'", one.name)));
+    }
+    return out;
+}
+
+}  // namespace tactus::picture

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/planning/flap_export.hpp"
+
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace tactus::study {
+
+namespace {
+
+namespace fs = std::filesystem;
+using file::Json;
+
+Json in_mm(const Vec3& p) { return {p.x * 1e3, p.y * 1e3, p.z * 1e3}; }
+
+struct Point {
+    std::string label;
+    Vec3 at;
+};
+
+Json markup(const char* type, const std::string& name, const std::vector<Point>& points) {
+    Json list = Json::array();
+    for (std::size_t n = 0; n < points.size(); ++n)
+        list.push_back({{"id", fmt::format("{}", n + 1)},
+                        {"label", points[n].label},
+                        {"description", ""},
+                        {"associatedNodeID", ""},
+                        {"position", in_mm(points[n].at)},
+                        {"orientation", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
+                        {"selected", true},
+                        {"locked", true},
+                        {"visibility", true},
+                        {"positionStatus", "defined"}});
+    return {{"type", type},
+            {"name", name},
+            {"coordinateSystem", "LPS"},
+            {"coordinateUnits", "mm"},
+            {"locked", true},
+            {"labelFormat", "%N-%d"},
+            {"lastUsedControlPointNumber", points.size()},
+            {"controlPoints", list}};
+}
+
+Json plane_markup(const std::string& name, const reconstruct::Plane& plane) {
+    Json made = markup("Plane", name, {{name, plane.origin}});
+    made["planeType"] = "pointNormal";
+    made["sizeMode"] = "absolute";
+    made["size"] = {40.0, 40.0};
+    made["center"] = in_mm(plane.origin);
+    made["normal"] = {plane.normal.x, plane.normal.y, plane.normal.z};
+    return made;
+}
+
+class Writer {
+public:
+    explicit Writer(const fs::path& out) : out_(out) {}
+
+    void write(const std::string& name, const Json& made) {
+        const Json json{{"@schema",
+                         "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/"
+                         "Schema/markups-schema-v1.0.3.json#"},
+                        {"markups", Json::array({made})}};
+        std::string file = file_name_of(name) + ".mrk.json";
+        // Names that differ only in replaced characters, or are those of other things.
+        for (int n = 2; std::ranges::find(files_, file) != files_.end(); ++n)
+            file = fmt::format("{}-{}.mrk.json", file_name_of(name), n);
+        file::write_whole_file(out_ / file, json.dump(2) + "\n");
+        files_.push_back(file);
+    }
+    std::vector<std::string> files() { return std::move(files_); }
+
+private:
+    fs::path out_;
+    std::vector<std::string> files_;
+};
+
+std::vector<Point> named(const std::string& name, const std::vector<Vec3>& line) {
+    std::vector<Point> points;
+    for (const Vec3& p : line) points.push_back({fmt::format("{}-{}", name, points.size() + 1), p});
+    return points;
+}
+
+}  // namespace
+
+std::string file_name_of(const std::string& name) {
+    std::string file = name;
+    for (char& c : file)
+        if (c == '/' || c == '\\' || c == ':') c = '_';
+    if (file.starts_with('.')) file[0] = '_';
+    return file;
+}
+
+std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+                                     const reconstruct::Flap& flap, const reconstruct::FlapMeasures& measures,
+                                     const fs::path& out) {
+    Writer writer(out);
+    for (std::size_t n = 0; n < inputs.planes.size(); ++n) {
+        const std::size_t segment = std::min(n, plan.segments.size() - 1), end = n > segment ? 1 : 0;
+        const reconstruct::FibulaSegment& s = plan.segments[segment];
+        const std::string name = fmt::format("jaw-plane-{}", n + 1);
+        writer.write(
+            name, plane_markup(name, {inputs.planes[n].origin, s.donor_to_target.rotate(s.donor_plane[end].normal)}));
+    }
+    for (std::size_t n = 0; n < plan.segments.size(); ++n)
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+            const std::string name = fmt::format("fibula-cut-{}-{}", n + 1, end + 1);
+            writer.write(name, plane_markup(name, plan.segments[n].donor_plane[end]));
+        }
+    for (const reconstruct::PlacedVessel& vessel : measures.vessels)
+        for (std::size_t n = 0; n < vessel.lines.size(); ++n) {
+            const std::string name = fmt::format("vessel-{}-{}", vessel.name, n == 0 ? "on-bone" : "pedicle");
+            writer.write(name, markup("Curve", name, named(vessel.name, vessel.lines[n])));
+        }
+    for (const reconstruct::Plate& plate : flap.plates) {
+        writer.write("plate-" + plate.name, markup("Curve", plate.name, named(plate.name, plate.points)));
+        for (std::size_t n = 0; n < plate.screws.size(); ++n) {
+            const reconstruct::Screw& s = plate.screws[n];
+            const std::string name = fmt::format("plate-{}-screw-{}", plate.name, n + 1);
+            writer.write(name, markup("Line", name, named(name, {s.head, s.head + s.length * s.axis})));
+        }
+    }
+    for (const reconstruct::DentalImplant& implant : flap.implants)
+        writer.write("implant-" + implant.name,
+                     markup("Line", implant.name,
+                            named(implant.name, {implant.head, implant.head + implant.length * implant.axis})));
+    std::vector<Point> sites, perforators;
+    for (const reconstruct::RecipientSite& site : flap.sites) sites.push_back({site.name, site.at});
+    for (const reconstruct::Perforator& p : flap.perforators) perforators.push_back({p.name, p.at});
+    if (!sites.empty()) writer.write("sites", markup("Fiducial", "sites", sites));
+    if (!perforators.empty()) writer.write("perforators", markup("Fiducial", "perforators", perforators));
+    return writer.files();
+}
+
+}  // namespace tactus::study

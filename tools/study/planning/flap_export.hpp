@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a reconstruction's cuts, vessels, plates, implants and sites as markups of 3D Slicer.
+#pragma once
+
+#include "dsp/reconstruct/fibula_plan.hpp"
+#include "dsp/reconstruct/flap.hpp"
+#include "dsp/reconstruct/reach.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+/// One file per markup, LPS, mm, schema 1.0.3: a Plane per cut of the jaw and per osteotomy of the donor (in the donor's
+/// frame), a Curve per vessel as it is placed and per plate, a Line per screw and implant, and the sites. Returns the
+/// names of the files. Throws Error.
+std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+                                     const reconstruct::Flap& flap, const reconstruct::FlapMeasures& measures,
+                                     const std::filesystem::path& out);
+
+/// Characters that a file name must not contain are replaced.
+std::string file_name_of(const std::string& name);
+
+}  // namespace tactus::study

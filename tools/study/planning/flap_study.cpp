@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/planning/flap_study.hpp"
+
+#include "assets/bone/mesh_part.hpp"
+#include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/reconstruct/flap_obstacle.hpp"
+#include "tools/study/planning/plan_case.hpp"
+#include "tools/study/workers.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace tactus::study {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* no_reconstruction =
+    "the plan has no reconstruction at this step: 'tactus plan reconstruct' makes a plan that has one";
+
+std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& pose) {
+    return std::make_unique<BoneAsObstacle>(
+        contact::make_voxmap(bone::distance_of_mesh({file, {}, true, {}, on_threads()})), pose);
+}
+
+}  // namespace
+
+bool is_segment(const std::string& name) { return name.starts_with("segment-"); }
+
+reconstruct::MeshFile mesh_file(const fs::path& file, const fs::path& folder) {
+    cases::CasePlan none;
+    cases::add_fragment(none, "mesh", file, folder, Vec3(0.0));
+    return {none.fragments[0].file, none.fragments[0].hash};
+}
+
+FlapStudy::FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state, const fs::path& folder) {
+    if (!state.reconstruction) throw Error(no_reconstruction);
+    cases::check_files(plan, folder);
+    all_ = *state.reconstruction;
+    inputs_ = all_.inputs;
+    donor_file_ = cases::file_of(all_.donor.file, folder);
+    inputs_.donor = reconstruct::read_surface(donor_file_);
+    if (all_.jaw) inputs_.jaw = reconstruct::read_surface(cases::file_of(all_.jaw->file, folder));
+    if (all_.tumour) tumour_ = reconstruct::read_surface(cases::file_of(all_.tumour->file, folder)).vertices;
+    fibula_ = reconstruct::plan_fibula(inputs_);
+    for (const int piece : state.pieces) {
+        const cases::PlanFragment& fragment = plan.fragments[static_cast<std::size_t>(piece)];
+        if (is_segment(fragment.name)) segment_poses_.push_back(state.arrangement.pose(piece));
+        else if (!state.arrangement.is_hidden(piece))
+            jaw_files_.emplace_back(cases::file_of(fragment.file, folder), state.arrangement.pose(piece));
+    }
+    if (segment_poses_.size() != fibula_.segments.size()) segment_poses_.clear();
+}
+
+void FlapStudy::make_obstacles() {
+    if (donor_) return;
+    if (flap().sites.empty() || flap().vessels.empty()) return;
+    donor_ = obstacle_of(donor_file_, {});
+    for (const auto& [file, pose] : jaw_files_) jaw_.push_back(obstacle_of(file, pose));
+}
+
+reconstruct::FlapMeasures FlapStudy::measures() {
+    make_obstacles();
+    reconstruct::FibulaPlan now = fibula_;
+    for (std::size_t n = 0; n < segment_poses_.size(); ++n) now.segments[n].donor_to_target = segment_poses_[n];
+    std::vector<const rope::Obstacle*> jaw;
+    for (const auto& piece : jaw_) jaw.push_back(&piece->field);
+    const reconstruct::FlapObstacle bone(now, jaw, donor_ ? &donor_->field : nullptr);
+    return reconstruct::measure_flap(inputs_, now, flap(), &bone, tumour_);
+}
+
+std::vector<reconstruct::Candidate> FlapStudy::candidates() {
+    make_obstacles();
+    std::vector<const rope::Obstacle*> jaw;
+    for (const auto& piece : jaw_) jaw.push_back(&piece->field);
+    return reconstruct::ranked(inputs_, flap(), {jaw, donor_ ? &donor_->field : nullptr, tumour_});
+}
+
+void change_reconstruction(const fs::path& path,
+                           const std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>& change) {
+    OpenPlan open(path);
+    const cases::PlanState state = cases::state_of(open.plan);
+    if (!state.reconstruction) throw Error(fmt::format("{}: {}", path.string(), no_reconstruction));
+    auto changed = std::make_shared<reconstruct::Reconstruction>(*state.reconstruction);
+    change(*changed, open.plan);
+    reconstruct::check(changed->flap, "the changed plan");
+    cases::PlanStep step;
+    step.kind = cases::StepKind::reconstruct;
+    step.by = "command";
+    step.fragments = state.pieces;
+    step.reconstruction = std::move(changed);
+    do_step(open.plan, std::move(step), path);
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reconstruction that a plan holds, with its surfaces: what is measured of it, and how it is changed.
+#pragma once
+
+#include "assets/cases/case_plan.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
+#include "dsp/contact/voxmap.hpp"
+#include "dsp/reconstruct/ranking.hpp"
+#include "dsp/reconstruct/reach.hpp"
+#include "dsp/rope/bone_field.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+/// Bone as paths of vessels see it: distances in a frame of its own.
+struct BoneAsObstacle {
+    contact::Voxmap map;
+    rope::BoneField field;
+
+    explicit BoneAsObstacle(contact::Voxmap made, const Pose& pose = {}) : map(std::move(made)), field(map, pose) {}
+    BoneAsObstacle(const BoneAsObstacle&) = delete;
+    BoneAsObstacle& operator=(const BoneAsObstacle&) = delete;
+};
+
+/// Loads the meshes that the plan names. Measures hold for the segments where the plan has them now; candidates for
+/// where the inputs place them.
+class FlapStudy {
+public:
+    /// `folder`: of the plan. Throws Error when the plan's state has no reconstruction, and for files that are missing,
+    /// have changed or are no meshes.
+    FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state, const std::filesystem::path& folder);
+
+    const reconstruct::FibulaInputs& inputs() const { return inputs_; }  ///< with surfaces
+    const reconstruct::FibulaPlan& fibula() const { return fibula_; }
+    const reconstruct::Flap& flap() const { return all_.flap; }
+    const reconstruct::Reconstruction& reconstruction() const { return all_; }
+    const std::vector<Vec3>& tumour() const { return tumour_; }
+
+    reconstruct::FlapMeasures measures();
+    std::vector<reconstruct::Candidate> candidates();
+
+private:
+    void make_obstacles();
+
+    reconstruct::Reconstruction all_;
+    reconstruct::FibulaInputs inputs_;
+    reconstruct::FibulaPlan fibula_;
+    std::vector<Pose> segment_poses_;  // in the plan, as far as its pieces are there
+    std::vector<std::pair<std::filesystem::path, Pose>> jaw_files_;
+    std::filesystem::path donor_file_;
+    std::vector<Vec3> tumour_;
+    std::unique_ptr<BoneAsObstacle> donor_;
+    std::vector<std::unique_ptr<BoneAsObstacle>> jaw_;
+};
+
+/// Whether a fragment's name is that of a segment, "segment-2" or "segment-2-ALTERNATIVE".
+bool is_segment(const std::string& name);
+
+/// Loads a plan, lets `change` alter its reconstruction and adds that as a step. Throws Error when there is none, when
+/// the result cannot be, and what `change` throws; then the plan stays as it was.
+void change_reconstruction(const std::filesystem::path& plan,
+                           const std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>& change);
+
+/// The file of a mesh as a plan names it.
+reconstruct::MeshFile mesh_file(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+}  // namespace tactus::study
