@@ -152,9 +152,9 @@ std::vector<Vec3> course_of(const LongBone& bone, const std::vector<geometry::Tr
     for (Vec3& p : line) {
         constexpr double gap = artery_radius + beside_bone;
         const geometry::TriangleTree::Near near = surface.nearest(p);
-        const Vec3 out = p - near.point;
-        if (near.distance < gap && near.distance > 0.0 && glm::dot(out, near.normal) >= 0.0)
-            p = near.point + gap / near.distance * out;
+        const bool is_inside = glm::dot(p - near.point, near.normal) < 0.0;
+        if (!(near.distance > 0.0) || (near.distance >= gap && !is_inside)) continue;
+        p = near.point + (is_inside ? -gap : gap) / near.distance * (p - near.point);
     }
     return line;
 }
