@@ -94,7 +94,7 @@ public:
     void snap(const Pose& fit, bool joins, std::span<const std::size_t> along = {}) {
         script_.stay(0.8, "trigger second");
         script_.stay(0.2, "trigger second third");
-        script_.stay(0.2, joins ? "trigger second fourth" : "trigger second");
+        script_.stay(0.2, joins ? "trigger fourth" : "trigger");
         const Pose moved = fit * now_[piece_].inverse();
         now_[piece_] = fit;
         for (const std::size_t other : along) now_[other] = moved * now_[other];

@@ -163,7 +163,8 @@ private:
     void follow(int place) noexcept {
         for (std::size_t n = 0; n < poses_.size() && n < scene->count; ++n) {
             const coupling::SceneObject& object = scene->objects[n];
-            if (!object.body.map || !is_valid(object.pose) || !is_valid(object.body.home)) continue;
+            // A hidden piece moves with its group, too.
+            if (!is_valid(object.pose) || !is_valid(object.body.home)) continue;
             poses_[n] = unit(object.pose) * object.body.home.inverse();
         }
         if (place < 0 || !pose.connected || !is_valid(pose.get())) return;
