@@ -154,7 +154,7 @@ AttachedVessel::AttachedVessel(Layout layout, const AttachedVesselSettings& sett
       root_(layout.root),
       pedicle_rest_(layout.pedicle_rest),
       settings_(settings),
-      rope_(std::move(layout.points), std::move(layout.rest), settings.material),
+      rope_(std::move(layout.points), std::move(layout.rest), settings.material, settings.solver),
       body_side_(layout.body_side) {
     for (const Held& h : held_) rope_.hold(h.point, rope_.points()[h.point]);
 }

@@ -34,6 +34,8 @@ struct AttachedVesselSettings {
     RopeMaterial material = artery();
     double pedicle = 0.0;  ///< m in the leg that is kept before the first body; 0: all
     std::size_t most_points = RopeShape::most_points;
+    /// A tick in which a slack vessel slides over an edge may not settle: it goes on in the next one.
+    RopeSettings solver{.most_iterations = 2, .tolerance = 2e-5};
     double sewing_speed = 0.3;  ///< m/s of the end on its way to its site
 };
 

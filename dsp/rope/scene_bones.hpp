@@ -14,8 +14,8 @@
 
 namespace tactus::rope {
 
-/// The union of up to sixteen distance fields. A field counts only where a place is within it: elsewhere the way to its
-/// box is the distance. Nothing allocates.
+/// The union of up to sixteen distance fields. A field counts only where a place is within its grid; where there is none,
+/// `far` is the distance, without a normal. Nothing allocates.
 class SceneBones final : public Obstacle {
 public:
     void clear() noexcept { count_ = 0; }
@@ -37,13 +37,7 @@ public:
         for (std::size_t n = 0; n < count_; ++n) {
             const Part& part = parts_[n];
             const Vec3 local = part.back.apply(place);
-            const double outside = part.outside(local);
-            if (outside >= least) continue;
-            if (outside > 0.0) {
-                least = outside;
-                normal = Vec3(0.0);
-                continue;
-            }
+            if (part.outside(local) > 0.0) continue;
             const volume::Sample at = part.map->smooth_sample(local);
             const double steep = glm::length(at.gradient);
             const double value = steep > 1e-6 ? at.value / steep : at.value;
