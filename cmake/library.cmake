@@ -26,7 +26,7 @@ endforeach()
 add_executable(make_library tools/make_library.cpp)
 target_link_libraries(make_library PRIVATE tactus_assets tactus_flags)
 add_custom_command(
-  OUTPUT ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml
+  OUTPUT ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/cases/fibula-flap/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml
   # OpenVDB and TBB are not instrumented; elsewhere the variable means nothing.
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:make_library> ${CMAKE_BINARY_DIR}/library
   DEPENDS make_library
@@ -47,4 +47,4 @@ add_custom_command(
   VERBATIM)
 
 add_custom_target(bundled_library ALL
-  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml ${equaliser}.toml)
+  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/cases/fibula-flap/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml ${equaliser}.toml)

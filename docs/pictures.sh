@@ -37,6 +37,18 @@ picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
 picture scene-gripper gripper-on-arm --seconds 4 --frames 1
 picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500
 
+# The stages of the tutorial on reconstruction.
+if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" reconstruction "* ]]; then
+    "$tactus" render planning-reconstruction --seconds 19 --frames 38 --size 900x600 --no-legend --view-from iso \
+        --out "$folder/reconstruction" >/dev/null
+    stage=0
+    for frame in 2 5 14 22 31 37; do
+        stage=$((stage + 1))
+        mv "$folder/reconstruction/frame_$(printf %04d "$frame").png" "$pictures/reconstruction-$stage.png"
+        echo "reconstruction-$stage.png"
+    done
+fi
+
 # Displays: both eyes of the screen above the mirror, and the outer directions of the multi-view screen.
 picture display-mirror look-around --seconds 6 --frames 1 --display mirror --head head.pose --stereo side-by-side --size 1280x500
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" display-directions "* ]]; then
@@ -85,6 +97,7 @@ small fragments --seconds 2.2
 small gripper-on-arm --seconds 4
 small look-around --seconds 2
 small peg-in-hole --seconds 2.4 --clip=-y
+small planning-reconstruction --seconds 1 --view-from iso
 small planning-trauma --seconds 0.5
 small pop-through --seconds 2 --view-from front
 small press-fragments --seconds 2

@@ -99,6 +99,7 @@
     X(PathGuide, guide)                 \
     X(PlanFrame, training)              \
     X(PlaneGuide, guide)                \
+    X(PlannedPlace, planning)           \
     X(Player, vibration)                \
     X(PointGuide, guide)                \
     X(PointProxy, coupling)             \
@@ -141,6 +142,7 @@
     X(ToNumber, math)                   \
     X(ToSignal, math)                   \
     X(TransformPoint, geometry)         \
+    X(Vessel, planning)                 \
     X(Viscosity, guide)                 \
     X(VoxmapContact, contact)           \
     X(Workspace, device)                \

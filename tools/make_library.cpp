@@ -4,9 +4,11 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
 #include "assets/library/fibula.hpp"
+#include "assets/library/flap_plan.hpp"
 #include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
+#include "assets/vessel/track_file.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 
@@ -53,6 +55,28 @@ void make_case(const tactus::bone::Bone& mandible, const fs::path& folder) {
     fmt::print("{}: the hand needs {:.1f} s\n", (folder / "case.plan.json").string(), broken.seconds);
 }
 
+/// The case of the patch 'planning-reconstruction': pieces, vessels, plan and the script of the hand.
+void make_flap_case(const fs::path& folder) {
+    fs::create_directories(folder);
+    const tactus::library::FlapCase made = tactus::library::make_flap();
+    const tactus::library::FlapPieces pieces = tactus::library::cut_flap(made);
+    std::vector<std::string> files;
+    std::vector<std::uint64_t> hashes;
+    for (const tactus::bone::Bone& bone : pieces.bones) {
+        files.push_back(bone.name + ".vdb");
+        tactus::bone::save_bone(bone, folder / files.back());
+        tactus::Hash hash;
+        tactus::file::add_file(hash, folder / files.back());
+        hashes.push_back(hash.value());
+    }
+    tactus::vessel::write_track(made.artery, folder / "artery.csv");
+    tactus::vessel::write_track(made.vein, folder / "vein.csv");
+    tactus::file::write_whole_file(folder / "hand.txt", pieces.script);
+    tactus::cases::save_case_plan(tactus::library::plan_of(pieces, files, hashes), folder / "case.plan.json");
+    fmt::print("{}: the hand needs {:.1f} s in {} lines\n", (folder / "case.plan.json").string(), pieces.seconds,
+               pieces.moves);
+}
+
 /// What the tasks of the library need beside their texts: a bone and the structures to spare.
 void make_tasks(const fs::path& folder) {
     const fs::path fibula = folder / "bones" / "fibula.vdb", tasks = folder / "tasks";
@@ -76,6 +100,7 @@ void make_library(const fs::path& folder) {
     tactus::bone::save_bone(mandible, bone);
     fmt::print("{}\n", bone.string());
     make_case(mandible, folder / "cases" / "mandible-twelve");
+    make_flap_case(folder / "cases" / "fibula-flap");
     const fs::path fragments = folder / "bones" / "fragments.vdb";
     tactus::bone::save_bones(tactus::library::make_fragments(), fragments);
     fmt::print("{}\n", fragments.string());

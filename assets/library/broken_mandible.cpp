@@ -4,6 +4,7 @@
 #include "assets/bone/labels.hpp"
 #include "assets/cases/break_bone.hpp"
 #include "assets/cases/paint.hpp"
+#include "assets/library/hand_script.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
@@ -136,36 +137,8 @@ Vec3 way_in(const std::vector<contact::SurfacePoint>& points, const Pose& truth,
     return best;
 }
 
-/// Builds the lines of a hand script in order of time.
-class Script {
-public:
-    void go(double seconds, const Pose& to, const char* held) {
-        time_ += seconds;
-        text_ += fmt::format("{:.3f} s: {:.9g} {:.9g} {:.9g} mm, {} deg | {}\n", time_, to.position.x * 1e3,
-                             to.position.y * 1e3, to.position.z * 1e3, turns(to.orientation), held);
-        at_ = to;
-    }
-    void stay(double seconds, const char* held) { go(seconds, at_, held); }
-    double time() const { return time_; }
-    const std::string& text() const { return text_; }
-
-private:
-    /// About the fixed axes x, then y, then z.
-    static std::string turns(const Quat& q) {
-        const Mat3 m = glm::mat3_cast(q);
-        const double y = std::asin(std::clamp(-m[0][2], -1.0, 1.0)), x = std::atan2(m[1][2], m[2][2]),
-                     z = std::atan2(m[0][1], m[0][0]);
-        constexpr double degrees = 180.0 / std::numbers::pi;
-        return fmt::format("{:.9g} {:.9g} {:.9g}", x * degrees, y * degrees, z * degrees);
-    }
-
-    double time_ = 0.0;
-    std::string text_;
-    Pose at_;
-};
-
 /// Snap for two searches of the matcher, settle, and release before the piece is pulled again.
-void snap_and_settle(Script& script) {
+void snap_and_settle(HandScript& script) {
     script.stay(0.05, "trigger second");
     script.stay(0.95, "trigger second third");
     script.stay(0.25, "second third");
@@ -173,7 +146,7 @@ void snap_and_settle(Script& script) {
 }
 
 std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions& options, double& seconds) {
-    Script script;
+    HandScript script;
     const auto& order = broken.order;
     std::vector<Vec3> standing;
     const auto stand = [&](std::size_t n) {

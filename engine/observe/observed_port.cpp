@@ -16,6 +16,7 @@ constexpr double kept_seconds = 1.0;
 
 bool is_bone(const ValueType& type) { return &type == &value::snapshot<volume::BoneSnapshot>; }
 bool is_scene(const ValueType& type) { return &type == &value::snapshot<coupling::Scene>; }
+bool is_rope(const ValueType& type) { return &type == &value::snapshot<rope::RopeShape>; }
 bool is_body(const ValueType& type) { return &type == &value::snapshot<coupling::Body>; }
 
 std::size_t words_of(std::size_t bytes) { return (bytes + 7) / 8; }
@@ -151,7 +152,7 @@ ObservedPort::ObservedPort(Identity who, const ValueType& of, const std::byte* i
             if (const coupling::Body& body = scene.objects[i].body; body.map || body.shell)
                 bodies.push_back(copy_of(body, identity.name));
     }
-    if (!type.version && value_size_ == 0) value_size_ = type.size;
+    if ((!type.version || is_rope(type)) && value_size_ == 0) value_size_ = type.size;
     if (value_size_ == 0) return;
     latest_ = std::make_unique<LatestValue>(1 + words_of(value_size_));
     words_.resize(1 + words_of(value_size_));
@@ -236,7 +237,8 @@ void ObservedPort::send(std::int64_t first, const std::byte* values, std::size_t
 
 bool ObservedPort::latest(std::byte* value, std::int64_t& index) const noexcept {
     if (!latest_) return false;
-    static_assert(sizeof(SeenScene) >= sizeof(Events), "the largest value fits");
+    static_assert(sizeof(SeenScene) >= sizeof(Events) && sizeof(SeenScene) >= sizeof(rope::RopeShape),
+                  "the largest value fits");
     std::uint64_t words[1 + (sizeof(SeenScene) + 7) / 8];
     if (!latest_->read(words)) return false;
     index = static_cast<std::int64_t>(words[0]);

@@ -24,9 +24,9 @@ namespace tactus::observe {
 
 /// What a value looks like from outside.
 template <class T>
-concept Observable =
-    std::same_as<T, Pose> || std::same_as<T, Twist> || std::same_as<T, Wrench> || std::same_as<T, Vec3> ||
-    std::same_as<T, double> || std::same_as<T, bool> || std::same_as<T, float> || std::same_as<T, SeenScene>;
+concept Observable = std::same_as<T, Pose> || std::same_as<T, Twist> || std::same_as<T, Wrench> ||
+                     std::same_as<T, Vec3> || std::same_as<T, double> || std::same_as<T, bool> ||
+                     std::same_as<T, float> || std::same_as<T, SeenScene> || std::same_as<T, rope::RopeShape>;
 
 /// Follows outputs by name through every edit of a run. Give it to EngineOptions::observer; it must outlive the engine's
 /// run, and may look on before, while and after. All members may be called from any thread.

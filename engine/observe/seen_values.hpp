@@ -6,6 +6,7 @@
 #include "dsp/core/time.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "dsp/rope/rope_shape.hpp"
 #include "dsp/volume/bricks.hpp"
 #include "dsp/volume/grid.hpp"
 

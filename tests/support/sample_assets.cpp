@@ -3,6 +3,7 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/task_asset.hpp"
+#include "graph/node/vessel_asset.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <cmath>
@@ -86,6 +87,15 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
         task.limits = {5.0, 1.0, 0.5};
         task.spared.push_back({"ball", 1e-3, ball().distance});
         return std::make_shared<const training::Task>(std::move(task));
+    }
+    // Beside the ball of bone: past it, and on beyond it.
+    if (type_name == AssetLoader<vessel::Course>::name) {
+        vessel::Course course;
+        for (int n = 0; n <= 60; ++n) {
+            course.points.push_back(Vec3(13e-3, 0.0, (50.0 - n) * 1e-3));
+            course.radius.push_back(1.5e-3);
+        }
+        return std::make_shared<const vessel::Course>(std::move(course));
     }
     throw Error("no sample of a " + std::string(type_name));
 }

@@ -31,6 +31,7 @@
     X(fracture, bones, fractures)         \
     X(fracture_surface, bones, fractures) \
     X(snap, bones, fractures)             \
+    X(flap, bones, fractures)             \
     X(plan, planning, fractures)          \
     X(session, training, training)        \
     X(score, training, training)          \

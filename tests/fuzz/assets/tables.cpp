@@ -5,6 +5,7 @@
 #include "assets/sound/response_file.hpp"
 #include "assets/table/deflection_file.hpp"
 #include "assets/table/trajectory.hpp"
+#include "assets/vessel/course_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/read_or_refuse.hpp"
 
@@ -20,6 +21,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     });
     read_or_refuse(file.path(), [](const auto& path) {
         for (const Vec3& place : display::load_places(path))
+            if (!is_finite(place)) std::abort();
+    });
+    read_or_refuse(file.path(), [](const auto& path) {
+        for (const Vec3& place : vessel::load_course(path).points)
             if (!is_finite(place)) std::abort();
     });
     read_or_refuse(file.path(), [](const auto& path) { display::load_touches(path); });

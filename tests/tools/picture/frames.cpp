@@ -117,6 +117,30 @@ TEST_CASE("the fragments of a plan are in the picture, each in a colour of its o
     CHECK(std::ranges::count_if(count, [](int pixels) { return pixels > 40; }) >= 6);
 }
 
+TEST_CASE("vessels are in the picture, artery and vein in their colours") {
+    if (!can_render()) return;
+    const Folder folder;
+    const Outcome outcome = folder.tactus(
+        "render planning-reconstruction --seconds 0.05 --frames 1 --size 640x400 "
+        "--no-legend --view-from iso --out " +
+        folder.path.string());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const Pixels seen(folder.path / "frame_0001.png");
+    // Light changes how bright a colour is, hardly its hue.
+    const auto like = [&](const Vec3& colour) {
+        int count = 0;
+        for (std::size_t at = 0; at + 2 < seen.rgb.size(); at += 3) {
+            const Vec3 c(seen.rgb[at], seen.rgb[at + 1], seen.rgb[at + 2]);
+            if (glm::length(c) > 60.0) count += glm::dot(glm::normalize(c), glm::normalize(colour)) > 0.996;
+        }
+        return count;
+    };
+    CHECK(like(picture::scene_colours::artery_colour) > 100);
+    // The vein lies behind the artery, mostly.
+    CHECK(like(picture::scene_colours::vein_colour) > 12);
+}
+
 TEST_CASE("frames come at even times, whole, and do not depend on threads", "[slow]") {
     if (!can_render()) return;
     const Folder folder;

@@ -61,6 +61,18 @@ TEST_CASE("a held fragment is where its coupling says, and the hand where the de
     CHECK(peg.held[0].grip_at.position.z == Approx(-0.03));
 }
 
+TEST_CASE("the vessels of a reconstruction are ropes, and a planned place is a target") {
+    const SceneOutline outline = outline_in_library("planning-reconstruction");
+    REQUIRE(outline.ropes.size() == 2);
+    CHECK(outline.ropes[0].shape == "artery.rope");
+    CHECK(outline.ropes[1].shape == "vein.rope");
+    const auto ports = outline.ports();
+    CHECK(std::ranges::find(ports, "vein.rope") != ports.end());
+    REQUIRE(outline.targets.size() == 1);
+    CHECK(outline.targets[0].pose == "planned.target");
+    CHECK(outline.targets[0].fits == "planned.fits");
+}
+
 TEST_CASE("every patch of the library has something to see, or has no place in space") {
     for (const char* patch : {"fragments", "gripper-on-arm", "gripper-twum", "gripper-wqsm", "peg-in-hole",
                               "pop-through", "press-fragments", "saw-training", "touch-sphere"})

@@ -6,6 +6,7 @@
 #include "dsp/core/random.hpp"
 #include "dsp/rope/measure.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/vessels/rope_tick.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -26,6 +27,7 @@ constexpr std::uint64_t pulls_per_rope = 50, ticks_per_pull = 20;
 
 struct RopeBenchChoice {
     int pulls = 100'000;
+    int ticks = 10'000;
     bool json = false;
 };
 
@@ -85,9 +87,11 @@ int bench_rope(const RopeBenchChoice& choice) {
     for (std::uint64_t seed = 1; seed <= ropes; ++seed) pull_one(seed, 33, pulls_per_rope, small);
     for (std::uint64_t seed = 1; seed <= 4; ++seed) pull_one(seed, 65, pulls_per_rope, large);
     std::ranges::sort(large.microseconds);
-    const auto quantile = [&](double q) {
-        return large.microseconds[static_cast<std::size_t>(q * static_cast<double>(large.microseconds.size() - 1))];
+    const auto of_sorted = [](const std::vector<double>& sorted, double q) {
+        return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
     };
+    const auto quantile = [&](double q) { return of_sorted(large.microseconds, q); };
+    const RopeTickCost tick_cost = measure_rope_tick(static_cast<std::size_t>(choice.ticks));
     const double share = static_cast<double>(small.unsolved) / static_cast<double>(small.ticks);
     if (choice.json) {
         const file::Json json{{"pulls", ropes * pulls_per_rope},
@@ -95,7 +99,16 @@ int bench_rope(const RopeBenchChoice& choice) {
                               {"moved_j", small.moved},
                               {"unsolved_share", share},
                               {"largest_residual_n", small.residual},
-                              {"tick_64_us", {{"median", quantile(0.5)}, {"p99", quantile(0.99)}}}};
+                              {"tick_64_us", {{"median", quantile(0.5)}, {"p99", quantile(0.99)}}},
+                              {"force_tick_us",
+                               {{"median", of_sorted(tick_cost.whole, 0.5)},
+                                {"p99", of_sorted(tick_cost.whole, 0.99)},
+                                {"greatest", tick_cost.whole.back()},
+                                {"rope_median", of_sorted(tick_cost.rope, 0.5)},
+                                {"rope_p99", of_sorted(tick_cost.rope, 0.99)}}},
+                              {"force_tick_rope_points", tick_cost.points},
+                              {"force_tick_unsolved_share", tick_cost.unsolved},
+                              {"force_tick_touching_share", tick_cost.touching}};
         fmt::print("{}\n", json.dump(2));
         return done;
     }
@@ -106,12 +119,24 @@ int bench_rope(const RopeBenchChoice& choice) {
     fmt::print("{:.2f} % of ticks end at their most iterations; largest residual {:.1e} N\n", 100.0 * share,
                small.residual);
     fmt::print("a tick of 64 segments: median {:.0f} µs, p99 {:.0f} µs\n", quantile(0.5), quantile(0.99));
+    fmt::print(
+        "a force tick of the bundled reconstruction, a held group of three segments between two stumps and three ropes "
+        "of "
+        "{} points together:\n  median {:.0f} µs, p99 {:.0f} µs, greatest {:.0f} µs; each rope median {:.0f} µs, p99 "
+        "{:.0f} "
+        "µs, {:.2f} % at their most iterations; pieces touch in {:.0f} % of the ticks\n",
+        tick_cost.points, of_sorted(tick_cost.whole, 0.5), of_sorted(tick_cost.whole, 0.99), tick_cost.whole.back(),
+        of_sorted(tick_cost.rope, 0.5), of_sorted(tick_cost.rope, 0.99), 100.0 * tick_cost.unsolved,
+        100.0 * tick_cost.touching);
     return done;
 }
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<RopeBenchChoice>();
     verb.add("--pulls", choice->pulls, "random pulls").shows_default().range(1, 10'000'000);
+    verb.add("--ticks", choice->ticks, "force ticks of the bundled reconstruction")
+        .shows_default()
+        .range(100, 1'000'000);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return bench_rope(*choice); };
 }

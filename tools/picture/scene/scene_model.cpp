@@ -37,6 +37,7 @@ SceneModel::~SceneModel() {
         if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
     for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
     for (const auto& [path, task] : tasks_) remove(task);
+    for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     renderer_.meshes().remove(notes_mesh_);
 }
@@ -53,6 +54,12 @@ void SceneModel::follow(SceneOutline outline) {
         const bool gone =
             std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
         if (gone) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(ropes_, [&](const auto& rope) {
+        const bool gone =
+            std::ranges::find(outline_.ropes, rope.first, &SceneOutline::Rope::shape) == outline_.ropes.end();
+        if (gone) meshes.remove(rope.second.mesh);
         return gone;
     });
     std::erase_if(still_bones_, [&](const auto& bone) {
@@ -144,6 +151,7 @@ display::Picture& SceneModel::update() {
     show_balls();
     show_gripper();
     show_guides();
+    show_ropes();
     show_tasks();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);

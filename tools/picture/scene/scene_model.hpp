@@ -109,6 +109,7 @@ private:
         std::string problem;  ///< why it is missing
     };
     void show_guides();
+    void show_ropes();
     void show_tasks();
     TaskMesh make_task(const std::string& path);
     void remove(const TaskMesh& task);
@@ -133,6 +134,12 @@ private:
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::string, TaskMesh> tasks_;  // by path
+    struct RopeMesh {
+        display::MeshPool::Mesh mesh = -1;
+        std::uint64_t content = 0;  // hash of the shape that it shows
+        display::Bounds bounds;
+    };
+    std::map<std::string, RopeMesh> ropes_;  // by port
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture

@@ -121,6 +121,7 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
             if (const std::string name = view.asset(v.asset), path = path_of(view.plan, name); !path.empty())
                 outline.still_bones.push_back({name, path, v.pose});
             break;
+        case VisualKind::rope: outline.ropes.push_back({view.node.name, v.value}); break;
         case VisualKind::point:
         case VisualKind::line:
         case VisualKind::plane:
@@ -201,6 +202,7 @@ std::vector<std::string> SceneOutline::ports() const {
     for (const auto& b : still_bones) all.insert(b.pose);
     for (const auto& l : leads) all.insert({l.pose, l.target, l.when});
     for (const auto& r : readings) all.insert({r.value, r.pose});
+    for (const Rope& rope : ropes) all.insert(rope.shape);
     for (const auto& [node, v] : guides) all.insert({v.pose, v.hand, v.force, v.frame});
     all.erase("");
     return {all.begin(), all.end()};

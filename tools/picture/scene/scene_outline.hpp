@@ -85,6 +85,10 @@ struct SceneOutline {
         std::string node;
         Visual visual;
     };
+    /// A rope, such as a vessel.
+    struct Rope {
+        std::string node, shape;
+    };
     /// A planned cut, from a task file.
     struct Task {
         std::string node, path;
@@ -110,6 +114,7 @@ struct SceneOutline {
     std::vector<Lead> leads;
     std::vector<Reading> readings;
     std::vector<Guide> guides;
+    std::vector<Rope> ropes;
     std::vector<Task> tasks;
     std::vector<Place> places;  ///< not drawn
 

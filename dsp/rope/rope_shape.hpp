@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rope as others see it.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tactus::rope {
+
+/// The points of a rope in a scene, and the share of the strain limit that each of its segments has reached. By value.
+struct RopeShape {
+    static constexpr std::string_view wire_name = "rope";
+    static constexpr std::size_t most_points = 65;
+
+    std::array<std::array<float, 3>, most_points> points{};  ///< m
+    std::array<float, most_points> load{};  ///< of the segment after a point: 0 slack, 1 at the limit or beyond
+    std::uint32_t count = 0;  ///< of points; 0: there is none
+    float radius = 0.0f;  ///< m
+    std::uint32_t is_vein = 0;
+    std::int64_t version = 0;
+    std::uint64_t content_hash = 0;
+};
+
+}  // namespace tactus::rope
