@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <optional>
 
 namespace tactus::bench {
 
@@ -39,7 +40,7 @@ void write_nrrd(const volume::Grid& grid, const char* type, const std::function<
     }
 }
 
-constexpr float clearly_bone = 300.0f;  // HU; above the threshold of every file
+constexpr float clearly_bone = 700.0f;  // HU; above the threshold of every file
 
 /// A dab at each place that the scripted user would paint.
 std::vector<segment::SeedLabel> strokes_of(const SeededCase& real, int dabs) {
@@ -66,24 +67,29 @@ Json format_row(const SeededCase& real, int dabs) {
     const auto folder = std::filesystem::temp_directory_path() / fmt::format("tactus_formats_{}", ::getpid());
     std::filesystem::create_directories(folder);
     const std::vector<segment::SeedLabel> strokes = strokes_of(real, dabs);
-    const auto labels_of = [&](const char* name) {
+    double threshold = 0.0;  // of the last one
+    const auto labels_of = [&](const char* name, std::optional<double> given = {}) {
         study::SegmentSettings settings;
+        settings.threshold = given;
         settings.scan = folder / name;
         settings.run = study::on_threads();
         const study::ScanGraph scan = study::scan_graph(settings);
+        threshold = scan.threshold;
         return study::segment_scan(scan, strokes, settings, "seeds").map.label;
     };
+    // These scans are masked with zeros, which a window moves: air instead, as a scanner has it.
+    const auto hounsfield = [](double v) { return v == 0.0 ? -1000.0 : v; };
     // As unsigned numbers hold them, too.
     const auto whole = [](double v) { return std::clamp(std::round(v), 0.0, 32767.0); };
     write_nrrd<std::int16_t>(real.grid, "int16", whole, folder / "int16.nrrd");
     write_nrrd<std::uint16_t>(real.grid, "uint16", whole, folder / "uint16.nrrd");
     write_nrrd<float>(real.grid, "float", whole, folder / "float.nrrd");
-    const auto same = [](double v) { return v; };
-    write_nrrd<float>(real.grid, "float", same, folder / "hu.nrrd");
-    write_nrrd<float>(real.grid, "float", [](double v) { return v / 1000.0; }, folder / "thousandth.nrrd");
+    write_nrrd<float>(real.grid, "float", hounsfield, folder / "hu.nrrd");
+    write_nrrd<float>(real.grid, "float", [&](double v) { return hounsfield(v) / 1000.0; }, folder / "thousandth.nrrd");
     constexpr double low = -200.0, high = 1800.0;
     write_nrrd<std::uint8_t>(
-        real.grid, "uint8", [](double v) { return 255.0 * std::clamp((v - low) / (high - low), 0.0, 1.0); },
+        real.grid, "uint8",
+        [&](double v) { return 255.0 * std::clamp((hounsfield(v) - low) / (high - low), 0.0, 1.0); },
         folder / "byte.nrrd");
     const auto difference = [](const auto& a, const auto& b) {
         std::size_t bone = 0, other = 0;
@@ -94,11 +100,14 @@ Json format_row(const SeededCase& real, int dabs) {
         return bone ? double(other) / double(bone) : 1.0;
     };
     const auto int16 = labels_of("int16.nrrd"), hu = labels_of("hu.nrrd");
-    Json row{{"case", real.name},
-             {"uint16", difference(int16, labels_of("uint16.nrrd"))},
-             {"float", difference(int16, labels_of("float.nrrd"))},
-             {"hu_over_1000", difference(hu, labels_of("thousandth.nrrd"))},
-             {"eight_bits", difference(hu, labels_of("byte.nrrd"))}};
+    Json row{{"case", real.name}, {"threshold", threshold}};
+    row["uint16"] = difference(int16, labels_of("uint16.nrrd"));
+    row["float"] = difference(int16, labels_of("float.nrrd"));
+    row["hu_over_1000"] = difference(hu, labels_of("thousandth.nrrd"));
+    // A threshold on the edge between two of the 256 steps: both have the same bone then.
+    const double step = (high - low) / 255.0, steps = std::round((row["threshold"].get<double>() - low) / step);
+    row["eight_bits"] =
+        difference(labels_of("hu.nrrd", low + (steps - 0.5) * step), labels_of("byte.nrrd", steps - 0.5));
     std::filesystem::remove_all(folder);
     return row;
 }
