@@ -26,6 +26,8 @@ bool looks_like_labels(const Tally& tally) {
 
 HuKind guess_hu(const Tally& tally) {
     if (tally.count > 0 && tally.low <= -500.0f) return HuKind::calibrated;
+    // Eight bits hold no HU: a window of a scan, in which air is 0 and soft tissue is not.
+    if (tally.whole && tally.high <= float(highest_label)) return HuKind::scanner;
     return tally.zeros * 2 > tally.count && tally.border_zeros * 100 >= tally.border * 99 ? HuKind::masked
                                                                                           : HuKind::scanner;
 }

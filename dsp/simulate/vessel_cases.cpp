@@ -71,21 +71,30 @@ VesselCase branch_case(double radius, double angle_deg, double ratio, std::uint6
     return made;
 }
 
-VesselCase stenosis_case(double radius, std::uint64_t seed) {
+VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, double noise) {
     VesselPhantom phantom({40, 40, 90}, voxel);
-    VesselCase made{fmt::format("stenosis 70 %, R {} voxels", radius), {}, {}, {}, radius * voxel, {}};
+    const double radius = stenosis.radius * voxel;
+    VesselCase made{
+        fmt::format("stenosis {} % over {} R, R {} voxels", stenosis.percent, stenosis.length, stenosis.radius),
+        {},
+        {},
+        {},
+        radius,
+        {}};
     made.lines = {oblique(8, 82)};
     const double length = glm::length(made.lines[0].back() - made.lines[0].front());
-    phantom.add_tube(
-        made.lines[0],
-        [&](double s) {
-            const double x = (s - 0.6) * length / (4.0 * made.radius);
-            const double narrower = std::abs(x) < 0.5 ? 0.35 * (1.0 + std::cos(2.0 * std::numbers::pi * x)) : 0.0;
-            return made.radius * (1.0 - narrower);
-        },
-        1.0);
+    const auto lost = [&](double s) {  // of the radius
+        const double x = std::abs(s - 0.6) * length / (stenosis.length * radius);
+        if (x >= 0.5) return 0.0;
+        const double inner = stenosis.shape == TrueStenosis::Shape::flat ? 0.25 : 0.0;
+        const double y = std::max(0.0, x - inner) / (0.5 - inner);
+        return 0.01 * stenosis.percent * 0.5 * (1.0 + std::cos(std::numbers::pi * y));
+    };
+    phantom.add_lumen(
+        made.lines[0], [&](double s) { return radius * (1.0 - lost(s)); }, 1.0,
+        [&](double s) { return Vec3(stenosis.aside * radius * lost(s), 0.0, 0.0); });
     made.seed = made.lines[0][made.lines[0].size() / 4];
-    made.scan = phantom.scan(0.0, 0.2, seed);
+    made.scan = phantom.scan(0.0, noise, seed);
     return made;
 }
 

@@ -29,8 +29,15 @@ VesselCase ends_case(double radius, double noise, std::uint64_t seed);
 /// Two vessels leave at `angle_deg`. `ratio` 1: both turn by half the angle and have 0.8 of the radius; otherwise one goes
 /// straight on and the other has `ratio` of the radius.
 VesselCase branch_case(double radius, double angle_deg, double ratio, std::uint64_t seed);
-/// Narrowed by 70 % over four radii, the least radius in the middle.
-VesselCase stenosis_case(double radius, std::uint64_t seed);
+/// A narrowing of a round lumen.
+struct TrueStenosis {
+    double radius = 4.0;  ///< samples
+    double percent = 70.0;  ///< of the diameter, in the middle
+    double length = 4.0;  ///< radii, from end to end
+    enum class Shape { cosine, flat } shape = Shape::cosine;  ///< flat: even, with shoulders of a quarter of the length
+    double aside = 0.0;  ///< share of what is lost that is lost on one side alone: 0 round, 1 wholly
+};
+VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, double noise = 0.2);
 /// Interrupted over two radii.
 VesselCase gap_case(double radius, std::uint64_t seed);
 /// A vessel of 350 half a sample beside a wall of 1000, along 20 radii; noise 70.

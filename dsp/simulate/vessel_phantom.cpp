@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::simulate {
@@ -97,6 +98,58 @@ void VesselPhantom::add_tube(const std::vector<Vec3>& line, const std::function<
                     set(i, j, k, value);
                 }
     }
+}
+
+void VesselPhantom::add_lumen(const std::vector<Vec3>& line, const std::function<double(double)>& radius, double value,
+                              const std::function<Vec3(double)>& aside) {
+    const double fine = layout_.spacing.x / finer;
+    std::vector<double> radii;
+    std::vector<Vec3> moved;
+    double most = 0.0;
+    for (std::size_t n = 0; n < line.size(); ++n) {
+        const double s = double(n) / double(line.size() - 1);
+        radii.push_back(radius(s));
+        moved.push_back(aside ? aside(s) : Vec3(0.0));
+        most = std::max(most, radii[n] + glm::length(moved[n]));
+    }
+    struct Nearest {
+        float distance = std::numeric_limits<float>::infinity();
+        std::uint32_t point = 0;
+    };
+    std::vector<Nearest> nearest(fine_.size());
+    const int w = layout_.size[0] * finer, h = layout_.size[1] * finer, d = layout_.size[2] * finer;
+    const auto index = [&](int i, int j, int k) {
+        return (static_cast<std::size_t>(k) * static_cast<std::size_t>(h) + static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(w) +
+               static_cast<std::size_t>(i);
+    };
+    for (std::size_t n = 0; n < line.size(); ++n) {
+        const Vec3 low = (line[n] - most) / fine + double(finer - 1) / 2.0,
+                   high = (line[n] + most) / fine + double(finer - 1) / 2.0;
+        for (int k = std::max(0, static_cast<int>(low.z)); k <= std::min(d - 1, static_cast<int>(high.z) + 1); ++k)
+            for (int j = std::max(0, static_cast<int>(low.y)); j <= std::min(h - 1, static_cast<int>(high.y) + 1); ++j)
+                for (int i = std::max(0, static_cast<int>(low.x)); i <= std::min(w - 1, static_cast<int>(high.x) + 1);
+                     ++i) {
+                    const Vec3 off = fine_position(i, j, k) - line[n];
+                    const float distance = static_cast<float>(glm::dot(off, off));
+                    Nearest& so_far = nearest[index(i, j, k)];
+                    if (distance < so_far.distance) so_far = {distance, static_cast<std::uint32_t>(n)};
+                }
+    }
+    const Vec3 at_start = glm::normalize(line[1] - line[0]);
+    const Vec3 at_end = glm::normalize(line[line.size() - 1] - line[line.size() - 2]);
+    for (int k = 0; k < d; ++k)
+        for (int j = 0; j < h; ++j)
+            for (int i = 0; i < w; ++i) {
+                const Nearest& found = nearest[index(i, j, k)];
+                if (!std::isfinite(found.distance)) continue;
+                const double r = radii[found.point];
+                const Vec3 p = fine_position(i, j, k), off = p - line[found.point] - moved[found.point];
+                if (!(glm::dot(off, off) < r * r)) continue;
+                if (found.point == 0 && glm::dot(p - line.front(), at_start) < 0.0) continue;
+                if (found.point + 1 == line.size() && glm::dot(p - line.back(), at_end) > 0.0) continue;
+                set(i, j, k, value);
+            }
 }
 
 void VesselPhantom::add_body(const std::function<bool(const Vec3&)>& inside, double value) {

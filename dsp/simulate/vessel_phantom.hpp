@@ -22,6 +22,10 @@ public:
     /// Balls of radius(s) at the points of `line`, s from 0 to 1, at most a sixth of a sample apart; cut flat across the line at
     /// both ends.
     void add_tube(const std::vector<Vec3>& line, const std::function<double(double)>& radius, double value);
+    /// Places closer to the line than the radius at its nearest point: a vessel whose radius changes quickly. (Balls of the wide
+    /// parts would reach into a short narrowing.) `aside`, not empty: moves the cross-section there. Both ends flat.
+    void add_lumen(const std::vector<Vec3>& line, const std::function<double(double)>& radius, double value,
+                   const std::function<Vec3(double)>& aside = {});
     /// Every place for which `inside` is true.
     void add_body(const std::function<bool(const Vec3&)>& inside, double value);
 

@@ -73,10 +73,19 @@ struct Table {
     }
 };
 
+const Table& table_of_discs() {
+    static const Table table;
+    return table;
+}
+
 }  // namespace
 
+double blurred_disc(double distance, double radius, double blur) {
+    return table_of_discs().at(distance / blur, radius / blur);
+}
+
 ProfileValue blurred_profile(double squared_distance, double radius, double blur) {
-    static const Table table;
+    const Table& table = table_of_discs();
     const double d = std::sqrt(squared_distance) / blur, r = radius / blur;
     constexpr double h = 0.05;
     const double by_distance = (table.at(d + h, r) - table.at(std::max(0.0, d - h), r)) / (std::min(d, h) + h);

@@ -23,5 +23,7 @@ inline ProfileValue smooth_profile(double squared_distance, double radius) {
 /// A disc of the radius under a normal blur of standard deviation `blur`:
 /// ∫₀ʳ s/q² exp(-(d² + s²) / 2q²) I₀(d s / q²) ds. Interpolated from a table, error below 1e-3.
 ProfileValue blurred_profile(double squared_distance, double radius, double blur);
+/// Its value alone. Lengths in m.
+double blurred_disc(double distance, double radius, double blur);
 
 }  // namespace tactus::vessel

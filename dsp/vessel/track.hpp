@@ -32,6 +32,16 @@ struct LostStretch {
     double from = 0.0, to = 0.0;  ///< m along the branch
 };
 
+/// Narrowest place of a branch, outside of its parent's reach.
+struct Stenosis {
+    std::size_t node = 0;
+    double radius = 0.0;            ///< m
+    double reference_radius = 0.0;  ///< m: of the vessel before and after it, interpolated
+    double percent = 0.0;           ///< narrowing of the diameter; 100 in a lost stretch
+    double error_percent = 0.0;     ///< standard deviation of it; 0: not fitted, as it is no narrowing or a long one
+    bool is_uncertain = false;      ///< the percentage may be wrong by more than ten
+};
+
 struct Branch {
     std::vector<Node> nodes;
     int parent = -1;       ///< branch that this one leaves; -1: the branch of the seed
@@ -40,22 +50,12 @@ struct Branch {
     End end = End::contrast;
     int meets = -1;        ///< branch that it meets at its end, for End::meets_track
     double free_from = 0.0;  ///< m along: before it the parent is so near that it adds to the radius
+    std::optional<Stenosis> stenosis;  ///< none for branches shorter than six radii
 
     double length() const { return nodes.empty() ? 0.0 : nodes.back().along; }
     /// Stretches of at least two nodes. A single node without contrast, as at a fork, is none.
     std::vector<LostStretch> lost() const;
 };
-
-/// Narrowest place of a branch, outside of lost stretches and of its parent's reach.
-struct Stenosis {
-    std::size_t node = 0;
-    double radius = 0.0;            ///< m
-    double reference_radius = 0.0;  ///< m: medians of the vessel before and after it, interpolated
-    double percent = 0.0;           ///< narrowing of the diameter
-    bool is_uncertain = false;      ///< narrower than 1.5 samples, or so short that it reads too wide
-};
-/// None for branches shorter than six radii.
-std::optional<Stenosis> stenosis_of(const Branch& branch);
 
 struct Track {
     std::vector<Branch> branches;  ///< the first holds the seed

@@ -2,6 +2,7 @@
 #include "dsp/vessel/tracker.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/vessel/refine.hpp"
+#include "dsp/vessel/stenosis.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -50,6 +51,8 @@ public:
         if (settings_.branches)
             for (std::size_t n = 0; n < found_.track.branches.size(); ++n) find_branches(n);
         cut_forked_ends();
+        for (Branch& branch : found_.track.branches)
+            branch.stenosis = measured_stenosis(search_, found_.track.noise, branch);
         found_.track.seed_node = std::min(found_.track.seed_node, found_.track.branches[0].nodes.size() - 1);
         return std::move(found_);
     }

@@ -2,6 +2,7 @@
 #include "tools/session/results.hpp"
 
 #include "assets/bone/bone.hpp"
+#include "assets/segment/seeds_file.hpp"
 #include "devices/display/legend.hpp"
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/png.hpp"
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -76,6 +78,19 @@ display::Image picture_of(const bone::Bone& bone, const std::string& name, const
     return image;
 }
 
+/// Strokes of all brushes; those of one name together.
+std::vector<segment::SeedLabel> seeds_of(const Report& report) {
+    std::vector<segment::SeedLabel> labels;
+    for (const auto& [name, result] : report.results) {
+        const auto* painted = std::any_cast<segment::SeedLabel>(&result);
+        if (!painted || painted->strokes.empty()) continue;
+        const auto known = std::ranges::find(labels, painted->name, &segment::SeedLabel::name);
+        if (known == labels.end()) labels.push_back(*painted);
+        else known->strokes.insert(known->strokes.end(), painted->strokes.begin(), painted->strokes.end());
+    }
+    return labels;
+}
+
 }  // namespace
 
 WrittenFiles write_results(const Report& report, const std::filesystem::path& folder, bool with_pictures) {
@@ -93,6 +108,8 @@ WrittenFiles write_results(const Report& report, const std::filesystem::path& fo
     for (const auto& [name, result] : report.results)
         if (const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result))
             write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { bone::save_bone(**bone, file); });
+    if (const std::vector<segment::SeedLabel> seeds = seeds_of(report); !seeds.empty())
+        write(written.names, "seeds.json", [&] { segment::write_seeds(seeds, folder / "seeds.json"); });
     for (const auto& [name, result] : report.results) {
         const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result);
         if (!bone || !with_pictures) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What finds where a fragment fits, what paints it, and the coupling that is led there.
+#include "assets/segment/seeds_file.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "tests/nodes/planning/broken_case.hpp"
 #include "tests/support/catch.hpp"
@@ -139,6 +140,40 @@ TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
     CHECK(painted.points[100].label == contact::surface_label::fracture);
     node.run(20);
     CHECK(node.last<double>("painted") == 0.0);
+}
+
+TEST_CASE("the strokes of a brush are seeds of a fragment") {
+    const auto bone = std::make_shared<const bone::Bone>(broken()->bones[0]);
+    NodeHarness node("brush", servo);
+    node.asset("bone", bone).set("radius", "2 mm").set("label", "left half");
+    // Along the surface, lifted in the middle, and back over a part of it with the eraser.
+    const Vec3 at = bone->points[100].position;
+    const auto place = [&](std::int64_t k) {
+        const std::int64_t along = k < 400 ? k : 800 - k;
+        return at + Vec3(0.0, 0.01 * mm * static_cast<double>(along % 200), k >= 190 && k < 210 ? 0.1 : 0.0);
+    };
+    node.feed<Pose>("tool", [&](std::int64_t k) { return Pose{place(k), {1.0, 0.0, 0.0, 0.0}}; });
+    node.feed<bool>("paint", [](std::int64_t k) { return k >= 10 && k < 400; });
+    node.feed<bool>("erase", [](std::int64_t k) { return k == 450; });
+    node.disconnect("body");
+    node.prepare();
+    node.run(400);
+    const auto seeds_of = [&] {
+        for (const auto& [name, result] : node.report().results)
+            if (const auto* seeds = std::any_cast<segment::SeedLabel>(&result)) return *seeds;
+        return segment::SeedLabel{};
+    };
+    const segment::SeedLabel painted = seeds_of();
+    CHECK(painted.name == "left half");
+    REQUIRE(painted.strokes.size() == 2);
+    CHECK(painted.strokes[0].radius == 2.0 * mm);
+    for (std::size_t n = 1; n < painted.strokes[0].points.size(); ++n) {
+        const double apart = glm::length(painted.strokes[0].points[n] - painted.strokes[0].points[n - 1]);
+        CHECK(apart > 0.49 * mm);
+        CHECK(apart < 0.53 * mm);
+    }
+    node.run(100);
+    CHECK(seeds_of().strokes.empty());
 }
 
 TEST_CASE(

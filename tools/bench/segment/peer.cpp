@@ -69,6 +69,7 @@ std::optional<PeerLabels> peer_labels(const SeededCase& real, const std::vector<
             .read(labels.data(), static_cast<std::streamsize>(labels.size()));
         for (const std::uint32_t v : real.graph.voxel) peer->label.push_back(static_cast<std::uint8_t>(labels[v]));
     }
+    if (!peer) fmt::print(stderr, "scikit-image is left out: python3 cannot import it, or it failed\n");
     std::filesystem::remove_all(folder);
     return peer;
 }

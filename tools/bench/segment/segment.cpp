@@ -6,6 +6,7 @@
 #include "dsp/segment/uncertain.hpp"
 #include "dsp/segment/watershed.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/segment/formats.hpp"
 #include "tools/bench/segment/seeded_case.hpp"
 #include "tools/study/workers.hpp"
 
@@ -14,6 +15,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
+#include <string>
 
 namespace tactus::bench {
 
@@ -24,7 +27,7 @@ using file::Json;
 struct SegmentChoice {
     std::filesystem::path data;
     int seedings = 20, dabs = 6, peers = 3;
-    bool no_costs = false, json = false;
+    bool no_costs = false, only_formats = false, json = false;
 };
 
 /// Mean and half the 95 % interval by Student's t.
@@ -167,6 +170,23 @@ Json report(const SeededCase& real, const char* series, const SeriesResult& r, b
     return row;
 }
 
+void print_formats(const Json& row) {
+    fmt::print(
+        "{:<10} labels that differ: uint16 {:.2g}, float {:.2g} (of int16); HU / 1000 {:.2g}, 8 bits {:.2g} (of HU)\n",
+        row["case"].as_text(), row["uint16"].get<double>(), row["float"].get<double>(),
+        row["hu_over_1000"].get<double>(), row["eight_bits"].get<double>());
+}
+
+/// Most memory that the process has held since the last call, bytes; 0 where the system does not tell.
+double most_memory_since() {
+    double most = 0.0;
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) most = 1024.0 * std::strtod(line.c_str() + 6, nullptr);
+    std::ofstream("/proc/self/clear_refs") << "5";  // begins anew
+    return most;
+}
+
 /// A block of bone with noise and dark planes between ten fragments along x.
 Json cost_row(int edge, int labels, bool quiet) {
     volume::Grid grid{{edge, edge, edge}, Vec3(0.0), Vec3(1e-3), {}};
@@ -184,10 +204,11 @@ Json cost_row(int edge, int labels, bool quiet) {
         seed[grid.index(std::min(edge - 1, l * width + width / 2), (l * 37) % edge, (l * 53) % edge)] =
             static_cast<std::uint8_t>(l + 1);
     timespec wall{}, done_at{};
+    most_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &wall);
     const double begin = process_seconds();
     const segment::Walks walks = segment::random_walks(graph, seed, labels, {}, nullptr, study::on_threads());
-    const double seconds = process_seconds() - begin;
+    const double seconds = process_seconds() - begin, memory = most_memory_since();
     clock_gettime(CLOCK_MONOTONIC, &done_at);
     const double elapsed =
         static_cast<double>(done_at.tv_sec - wall.tv_sec) + 1e-9 * static_cast<double>(done_at.tv_nsec - wall.tv_nsec);
@@ -195,17 +216,22 @@ Json cost_row(int edge, int labels, bool quiet) {
     if (!quiet)
         fmt::print(
             "{} unknowns, {} labels: {:.2f} s of processor time, {:.2f} s on the clock, {} iterations, residual "
-            "{:.1e}; {:.0f} ns per unknown and system\n",
-            graph.nodes(), labels, seconds, elapsed, walks.iterations, walks.residual, each);
-    return {
-        {"unknowns", graph.nodes()},      {"labels", labels},           {"cpu_s", seconds},      {"elapsed_s", elapsed},
-        {"iterations", walks.iterations}, {"residual", walks.residual}, {"ns_per_unknown", each}};
+            "{:.1e}; {:.0f} ns per unknown and system; {:.2f} GB\n",
+            graph.nodes(), labels, seconds, elapsed, walks.iterations, walks.residual, each, 1e-9 * memory);
+    return {{"unknowns", graph.nodes()},
+            {"labels", labels},
+            {"cpu_s", seconds},
+            {"elapsed_s", elapsed},
+            {"iterations", walks.iterations},
+            {"residual", walks.residual},
+            {"ns_per_unknown", each},
+            {"most_memory_bytes", memory}};
 }
 
 }  // namespace
 
 int bench_segment(const SegmentChoice& choice) {
-    Json rows = Json::array(), costs = Json::array();
+    Json rows = Json::array(), formats = Json::array(), costs = Json::array();
     for (const char* name : {"sacrum003", "hip003", "hip001"}) {
         const auto real = seeded_case(choice.data, name);
         if (!real) {
@@ -213,14 +239,18 @@ int bench_segment(const SegmentChoice& choice) {
                        name);
             continue;
         }
+        formats.push_back(format_row(*real, choice.dabs));
+        if (!choice.json) print_formats(formats.back());
+        if (choice.only_formats) continue;
         rows.push_back(report(*real, "fixed", run_series(*real, 1, choice), choice.json));
         rows.push_back(report(*real, "unseen", run_series(*real, 1001, choice), choice.json));
     }
-    if (!choice.no_costs) {
+    if (!choice.no_costs && !choice.only_formats) {
         for (const int edge : {46, 74, 100, 126, 159}) costs.push_back(cost_row(edge, 2, choice.json));
         costs.push_back(cost_row(126, 10, choice.json));
     }
-    if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"cases", rows}, {"costs", costs}}.dump(2));
+    if (choice.json)
+        fmt::print("{}\n", Json{{"version", 1}, {"cases", rows}, {"formats", formats}, {"costs", costs}}.dump(2));
     return done;
 }
 
@@ -236,6 +266,8 @@ Verb segment_verb() {
                     .shows_default()
                     .range(0, 1000);
                 verb.flag("--no-costs", choice->no_costs, "leave out the cost by size");
+                verb.flag("--only-formats", choice->only_formats,
+                          "only the labels of one scan as files of several types");
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_segment(*choice); };
             }};

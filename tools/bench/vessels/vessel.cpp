@@ -54,7 +54,9 @@ vessel::Track track_of(const std::vector<Vec3>& line, double radius) {
 /// The worst of several noises.
 Json row_of(const std::string& group, const std::function<VesselCase(std::uint64_t)>& make, int repeats) {
     simulate::TrackError worst, peer;
-    double seconds = 0.0, length = 0.0, stenosis = 0.0, radius = 0.0, true_radius = 0.0;
+    double seconds = 0.0, length = 0.0, radius = 0.0, true_radius = 0.0;
+    Json narrowed = Json::array();
+    int uncertain = 0;
     bool says_lost = true;
     int found = 0;
     std::string name;
@@ -75,7 +77,10 @@ Json row_of(const std::string& group, const std::function<VesselCase(std::uint64
         radius += error.mean_radius / repeats;
         if (!result.track.branches.empty()) {
             says_lost = says_lost && !result.track.branches[0].lost().empty();
-            if (const auto at = vessel::stenosis_of(result.track.branches[0])) stenosis += at->percent / repeats;
+            if (const auto& at = result.track.branches[0].stenosis) {
+                narrowed.push_back(at->percent);
+                uncertain += at->is_uncertain;
+            }
         }
         const simulate::TrackError ridge =
             simulate::compared(track_of(follow_ridge(one.scan, one.seed, one.radius), one.radius), one);
@@ -96,7 +101,10 @@ Json row_of(const std::string& group, const std::function<VesselCase(std::uint64
              {"ridge_covered", peer.covered},
              {"ridge_overshoot_radii", peer.overshoot}};
     if (group == "y") row["joint_radii"] = worst.joint;
-    if (group == "stenosis") row["stenosis_percent"] = stenosis;
+    if (group == "stenosis") {
+        row["stenosis_percent"] = narrowed;
+        row["stenosis_uncertain"] = uncertain;
+    }
     if (group == "gap") row["says_lost"] = says_lost;
     return row;
 }
@@ -108,7 +116,11 @@ void print(const Json& row) {
                row["radius_voxels"].get<double>(), row["true_radius_voxels"].get<double>(),
                row["seconds_per_200_mm"].get<double>());
     if (row.contains("joint_radii")) fmt::print(", joint {:.2f} R", row["joint_radii"].get<double>());
-    if (row.contains("stenosis_percent")) fmt::print(", narrowed {:.0f} %", row["stenosis_percent"].get<double>());
+    if (row.contains("stenosis_percent")) {
+        fmt::print(", narrowed");
+        for (const Json& percent : row["stenosis_percent"]) fmt::print(" {:.0f}", percent.get<double>());
+        fmt::print(" %, {} called uncertain", row["stenosis_uncertain"].get<int>());
+    }
     if (row.contains("says_lost")) fmt::print(", {}", row["says_lost"].get<bool>() ? "said" : "NOT said");
     fmt::print(" | ridge: rms {:.2f} covered {:3.0f} % overshoot {:.1f} R\n", row["ridge_rms_voxels"].get<double>(),
                100.0 * row["ridge_covered"].get<double>(), row["ridge_overshoot_radii"].get<double>());
@@ -151,12 +163,16 @@ int bench_vessel(const VesselBenchChoice& choice) {
     for (const double ratio : {1.0, 0.5})
         for (const double angle : {30.0, 60.0, 90.0})
             each("y", {2.0, 4.0}, [&](double r, std::uint64_t s) { return simulate::branch_case(r, angle, ratio, s); });
-    each("stenosis", {2.0, 3.0, 4.0}, simulate::stenosis_case);
+    for (const double length : {2.0, 4.0})
+        for (const double percent : {50.0, 70.0, 90.0})
+            each("stenosis", {2.0, 3.0, 4.0}, [&](double r, std::uint64_t s) {
+                return simulate::stenosis_case({.radius = r, .percent = percent, .length = length}, s);
+            });
     each("gap", {1.5, 3.0}, simulate::gap_case);
     each("bone", {1.5, 2.0, 3.0}, simulate::bone_case);
     if (is_chosen("stenosis") && !choice.pictures.empty()) {
         std::filesystem::create_directories(choice.pictures);
-        const VesselCase one = simulate::stenosis_case(4.0, 101);
+        const VesselCase one = simulate::stenosis_case({}, 101);
         const vessel::Track track = vessel::follow(one.scan, one.seed).track;
         picture::write_picture(vessel::straightened(one.scan, track.branches.at(0), 2.5 * one.radius), track.background,
                                track.contrast, choice.pictures / "stenosis.png");

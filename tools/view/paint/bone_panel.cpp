@@ -54,20 +54,29 @@ std::optional<Point> BonePanel::place_of(const Vec3& position) const {
     return corner_ + Point{0.5 * (seen->x + 1.0) * size_.x, 0.5 * (1.0 - seen->y) * size_.y};
 }
 
-/// The bone under a pixel of the window.
-std::optional<Vec3> BonePanel::surface_at(Point pixel) const {
+/// Of the line of sight through a pixel of the window.
+Vec3 BonePanel::direction_at(Point pixel) const {
     const Point p = pixel - corner_;
     const double half = std::tan(0.5 * camera_.vertical_field_of_view_rad);
     const Vec3 in_eye((2.0 * p.x / size_.x - 1.0) * half * size_.x / size_.y, (1.0 - 2.0 * p.y / size_.y) * half, -1.0);
+    return glm::normalize(camera_.orientation * in_eye);
+}
+
+/// The bone under a pixel of the window.
+std::optional<Vec3> BonePanel::surface_at(Point pixel) const {
     Vec3 found;
-    if (!bench_.first_bone(camera_.eye(), glm::normalize(camera_.orientation * in_eye), found)) return std::nullopt;
+    if (!bench_.first_bone(camera_.eye(), direction_at(pixel), found)) return std::nullopt;
     return found;
 }
 
 void BonePanel::use_tool(Point) {
     Painting& painting = bench_.painting();
     const Point mouse = point(ImGui::GetIO().MousePos);
-    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && bench_.tool != PaintBench::Tool::vessel) {
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && bench_.tool == PaintBench::Tool::vessel) {
+        bench_.follow_vessel_on(camera_.eye(), direction_at(mouse));
+        return;
+    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left)) {
         const auto at = surface_at(mouse);
         if (!at) return;
         bench_.move_cursor(*at);
@@ -176,7 +185,10 @@ void BonePanel::draw(const Fonts& fonts) {
     if (painting.is_open())
         for (const Vec3& p : painting.open_stroke().points)
             if (const auto at = place_of(p)) paint.dot(*at, 3.0 * fonts.scale, tone::chosen);
-    paint.text(corner_ + Point{8.0, 6.0}, 12.0 * fonts.scale, tone::dim, "right: turn, middle: move, wheel: zoom");
+    paint.text(corner_ + Point{8.0, 6.0}, 12.0 * fonts.scale, tone::dim,
+               bench_.tool == PaintBench::Tool::vessel
+                   ? "left: the first vessel on the line of sight, unless bone lies before it; right: turn"
+                   : "right: turn, middle: move, wheel: zoom");
     if (bench_.labels() && bench_.labels()->is_preview)
         paint.text_left_of(corner_ + Point{size_.x - 6.0, 6.0}, 12.0 * fonts.scale, tone::warm, "preview");
 }

@@ -27,6 +27,7 @@ public:
     std::optional<Point> place_of(const Vec3& position) const;
 
 private:
+    Vec3 direction_at(Point pixel) const;
     std::optional<Vec3> surface_at(Point pixel) const;
     void steer(Point size);
     void use_tool(Point corner);

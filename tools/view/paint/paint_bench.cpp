@@ -5,6 +5,7 @@
 #include "dsp/segment/strokes.hpp"
 #include "tools/study/bones/vessel.hpp"
 #include "tools/study/segment/segment_files.hpp"
+#include "tools/view/paint/vessel_ray.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -148,6 +149,22 @@ bool PaintBench::look_here() {
 void PaintBench::follow_vessel(const Vec3& seed) {
     followers_.ask(seed);
     tell("the vessel is being followed");
+}
+
+bool PaintBench::follow_vessel_on(const Vec3& from, const Vec3& direction) {
+    const RayMeets meets = first_on_ray(scan_, from, direction);
+    if (meets.what == RayMeets::What::nothing) {
+        tell("there is no vessel on this line of sight; click one in a slice", true);
+        return false;
+    }
+    move_cursor(meets.at);
+    if (meets.what == RayMeets::What::bone) {
+        tell("bone lies before any vessel here: turn the bone, or click the vessel in a slice", true);
+        return false;
+    }
+    follow_vessel(cursor);
+    if (meets.may_be_bone) tell("the vessel is being followed; it is as bright as bone: look at it in the slices");
+    return true;
 }
 
 void PaintBench::make_plan() {

@@ -48,6 +48,8 @@ public:
     /// The cursor jumps to the deepest place of the largest region of low certainty. False: there is none.
     bool look_here();
     void follow_vessel(const Vec3& seed);
+    /// The first vessel on a line of sight, see first_on_ray. False: there is none, or bone lies before it; message() says which.
+    bool follow_vessel_on(const Vec3& from, const Vec3& direction);
     /// Starts to write a bone per label and a plan of them beside the seeds, on a thread of its own.
     void make_plan();
     /// What happened last; one line.

@@ -2,8 +2,8 @@
 #include "tools/view/paint/painting.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "assets/segment/erase_strokes.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/view/paint/erase_strokes.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -48,10 +48,10 @@ Painting::Painting(std::filesystem::path file, Touches touches) : file_(std::mov
 }
 
 void Painting::begin(double radius, const Vec3& point, bool erases) {
-    const double filed = as_filed(Vec3(radius)).x;
+    const double filed = segment::as_filed(Vec3(radius)).x;
     is_open_ = filed > 0.0 && filed <= segment::widest_brush && segment::is_seed_place(point);
     if (!is_open_) return refuse("a stroke needs places within 100 m, and a brush of at most 100 mm");
-    open_ = {filed, {as_filed(point)}};
+    open_ = {filed, {segment::as_filed(point)}};
     erases_ = erases;
 }
 
@@ -61,9 +61,8 @@ void Painting::extend(const Vec3& point) {
         is_open_ = false;
         return refuse("a stroke needs places within 100 m");
     }
-    // The line between the points is painted, too.
-    if (glm::length(point - open_.points.back()) < 0.25 * open_.radius) return;
-    open_.points.push_back(as_filed(point));
+    if (!segment::is_apart(open_.points.back(), open_.radius, point)) return;
+    open_.points.push_back(segment::as_filed(point));
 }
 
 bool Painting::end() {
@@ -71,7 +70,7 @@ bool Painting::end() {
     problem_.clear();
     Labels next = labels_;
     if (erases_) {
-        if (!erase_strokes(next, open_)) {
+        if (!segment::erase_strokes(next, open_)) {
             refuse("there is no stroke at that place: nothing was erased");
             return false;
         }

@@ -139,6 +139,34 @@ TEST_CASE("segment gives the same labels for values in other units, also where i
         return volume::lps_grid(volume::read_volume(folder / "labels.nrrd")).values;
     };
     CHECK(labels_of("small.nrrd") == labels_of("ct.nrrd"));
+    // A window of eight bits in which air and a frame are 0 is no scan that is masked with zeros: soft tissue has no label.
+    scan = two_bones();
+    const auto in_frame = [&](std::size_t v) {
+        const auto i = static_cast<int>(v % 72), j = static_cast<int>(v / 72 % 40), k = static_cast<int>(v / (72 * 40));
+        return i >= 2 && i < 70 && j >= 2 && j < 38 && k >= 2 && k < 38;
+    };
+    volume::Grid hu = scan;
+    for (std::size_t v = 0; v < scan.count(); ++v) {
+        float value = scan.values[v];
+        if (value > 150.0f) value += 15.0f * static_cast<float>(v % 72 + v / 72 % 40);  // more steps than labels have
+        if (!in_frame(v) || (value < 150.0f && v % 3 != 0)) value = -1000.0f;
+        hu.values[v] = value;
+        scan.values[v] = std::round(255.0f * std::clamp((value + 200.0f) / 2000.0f, 0.0f, 1.0f));
+    }
+    volume::write_volume(hu, volume::WrittenType::int16, folder / "hu.nrrd");
+    volume::write_volume(scan, volume::WrittenType::int16, folder / "byte.nrrd");
+    // Both thresholds lie between the steps 57 and 58.
+    const auto of_bytes = labels_of("byte.nrrd", " --threshold 57.5 --metal 249.5"),
+               of_hu = labels_of("hu.nrrd", " --threshold 250.98 --metal 1756.9");
+    std::size_t other = 0, labelled = 0;
+    for (std::size_t v = 0; v < of_hu.size(); ++v) {
+        other += of_bytes[v] != of_hu[v];
+        labelled += of_hu[v] != 0.0f;
+    }
+    CHECK(labelled > 10'000);
+    CHECK(other <= labelled / 1000);
+    scan = two_bones();
+    for (float& value : scan.values) value = std::clamp(value, -40.0f, 1000.0f);
     // A limit for metal that is given counts for scanner numbers, too.
     const json found = folder.answer(folder / "ct.nrrd" + " --metal 950 --seeds " + folder / "seeds.json" + " -o " +
                                      folder / "labels.nrrd");

@@ -59,6 +59,30 @@ TEST_CASE("tactus vessel writes the line in every format, and a straightened vie
     CHECK(test::slurp(folder.path / "straight.png").substr(1, 3) == "PNG");
 }
 
+TEST_CASE("tactus vessel warns of a narrowing, of a lost stretch and of a missing peroneal artery", "[slow]") {
+    const test::Folder folder;
+    const WorkingFolder here(folder.path);
+    const auto warnings_of = [&](simulate::VesselCase one, const std::string& rest) {
+        for (float& value : one.scan.values) value = 50.0f + 350.0f * value;
+        volume::write_volume(one.scan, volume::WrittenType::int16, folder.path / "cta.nrrd");
+        const auto seen = folder.tactus(fmt::format("vessel cta.nrrd --seed {:.1f},{:.1f},{:.1f} {} --json",
+                                                    one.seed.x * 1e3, one.seed.y * 1e3, one.seed.z * 1e3, rest));
+        INFO(seen.err);
+        REQUIRE(seen.code == 0);
+        return file::Json::parse(seen.out)["warnings"];
+    };
+    const file::Json narrow = warnings_of(simulate::stenosis_case({}, 5), "");
+    REQUIRE(narrow.size() == 1);
+    CHECK(narrow[0].as_text().starts_with("branch 0 is narrowed by "));
+    const file::Json gap = warnings_of(simulate::gap_case(3.0, 5), "");
+    CHECK(gap.dump().find("no contrast from") != std::string::npos);
+    // One vessel in front of both bones: the anterior tibial artery alone.
+    const file::Json leg = warnings_of(simulate::ends_case(2.5, 0.2, 3),
+                                       "--leg right --tibia=25,40,96:25,40,-6 --fibula=-5,45,96:-5,45,-6");
+    CHECK(leg.dump().find("peroneal") != std::string::npos);
+    CHECK(warnings_of(simulate::ends_case(2.5, 0.2, 3), "").empty());
+}
+
 TEST_CASE("tactus vessel says in one line what is wrong with a seed") {
     const test::Folder folder;
     const WorkingFolder here(folder.path);

@@ -52,6 +52,15 @@ remove "fragment 2"
 until solved
 vessel 50 46 30
 until solved
+from posterior
+frames 10
+tool vessel
+click_bone 50 46 60
+until solved
+from anterior
+frames 10
+click_bone 62 46 60
+tool paint
 plan
 until solved
 cursor 48 26 50
@@ -73,6 +82,9 @@ close
     CHECK(seeds[0].strokes[0].points.size() == 2);
     CHECK(seeds[1].strokes.size() == 1);
     CHECK(slurp(folder.path / "case-vessel-1.csv").starts_with("branch,x_mm"));
+    // A click in the picture of the bone from behind, where the vessel lies before it; from the front bone lies before it.
+    CHECK(slurp(folder.path / "case-vessel-2.csv").starts_with("branch,x_mm"));
+    CHECK_FALSE(std::filesystem::exists(folder.path / "case-vessel-3.csv"));
     CHECK(std::filesystem::exists(folder.path / "case.plan.json"));
     const Picture picture = read_picture(folder.path / "picture.png");
     CHECK(picture.width == 1000);

@@ -4,15 +4,16 @@
 #include "assets/cases/case_plan.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/segment/erase_strokes.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/view/paint/bone_mesh.hpp"
-#include "tools/view/paint/erase_strokes.hpp"
 #include "tools/view/paint/paint_bench.hpp"
 #include "tools/view/paint/paint_lines.hpp"
+#include "tools/view/paint/vessel_ray.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -273,7 +274,7 @@ TEST_CASE("the eraser cuts strokes and takes dabs away") {
     REQUIRE(painting.labels()[0].strokes.size() == 2);
     for (const segment::Stroke& stroke : painting.labels()[0].strokes)
         for (const Vec3& p : stroke.points) CHECK(glm::length(p - middle) >= 2.5e-3 - 1e-9);
-    CHECK(painting.labels()[0].strokes[0].points.front() == view::as_filed(left_block));
+    CHECK(painting.labels()[0].strokes[0].points.front() == segment::as_filed(left_block));
     painting.begin(2e-3, right_block, true);
     REQUIRE(painting.end());
     CHECK(painting.labels()[1].strokes.empty());
@@ -448,6 +449,47 @@ TEST_CASE("the surface of the bone is closed, and a ray meets it where it is") {
     REQUIRE(bench.first_bone(left_block + Vec3(-0.1, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), found));
     CHECK(found.x == Approx(-0.03 + 4.5 * mm).margin(0.6 * mm));
     CHECK_FALSE(bench.first_bone(left_block + Vec3(-0.1, 0.1, 0.0), Vec3(1.0, 0.0, 0.0), found));
+}
+
+TEST_CASE("a line of sight meets a vessel, unless bone lies before it") {
+    // A plate of bone, a vessel of 400 behind it, in noise; as HU, and as scanner numbers.
+    for (const double scale : {1.0, 0.001}) {
+        CAPTURE(scale);
+        const test::Folder folder;
+        volume::Grid grid{{60, 60, 40}, Vec3(0.0), Vec3(mm), {}};
+        const Random random{8};
+        for (int k = 0; k < 40; ++k)
+            for (int j = 0; j < 60; ++j)
+                for (int i = 0; i < 60; ++i) {
+                    const bool is_plate = i >= 20 && i < 40 && j >= 20 && j < 26;
+                    const bool is_vessel = std::hypot(i - 30.0, j - 44.0) < 3.0;
+                    const double value = is_plate ? 900.0 : is_vessel ? 400.0 : i < 3 ? -1000.0 : 40.0;
+                    grid.values.push_back(
+                        static_cast<float>(scale * (value + 40.0 * random.normal(grid.values.size()))));
+                }
+        volume::write_volume(grid, volume::WrittenType::float32, folder.path / "ct.nrrd");
+        study::SegmentSettings settings;
+        settings.scan = folder.path / "ct.nrrd";
+        settings.threshold = scale * 600.0;
+        const study::ScanGraph scan = study::scan_graph(settings);
+        using What = view::RayMeets::What;
+        const auto behind = view::first_on_ray(scan, Vec3(31, 200, 20) * mm, Vec3(0, -1, 0));
+        REQUIRE(behind.what == What::vessel);
+        CHECK(glm::length(behind.at - Vec3(31, 44, 20) * mm) < 1.5 * mm);
+        CHECK_FALSE(behind.may_be_bone);
+        CHECK(view::first_on_ray(scan, Vec3(31, -200, 20) * mm, Vec3(0, 1, 0)).what == What::bone);
+        CHECK(view::first_on_ray(scan, Vec3(10, 200, 20) * mm, Vec3(0, -1, 0)).what == What::nothing);
+        CHECK(view::first_on_ray(scan, Vec3(31, 200, 20) * mm, Vec3(0, 1, 0)).what == What::nothing);
+        CHECK(view::first_on_ray(scan, Vec3(-50, 44, 20) * mm, Vec3(1, 0, 0)).what == What::vessel);
+
+        PaintBench bench(scan, settings, folder.path / "case.seeds.json");
+        CHECK_FALSE(bench.follow_vessel_on(Vec3(31, -200, 20) * mm, Vec3(0, 1, 0)));
+        CHECK(bench.message().find("bone lies before") != std::string::npos);
+        CHECK(bench.follow_vessel_on(Vec3(31, 200, 20) * mm, Vec3(0, -1, 0)));
+        settle(bench);
+        REQUIRE(bench.vessels().size() == 1);
+        CHECK(bench.vessels()[0]->track.length() > 25 * mm);
+    }
 }
 
 TEST_CASE("a program that is killed while it paints leaves a whole file with every finished stroke") {

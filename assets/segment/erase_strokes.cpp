@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/paint/erase_strokes.hpp"
+#include "assets/segment/erase_strokes.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -8,10 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus::view {
-
-using segment::SeedLabel;
-using segment::Stroke;
+namespace tactus::segment {
 
 namespace {
 
@@ -43,6 +40,8 @@ std::vector<Vec3> refined(const std::vector<Vec3>& points, double apart) {
 
 Vec3 as_filed(const Vec3& position) { return glm::round(position * 1e6) / 1e3 * 1e-3; }
 
+bool is_apart(const Vec3& last, double radius, const Vec3& point) { return glm::length(point - last) >= 0.25 * radius; }
+
 bool erase_strokes(std::vector<SeedLabel>& labels, const Stroke& eraser) {
     bool is_any = false;
     for (SeedLabel& label : labels) {
@@ -73,4 +72,4 @@ bool erase_strokes(std::vector<SeedLabel>& labels, const Stroke& eraser) {
     return is_any;
 }
 
-}  // namespace tactus::view
+}  // namespace tactus::segment
