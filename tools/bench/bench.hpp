@@ -36,5 +36,6 @@ Verb shafts_verb();
 Verb segment_verb();
 Verb vessel_verb();
 Verb rope_verb();
+Verb peers_verb();
 
 }  // namespace tactus::bench
