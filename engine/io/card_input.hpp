@@ -12,8 +12,8 @@
 namespace tactus::io {
 
 /// Activation a hears frame a − offset of the card, and the offset stays: inputs and outputs of a card keep their
-/// distance to the sample. It is chosen anew, for all channels at once, when frames come too late (the missing ones are
-/// silence) or when much more waits than needs to.
+/// distance to the sample. It is chosen anew, for all channels at once, when frames come too late (silence then, until
+/// the card has gone far enough; no frame is heard twice) or when much more waits than needs to.
 class CardInput {
 public:
     /// `margin_s`: what waits in case the card is late.
@@ -35,11 +35,14 @@ public:
 
 private:
     void look(std::int64_t first, std::int64_t count, std::int64_t now_ns) noexcept;
-    void place(const audio::InputRing::View& card, std::int64_t end, std::int64_t now_ns) noexcept;
+    /// False: the card has not gone far enough since.
+    bool place(const audio::InputRing::View& card, std::int64_t first, std::int64_t count,
+               std::int64_t now_ns) noexcept;
 
     std::shared_ptr<audio::InputRing> ring_;
     double rate_;
     std::int64_t margin_, offset_ = 0, looked_at_ = -1;
+    std::int64_t heard_until_ = 0;  ///< frame up to which all was heard: none is heard twice
     int too_much_ = 0;  // calls
     bool is_placed_ = false, was_placed_ = false, is_silent_ = true;
     std::atomic<std::uint64_t> xruns_{0}, missed_{0}, resyncs_{0};
