@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a card heard last, between its callback and the thread of a group. The callback never waits and overwrites the
-// oldest frames; a reader finds out afterwards whether what it copied was still whole (a sequence lock over the ring).
+// oldest frames; a reader finds out afterwards whether what it copied was still whole.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,6 @@ public:
     void capture(const float* interleaved, std::size_t count, std::int64_t steady_ns, bool overflowed) noexcept {
         const std::int64_t first = captured_.load(std::memory_order_relaxed);
         const auto more = static_cast<std::int64_t>(count);
-        const std::uint64_t version = version_.load(std::memory_order_relaxed);
-        version_.store(version + 1, std::memory_order_relaxed);
         writing_until_.store(first + more, std::memory_order_relaxed);
         std::atomic_thread_fence(std::memory_order_release);
         for (std::size_t i = 0; i < count; ++i) {
@@ -44,17 +42,16 @@ public:
         largest_.store(std::max(largest_.load(std::memory_order_relaxed), more), std::memory_order_relaxed);
         steady_ns_.store(steady_ns, std::memory_order_relaxed);
         captured_.store(first + more, std::memory_order_release);
-        version_.store(version + 2, std::memory_order_release);
     }
 
-    /// Any thread. Lock-free: tries again only when a callback wrote in between.
+    /// Any thread; wait-free, as a reader may have a higher priority than the card. The time may be that of a callback
+    /// that is not in `captured` yet.
     View view() const noexcept {
-        for (;;) {
-            const std::uint64_t version = version_.load(std::memory_order_acquire);
-            const View now{captured_.load(std::memory_order_acquire), steady_ns_.load(std::memory_order_acquire),
-                           largest_.load(std::memory_order_acquire)};
-            if (version % 2 == 0 && version_.load(std::memory_order_relaxed) == version) return now;
-        }
+        View now;
+        now.captured = captured_.load(std::memory_order_acquire);
+        now.largest = largest_.load(std::memory_order_relaxed);
+        now.steady_ns = steady_ns_.load(std::memory_order_relaxed);
+        return now;
     }
 
     /// Copies frames first … first + count − 1 of one channel. False: not all are there, yet or any more. Any thread;
@@ -77,7 +74,7 @@ private:
     std::size_t channels_, frames_;
     std::vector<std::atomic<float>> samples_;
     std::atomic<std::int64_t> captured_{0}, writing_until_{0}, steady_ns_{0}, largest_{0};
-    std::atomic<std::uint64_t> overflows_{0}, version_{0};
+    std::atomic<std::uint64_t> overflows_{0};
 };
 
 }  // namespace tactus::audio

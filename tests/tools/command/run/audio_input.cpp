@@ -147,6 +147,11 @@ bool echoes_every_frame(const Folder& folder, const std::string& file, int perio
     CHECK(counter.echoes(0) > 48'000);
     CHECK(counter.delays(0).size() == 1);
     CHECK(counter.delays(0) == counter.delays(1));
+    // Each way the margin and a callback, then a call of the group and a part of a callback; as 'check' says.
+    const int loop = *counter.delays(0).begin(), least = 2 * (4800 + period);
+    INFO("loop " << loop << " frames, least " << least);
+    CHECK(loop > least - 2400);
+    CHECK(loop < least + 2 * period + 2400);
     return true;
 }
 
