@@ -14,6 +14,7 @@
     X(Adsr, time)                       \
     X(And, logic)                       \
     X(Angle, geometry)                  \
+    X(AudioInput, device)               \
     X(AudioOutput, device)              \
     X(BladeContact, contact)            \
     X(Body, contact)                    \

@@ -21,13 +21,13 @@ JackWatch::~JackWatch() {
     if (client_ != nullptr) jack_client_close(static_cast<jack_client_t*>(client_));
 }
 
-void JackWatch::name_outputs(const std::vector<std::string>& names) const {
+void JackWatch::name_ports(const char* kind, const std::vector<std::string>& names) const {
     auto* const client = static_cast<jack_client_t*>(client_);
     const char* stream = nullptr;
     if (client == nullptr || PaJack_GetClientName(&stream) != paNoError) return;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i].empty()) continue;
-        const std::string now = fmt::format("{}:out_{}", stream, i);
+        const std::string now = fmt::format("{}:{}_{}", stream, kind, i);
         if (jack_port_t* const port = jack_port_by_name(client, now.c_str()))
             jack_port_rename(client, port, names[i].c_str());
     }

@@ -20,9 +20,9 @@ public:
     JackWatch(const JackWatch&) = delete;
     JackWatch& operator=(const JackWatch&) = delete;
 
-    /// Names the outputs of the stream that PortAudio has opened last; "": as they are. A name that another port has is
-    /// left out.
-    void name_outputs(const std::vector<std::string>& names) const;
+    /// Names the ports "out_0", "out_1", … or "in_0", … of the stream that PortAudio has opened last; "": as they are. A
+    /// name that another port has is left out.
+    void name_ports(const char* kind, const std::vector<std::string>& names) const;
 
     // Any thread; wait-free.
     bool freewheels() const noexcept { return freewheels_.load(std::memory_order_relaxed); }

@@ -51,6 +51,7 @@ struct OpenStream {
 
     PortAudioSession session;
     StreamState state;
+    std::shared_ptr<InputRing> inputs;
     std::unique_ptr<JackWatch> jack;
     PaStream* stream = nullptr;
 };
@@ -64,17 +65,26 @@ void wait_for_sound(const StreamState& state, unsigned long frames) {
     for (int i = 0; i < 5000 && !state.can_feed(frames); ++i) std::this_thread::sleep_for(200us);
 }
 
-int feed_card(const void*, void* output, unsigned long frames, const PaStreamCallbackTimeInfo*, PaStreamCallbackFlags,
-              void* opened) {
+int feed_card(const void* input, void* output, unsigned long frames, const PaStreamCallbackTimeInfo*,
+              PaStreamCallbackFlags flags, void* opened) {
     auto& open = *static_cast<OpenStream*>(opened);
+    const std::int64_t now = steady_now_ns();
+    if (open.inputs)
+        open.inputs->capture(static_cast<const float*>(input), frames, now,
+                             (flags & (paInputOverflow | paInputUnderflow)) != 0);
     if (open.jack && open.jack->freewheels()) wait_for_sound(open.state, frames);
-    open.state.feed(static_cast<float*>(output), frames, steady_now_ns());
+    open.state.feed(static_cast<float*>(output), frames, open.inputs ? now : steady_now_ns());
     return paContinue;
 }
 
 class PortAudioSink final : public AudioSink {
 public:
-    PortAudioSink(std::string device, double lead_s) : device_(std::move(device)), lead_s_(lead_s) {}
+    PortAudioSink(std::string device, double lead_s, std::shared_ptr<InputRing> inputs,
+                  std::vector<std::string> input_names)
+        : device_(std::move(device)),
+          lead_s_(lead_s),
+          inputs_(std::move(inputs)),
+          input_names_(std::move(input_names)) {}
     ~PortAudioSink() override { release(); }
 
     const std::string& name() const override { return name_; }
@@ -83,7 +93,8 @@ public:
         release();
         try {
             open(rate, static_cast<int>(channels.size()));
-            if (open_->jack) open_->jack->name_outputs(channels);
+            if (open_->jack) open_->jack->name_ports("out", channels);
+            if (open_->jack) open_->jack->name_ports("in", input_names_);
         } catch (...) {
             open_.reset();
             throw;
@@ -112,6 +123,7 @@ private:
         const auto start = static_cast<std::size_t>(std::lround(lead_s_ * rate));
         // Capacity for short stalls of the card or the engine, and for the largest buffers of cards.
         open_ = std::make_shared<OpenStream>(channels, 4 * start + 16384, start);
+        open_->inputs = inputs_;
         PaStreamParameters parameters{};
         parameters.device = find_output(device_);
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(parameters.device);
@@ -119,17 +131,22 @@ private:
         if (channels < 1 || channels > info.maxOutputChannels)
             throw Error(
                 fmt::format("'{}' has {} channels, but {} are needed", name_, info.maxOutputChannels, channels));
+        const int inputs = inputs_ ? inputs_->channels() : 0;
+        if (inputs > info.maxInputChannels)
+            throw Error(fmt::format("'{}' has {} inputs, but {} are needed", name_, info.maxInputChannels, inputs));
         if (info.hostApi == Pa_HostApiTypeIdToHostApiIndex(paJACK)) open_->jack = std::make_unique<JackWatch>();
         parameters.channelCount = channels;
         parameters.sampleFormat = paFloat32;
         parameters.suggestedLatency = info.defaultLowOutputLatency;
-        PaError error = Pa_OpenStream(&open_->stream, nullptr, &parameters, rate, paFramesPerBufferUnspecified,
-                                      paNoFlag, feed_card, open_.get());
+        const PaStreamParameters heard{parameters.device, inputs, paFloat32, info.defaultLowInputLatency, nullptr};
+        PaError error = Pa_OpenStream(&open_->stream, inputs > 0 ? &heard : nullptr, &parameters, rate,
+                                      paFramesPerBufferUnspecified, paNoFlag, feed_card, open_.get());
         if (error == paNoError) error = Pa_StartStream(open_->stream);
         if (error == paNoError) return;
         if (open_->stream != nullptr) Pa_CloseStream(open_->stream);
-        throw Error(fmt::format("'{}' cannot play {} channels at {:g} Hz: {}; it prefers {:g} Hz", name_, channels,
-                                rate, Pa_GetErrorText(error), info.defaultSampleRate));
+        throw Error(fmt::format("'{}' cannot play {} channels{} at {:g} Hz: {}; it prefers {:g} Hz", name_, channels,
+                                inputs > 0 ? fmt::format(" and hear {}", inputs) : "", rate, Pa_GetErrorText(error),
+                                info.defaultSampleRate));
     }
 
     /// Waits until everything is played, or the card stops calling.
@@ -165,6 +182,8 @@ private:
 
     std::string device_, name_ = "sound card";
     double lead_s_;
+    std::shared_ptr<InputRing> inputs_;
+    std::vector<std::string> input_names_;
     std::shared_ptr<OpenStream> open_;
     AudioStatistics last_;
 };
@@ -182,8 +201,9 @@ std::vector<AudioOutput> list_audio_outputs() {
     return outputs;
 }
 
-std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s) {
-    return std::make_unique<PortAudioSink>(std::move(device), lead_s);
+std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s, std::shared_ptr<InputRing> inputs,
+                                               std::vector<std::string> input_names) {
+    return std::make_unique<PortAudioSink>(std::move(device), lead_s, std::move(inputs), std::move(input_names));
 }
 
 }  // namespace tactus::audio

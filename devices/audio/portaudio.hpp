@@ -2,6 +2,7 @@
 // Sound card output through PortAudio.
 #pragma once
 
+#include "devices/audio/input_ring.hpp"
 #include "graph/node/device.hpp"
 
 #include <memory>
@@ -28,6 +29,11 @@ std::vector<AudioOutput> list_audio_outputs();
 /// The card's callback only copies from a ring buffer; in JACK's freewheel mode it also waits for sound. `write` and
 /// `writable` are wait-free and for one thread; `statistics` and `progress` are for any thread. `prepare` throws Error
 /// when there is no such output, so that the caller can continue without sound.
-std::unique_ptr<AudioSink> make_portaudio_sink(std::string device = {}, double lead_s = 0.0);
+///
+/// With `inputs`, the same callback writes what the device hears to it, as many channels as it has; `input_names` for
+/// programs that connect sound.
+std::unique_ptr<AudioSink> make_portaudio_sink(std::string device = {}, double lead_s = 0.0,
+                                               std::shared_ptr<InputRing> inputs = {},
+                                               std::vector<std::string> input_names = {});
 
 }  // namespace tactus::audio

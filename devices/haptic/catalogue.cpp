@@ -2,6 +2,7 @@
 #include "devices/haptic/catalogue.hpp"
 
 #include "devices/board/serial_board.hpp"
+#include "devices/evdev/wheel.hpp"
 #include "devices/forcedimension/dhd_device.hpp"
 #include "devices/gripper/serial_gripper.hpp"
 #include "devices/gripper/simulated_gripper.hpp"
@@ -67,6 +68,11 @@ std::vector<HapticDriver>& drivers() {
          .summary = "a Hapkit, or a pantograph of one's own, with a board that speaks Tactus' frames",
          .is_real = true,
          .backend = board::make_serial_board,
+         .is_untested = true},
+        {.name = "wheel",
+         .summary = "a steering wheel with force feedback, by Linux evdev",
+         .is_real = true,
+         .backend = evdev::make_wheel,
          .is_untested = true},
         {.name = "space_mouse",
          .summary = "a hand that a 3D mouse steers, by spacenavd; it yields to force",

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/gamepad.hpp"
 
+#include "devices/evdev/force_effect.hpp"
 #include "devices/haptic/operated.hpp"
+#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/seqlock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/input.h>
-#include <poll.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <thread>
 #include <utility>
 
@@ -31,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr double dead_zone = 0.1;
 constexpr double longest_spring_m = 0.03;  // between the hand and where the sticks want it, under force
-constexpr int poll_ms = 50;
+constexpr int poll_ms = 50, rumble_ms = 10;
 
 /// Axes in the order of PadState.
 constexpr std::array<std::uint16_t, 8> axis_codes{ABS_X, ABS_Y, ABS_RX, ABS_RY, ABS_Z, ABS_RZ, ABS_HAT0X, ABS_HAT0Y};
@@ -48,18 +46,26 @@ double beyond_dead_zone(double x) noexcept {
     return std::copysign((std::min(std::abs(x), 1.0) - dead_zone) / (1.0 - dead_zone), x);
 }
 
-/// An open event device. Reads on its own thread until it is destroyed or the gamepad is lost.
+/// An open event device. Reads, and lets the motors rumble, on its own thread until it is destroyed or the gamepad is
+/// lost.
 class PadReader {
 public:
-    explicit PadReader(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    /// `felt`: the force that rumbles fully at `full_N`; 0: none does.
+    PadReader(evdev::EventSystem& system, const std::string& path, const SharedWrench& felt, double full_N)
+        : system_(system),
+          felt_(felt),
+          full_N_(full_N),
+          file_(system.open(path, O_RDONLY | O_NONBLOCK)),
+          effect_(system) {
         if (file_ < 0) throw Error(fmt::format("cannot open {}: {}", path, std::strerror(errno)));
         for (std::size_t i = 0; i < axis_codes.size(); ++i) {
             input_absinfo info{};
-            const bool is_told = ::ioctl(file_, EVIOCGABS(axis_codes[i]), &info) >= 0 && info.maximum > info.minimum;
+            const bool is_told = ask_axis(system_, file_, axis_codes[i], info) && info.maximum > info.minimum;
             // As most gamepads have it, and what a recording of one holds.
             least_[i] = is_told ? info.minimum : is_trigger(i) ? 0 : i < 6 ? -32768 : -1;
             most_[i] = is_told ? info.maximum : is_trigger(i) ? 255 : i < 6 ? 32767 : 1;
         }
+        if (full_N_ > 0.0 && evdev::Bits::of_kind(system_, file_, EV_FF)[FF_RUMBLE]) begin_rumble(path);
         ask();
         state.write(state_);
         thread_ = std::thread([this] { read_all(); });
@@ -67,7 +73,9 @@ public:
     ~PadReader() {
         is_over_.store(true, std::memory_order_relaxed);
         thread_.join();
-        ::close(file_);
+        effect_.end();
+        if (rumble_file_ >= 0) system_.close(rumble_file_);
+        system_.close(file_);
     }
     PadReader(const PadReader&) = delete;
     PadReader& operator=(const PadReader&) = delete;
@@ -80,28 +88,47 @@ private:
         return std::clamp(is_trigger(axis) ? share : 2.0 * share - 1.0, -1.0, 1.0);
     }
 
+    /// By a file of its own: who may only read the gamepad still has its sticks.
+    void begin_rumble(const std::string& path) {
+        rumble_file_ = system_.open(path, O_RDWR | O_NONBLOCK);
+        if (rumble_file_ < 0) return;
+        input_event gain{};
+        gain.type = EV_FF;
+        gain.code = FF_GAIN;
+        gain.value = 0xFFFF;
+        system_.write(rumble_file_, gain);
+        if (!effect_.begin(rumble_file_, FF_RUMBLE)) system_.close(std::exchange(rumble_file_, -1));
+    }
+
+    /// A line that is slow gets no more than it can take.
+    void rumble() noexcept {
+        const std::int64_t now = hosted::steady_ns();
+        if (rumble_file_ < 0 || now - rumbled_ns_ < rumble_ms * std::int64_t{1'000'000}) return;
+        effect_.give(glm::length(felt_.get().force) / full_N_, now);
+        rumbled_ns_ = now;
+    }
+
     /// What the gamepad says of itself now. What it does not say, as in a recording, is at rest.
     void ask() {
         state_ = {};
-        for (std::size_t i = 0; i < axis_codes.size(); ++i) {
-            input_absinfo info{};
-            if (::ioctl(file_, EVIOCGABS(axis_codes[i]), &info) >= 0) state_.axes[i] = value_of(i, info.value);
-        }
-        std::array<unsigned char, KEY_MAX / 8 + 1> held{};
-        if (::ioctl(file_, EVIOCGKEY(held.size()), held.data()) < 0) return;
-        const auto is_held = [&](std::uint16_t code) { return (held[code / 8u] >> (code % 8u) & 1) != 0; };
+        for (std::size_t i = 0; i < axis_codes.size(); ++i)
+            if (input_absinfo info{}; ask_axis(system_, file_, axis_codes[i], info))
+                state_.axes[i] = value_of(i, info.value);
+        const evdev::Bits held = evdev::Bits::of_held_keys(system_, file_);
         for (const auto& [code, bit] : button_codes)
-            if (is_held(code)) state_.buttons |= bit;
+            if (held[code]) state_.buttons |= bit;
         for (const auto& [code, bit] : roll_codes)
-            if (is_held(code)) state_.rolls |= bit;
+            if (held[code]) state_.rolls |= bit;
     }
 
     void read_all() {
+        const int longest_ms = rumble_file_ >= 0 ? rumble_ms : poll_ms;
         while (!is_over_.load(std::memory_order_relaxed)) {
-            pollfd waits{file_, POLLIN, 0};
-            if (::poll(&waits, 1, poll_ms) <= 0) continue;
+            const bool has_news = system_.wait(file_, longest_ms);
+            rumble();
+            if (!has_news) continue;
             input_event events[64];
-            const ssize_t got = ::read(file_, events, sizeof events);
+            const ssize_t got = system_.read(file_, events);
             if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
             if (got < static_cast<ssize_t>(sizeof(input_event))) break;  // unplugged
             for (std::size_t n = 0; n < static_cast<std::size_t>(got) / sizeof(input_event); ++n) take(events[n]);
@@ -137,7 +164,12 @@ private:
         state.write(state_);
     }
 
-    int file_;
+    evdev::EventSystem& system_;
+    const SharedWrench& felt_;
+    double full_N_;
+    int file_, rumble_file_ = -1;
+    evdev::ForceEffect effect_;
+    std::int64_t rumbled_ns_ = 0;
     std::array<double, 8> least_{}, most_{};
     PadState state_;
     bool has_lost_ = false;
@@ -166,14 +198,21 @@ struct Steered {
     }
 };
 
+struct Settings {
+    simulate::HandDynamics hand;
+    DeviceInfo info;
+    double speed, turn, rumble;
+    std::string file;
+};
+
 class Gamepad final : public HapticDevice {
 public:
-    Gamepad(DeviceInfo info, const simulate::HandDynamics& dynamics, const std::string& path, double speed, double turn)
-        : info_(std::move(info)), reader_(path) {
-        hand_.dynamics = dynamics;
+    Gamepad(evdev::EventSystem& system, const Settings& settings, const std::string& path)
+        : info_(settings.info), reader_(system, path, force_, settings.rumble) {
+        hand_.dynamics = settings.hand;
         steered_.from = &reader_.state;
-        steered_.speed = speed;
-        steered_.turn = turn;
+        steered_.speed = settings.speed;
+        steered_.turn = settings.turn;
     }
 
     const DeviceInfo& info() const override { return info_; }
@@ -198,46 +237,36 @@ public:
 
 private:
     DeviceInfo info_;
+    SharedWrench force_;
     PadReader reader_;
     simulate::Hand hand_;
     Steered steered_;
-    SharedWrench force_;
     std::int64_t counter_ = 0;
 };
 
 /// The first event device with the buttons of a gamepad; empty: none.
-std::string first_gamepad() {
-    std::vector<fs::path> all;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator("/dev/input", none))
-        if (entry.path().filename().string().starts_with("event")) all.push_back(entry.path());
-    std::ranges::sort(all);
-    for (const fs::path& path : all) {
-        const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+std::string first_gamepad(evdev::EventSystem& system) {
+    for (const std::string& path : system.devices()) {
+        const int file = system.open(path, O_RDONLY | O_NONBLOCK);
         if (file < 0) continue;
-        std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
-        const bool is_told = ::ioctl(file, EVIOCGBIT(EV_KEY, keys.size()), keys.data()) >= 0;
-        ::close(file);
-        if (is_told && (keys[BTN_SOUTH / 8] >> (BTN_SOUTH % 8) & 1) != 0) return path.string();
+        const bool found = evdev::Bits::of_kind(system, file, EV_KEY)[BTN_SOUTH];
+        system.close(file);
+        if (found) return path;
     }
     return {};
 }
-
-struct Settings {
-    simulate::HandDynamics hand;
-    DeviceInfo info;
-    double speed, turn;
-    std::string file;
-};
 
 Settings read_settings(Options& options) {
     const bool is_given = options.has("grip") || options.has("stiffness");
     simulate::HandDynamics hand = read_hand(options);
     if (!is_given) hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) hand.damping = 30.0;
-    Settings settings{hand, read_device_info(options, hand, "gamepad"),
+    Settings settings{hand,
+                      read_device_info(options, hand, "gamepad"),
                       options.quantity("speed", "100 mm/s", "1 mm/s", "500 mm/s"),
-                      options.quantity("turn", "1.5 rad/s", "0.01 rad/s", "10 rad/s"), options.text("file", "")};
+                      options.quantity("turn", "1.5 rad/s", "0.01 rad/s", "10 rad/s"),
+                      options.quantity("rumble", "10 N", "0 N", "200 N"),
+                      options.text("file", "")};
     options.finish();
     return settings;
 }
@@ -251,25 +280,30 @@ Twist twist_of(const PadState& state, double speed, double turn) noexcept {
     return {speed * Vec3(axis(0), axis(5) - axis(4), -axis(1)), turn * Vec3(-axis(3), roll, axis(2))};
 }
 
-std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver&) {
-    Settings settings = read_settings(options);
-    const std::string path = settings.file.empty() ? first_gamepad() : settings.file;
+std::unique_ptr<HapticDevice> open_gamepad_of(evdev::EventSystem& system, Options& options) {
+    const Settings settings = read_settings(options);
+    const std::string path = settings.file.empty() ? first_gamepad(system) : settings.file;
     if (path.empty())
         throw Error(options.where(),
                     fmt::format("{}: there is no gamepad in /dev/input that you may read; plug one in, "
                                 "or give its event device as 'file'",
                                 options.owner()));
     try {
-        return std::make_unique<Gamepad>(std::move(settings.info), settings.hand, path, settings.speed, settings.turn);
+        return std::make_unique<Gamepad>(system, settings, path);
     } catch (const Error& error) {
         throw Error(options.where("file"), fmt::format("{}: {}", options.owner(), error.message()));
     }
 }
 
+std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver&) {
+    return open_gamepad_of(evdev::linux_events(), options);
+}
+
 HardwareOutline describe_gamepad(Options& options, const PathResolver&) {
     const Settings settings = read_settings(options);
     std::error_code ignored;
-    const bool is_here = settings.file.empty() ? !first_gamepad().empty() : fs::exists(settings.file, ignored);
+    const bool is_here =
+        settings.file.empty() ? !first_gamepad(evdev::linux_events()).empty() : fs::exists(settings.file, ignored);
     return {settings.info, is_here                 ? ""
                            : settings.file.empty() ? "there is no gamepad in /dev/input"
                                                    : fmt::format("there is no {}", settings.file)};

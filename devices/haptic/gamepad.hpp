@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "gamepad": a hand that the sticks of a gamepad move, held by a spring that yields to force. Linux evdev, read on a
-// thread of its own, so that neither a tick nor a picture waits for it.
+// Driver "gamepad": a hand that the sticks of a gamepad move, held by a spring that yields to force, which its motors tell
+// by rumbling. Linux evdev, read on a thread of its own, so that neither a tick nor a picture waits for it.
 #pragma once
 
+#include "devices/evdev/event_system.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "devices/haptic/replay.hpp"
 #include "graph/node/device.hpp"
@@ -28,9 +29,12 @@ struct PadState {
 /// tenth of their way.
 Twist twist_of(const PadState& state, double speed_m_s, double turn_rad_s) noexcept;
 
-/// Options: file (an event device; without one the first gamepad in /dev/input), speed (100 mm/s), turn (1.5 rad/s), and
-/// those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. Throws Error when there is no gamepad.
+/// Options: file (an event device; without one the first gamepad in /dev/input), speed (100 mm/s), turn (1.5 rad/s),
+/// rumble (10 N: the force at which its motors run fully; 0: they rest), and those of HandDynamics; without `grip` and
+/// `stiffness` a firm grip of 2 N/mm. Throws Error when there is no gamepad.
 std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver& resolve);
+/// With another system, which lives longer.
+std::unique_ptr<HapticDevice> open_gamepad_of(evdev::EventSystem& system, Options& options);
 
 /// The hand without its gamepad, for which no file is opened.
 HardwareOutline describe_gamepad(Options& options, const PathResolver& resolve);

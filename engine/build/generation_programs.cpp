@@ -201,6 +201,8 @@ void GenerationBuilder::assign_devices(std::size_t index) {
         program.driven.push_back(slot);
     }
     std::ranges::sort(program.devices, {}, &DeviceSlot::id);
+    for (io::SoundHeard* heard : made_->nodes[index]->uses.heard) program.heard.push_back(heard);
+    std::ranges::sort(program.heard, {}, &io::SoundHeard::id);
     // Late ticks are never run back to back against a hand.
     if (!program.devices.empty() && !plan().groups[static_cast<std::size_t>(node.group)].backlog_given)
         program.backlog = 0;

@@ -9,6 +9,7 @@
 #include "engine/build/event_merge.hpp"
 #include "engine/io/device_guard.hpp"
 #include "engine/io/frames.hpp"
+#include "engine/io/sound_heard.hpp"
 #include "engine/observe/telemetry.hpp"
 #include "engine/run/link.hpp"
 #include "graph/node/device.hpp"
@@ -161,6 +162,7 @@ struct GroupProgram {
     std::vector<Output*> event_outputs;  ///< emptied after each call
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
+    std::vector<io::SoundHeard*> heard;
     std::vector<PublishedSnapshot> snapshots;
     // What to do when taking over:
     std::vector<std::pair<Input*, const Input*>> wiring;  ///< inputs of nodes that go on, and how they are wired now

@@ -71,6 +71,7 @@ void EngineHost::keep() {
     }
     for (auto& stream : opened_.streams) streams.push_back(std::move(stream));
     for (auto& card : opened_.cards) cards.push_back(std::move(card));
+    for (auto& one : opened_.heard) heard.push_back(std::move(one));
     for (auto& notice : opened_.notices)
         if (std::ranges::find(notices, notice) == notices.end()) notices.push_back(std::move(notice));
     opened_ = {};

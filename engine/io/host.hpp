@@ -5,6 +5,7 @@
 #include "engine/build/group_program.hpp"
 #include "engine/io/driver_gate.hpp"
 #include "engine/io/sound_card.hpp"
+#include "engine/io/sound_heard.hpp"
 #include "engine/io/streams.hpp"
 #include "graph/compile/plan.hpp"
 #include "graph/patch/patch.hpp"
@@ -31,6 +32,7 @@ struct RecordedDevice {
 struct HostUses {
     std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
     std::vector<SoundChannel*> sounds;
+    std::vector<SoundHeard*> heard;
     std::vector<const RecordStream*> streams;
 };
 
@@ -43,7 +45,7 @@ struct AudioChoice {
     bool is_required() const { return !device.empty() && device != "file" && device != "none"; }
 };
 
-class EngineHost : public Host {
+class EngineHost : public Host, public SoundInputs {
 public:
     /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
     EngineHost(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
@@ -52,6 +54,8 @@ public:
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
     RecordStream& send(const StreamFormat& format, const SourceLocation& where) override;
+    const SoundInPort& listen(const SoundPlace& place, Flicks period,
+                              std::optional<std::vector<float>> instead) override;
 
     /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
     void begin(const patch::Patch& patch);
@@ -80,6 +84,8 @@ public:
 
     /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
+    /// What was heard is in the log that is replayed.
+    void hear_from_log() { hears_from_log_ = true; }
     /// Instead of opening hardware, stand-ins that state what the patch says of it; a notice says so.
     void describe_hardware() { describes_hardware_ = true; }
 
@@ -87,6 +93,7 @@ public:
     std::vector<std::unique_ptr<build::DeviceSlot>> devices;
     std::vector<std::unique_ptr<Stream>> streams;
     std::vector<std::unique_ptr<SoundCard>> cards;
+    std::vector<std::unique_ptr<SoundHeard>> heard;
     std::vector<std::string> notices;  ///< what the user should know once: "no sound card: …"
 
 private:
@@ -94,27 +101,35 @@ private:
     build::DeviceSlot* find_device(const std::string& name) const;
     DevicePort& use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
     bool is_in_use(const SoundCard& card, int channel) const;
-    std::unique_ptr<SoundCard> open_card(const StreamFormat& format, const SoundPlace& place) const;
+    std::unique_ptr<SoundCard> make_card(Flicks period, const SoundPlace& place) const;
+    SoundCard& open_card(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names);
     SoundChannel& own_channel(const StreamFormat& format, const SoundPlace& place);
+    /// The card of which nodes share channels; opens it on first use.
+    SoundCard& shared_card(Flicks period, const SoundPlace& place);
     SoundChannel& shared_channel(const StreamFormat& format, const SoundPlace& place);
-    SoundChannel& opened_channel(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names, int index);
+    void choose_source(SoundHeard& made, const SoundPlace& place, Flicks period,
+                       std::optional<std::vector<float>> instead);
 
     struct Opened {
         std::vector<std::unique_ptr<build::DeviceSlot>> devices;
         std::vector<std::unique_ptr<Stream>> streams;
         std::vector<std::unique_ptr<SoundCard>> cards;
+        std::vector<std::unique_ptr<SoundHeard>> heard;
         std::vector<std::string> notices;
     };
 
     patch::Patch patch_;
     DriverGate driver_;
     std::optional<std::vector<RecordedDevice>> recorded_;
-    bool describes_hardware_ = false;
+    bool describes_hardware_ = false, hears_from_log_ = false;
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
     HostUses* uses_ = nullptr;
     std::vector<SoundChannel*> sounds_in_use_;
-    std::map<std::string, std::vector<std::string>> channel_names_;  ///< by the text that names a card
+    struct CardNames {
+        std::vector<std::string> outputs, inputs;
+    };
+    std::map<std::string, CardNames> channel_names_;  ///< by the text that names a card
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;

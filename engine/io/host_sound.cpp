@@ -16,18 +16,33 @@ bool EngineHost::is_in_use(const SoundCard& card, int channel) const {
     });
 }
 
-std::unique_ptr<SoundCard> EngineHost::open_card(const StreamFormat& format, const SoundPlace& place) const {
+std::unique_ptr<SoundCard> EngineHost::make_card(Flicks period, const SoundPlace& place) const {
     const std::string chosen = audio_.device == "default" ? "" : audio_.device;
-    CardUse use{format.period, audio_.margin_s, group_, place.card, place.channel > 0, place.max_frames};
-    return std::make_unique<SoundCard>(
-        audio::make_portaudio_sink(place.card.empty() ? chosen : place.card, audio_.margin_s), std::move(use));
+    CardUse use{period, audio_.margin_s, group_, place.card, place.channel > 0, place.max_frames};
+    std::shared_ptr<audio::InputRing> inputs;
+    std::vector<std::string> input_names;
+    if (const auto names = channel_names_.find(place.card); use.is_shared && names != channel_names_.end()) {
+        input_names = names->second.inputs;
+        use.is_played = !names->second.outputs.empty();
+    }
+    if (!input_names.empty())
+        // A third of a second, and what waits on purpose.
+        inputs = std::make_shared<audio::InputRing>(
+            static_cast<int>(input_names.size()),
+            16384 + static_cast<std::size_t>(4.0 * audio_.margin_s * rate_of(period)));
+    auto sink = audio::make_portaudio_sink(place.card.empty() ? chosen : place.card, audio_.margin_s, inputs,
+                                           std::move(input_names));
+    return std::make_unique<SoundCard>(std::move(sink), std::move(use), std::move(inputs));
 }
 
-SoundChannel& EngineHost::opened_channel(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names,
-                                         int index) {
+SoundCard& EngineHost::open_card(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names) {
     card->open(names);
-    opened_.notices.push_back(fmt::format("playing on {}", card->name()));
-    return opened_.cards.emplace_back(std::move(card))->channel(index);
+    opened_.notices.push_back(fmt::format("{} {}",
+                                          !card->use().is_played ? "hearing"
+                                          : card->inputs() > 0   ? "playing on and hearing"
+                                                                 : "playing on",
+                                          card->name()));
+    return *opened_.cards.emplace_back(std::move(card));
 }
 
 SoundChannel& EngineHost::own_channel(const StreamFormat& format, const SoundPlace& place) {
@@ -38,36 +53,85 @@ SoundChannel& EngineHost::own_channel(const StreamFormat& format, const SoundPla
             use.wanted == place.card && !is_in_use(*card, 0))
             return card->channel(0);
     }
-    return opened_channel(open_card(format, place), {place.name}, 0);
+    return open_card(make_card(format.period, place), {place.name}).channel(0);
 }
 
-SoundChannel& EngineHost::shared_channel(const StreamFormat& format, const SoundPlace& place) {
-    const int index = place.channel - 1;
+SoundCard& EngineHost::shared_card(Flicks period, const SoundPlace& place) {
     for (const auto* list : {&cards, &opened_.cards})
         for (const auto& card : *list) {
             const CardUse& use = card->use();
-            if (card->is_lost() || !use.is_shared || use.wanted != place.card || use.group != group_) continue;
-            if (index >= card->channels())
-                throw Error(place.where, fmt::format("{} plays {} channels in this run; channel {} takes effect at the "
-                                                     "next start",
-                                                     card->name(), card->channels(), place.channel));
-            return card->channel(index);
+            if (!card->is_lost() && use.is_shared && use.wanted == place.card && use.group == group_) return *card;
         }
     const auto names = channel_names_.find(place.card);
-    return opened_channel(open_card(format, place),
-                          names == channel_names_.end() ? std::vector<std::string>(place.channel) : names->second,
-                          index);
+    std::vector<std::string> outputs;
+    if (names != channel_names_.end()) outputs = names->second.outputs;
+    if (outputs.empty()) outputs.resize(1);
+    return open_card(make_card(period, place), outputs);
+}
+
+SoundChannel& EngineHost::shared_channel(const StreamFormat& format, const SoundPlace& place) {
+    SoundCard& card = shared_card(format.period, place);
+    if (place.channel > card.channels())
+        throw Error(place.where,
+                    fmt::format("{} plays {} channels in this run; channel {} takes effect at the next start",
+                                card.name(), card.channels(), place.channel));
+    card.note_output();
+    return card.channel(place.channel - 1);
+}
+
+void EngineHost::choose_source(SoundHeard& made, const SoundPlace& place, Flicks period,
+                               std::optional<std::vector<float>> instead) {
+    // The log has what was heard.
+    if (recorded_ || hears_from_log_ || describes_hardware_) return;
+    const bool has_card = live_ && audio_.device != "file" && audio_.device != "none";
+    if (!has_card && !instead)
+        throw Error(place.where,
+                    fmt::format("node '{}' hears a sound card, {}; give it a sound of [assets] to hear instead: file = "
+                                "\"NAME\"",
+                                place.name, live_ ? "and --audio names none" : "which only 'tactus run' has"));
+    if (has_card) try {
+            SoundCard& card = shared_card(period, place);
+            if (place.channel > card.inputs())
+                throw Error(place.where,
+                            fmt::format("{} hears {} channels in this run; channel {} takes effect at the next start",
+                                        card.name(), card.inputs(), place.channel));
+            made.card = &card;
+            made.channel = place.channel - 1;
+            return;
+        } catch (const Error& error) {
+            if (!instead || audio_.is_required() || !error.where().file.empty())
+                throw Error(place.where, fmt::format("node '{}' has nothing to hear: {}", place.name, error.message()));
+            opened_.notices.push_back(
+                fmt::format("no sound card ({}); node '{}' hears its file", error.message(), place.name));
+        }
+    made.file = std::move(*instead);
+}
+
+const SoundInPort& EngineHost::listen(const SoundPlace& place, Flicks period,
+                                      std::optional<std::vector<float>> instead) {
+    auto made = std::make_unique<SoundHeard>();
+    made->port.samples.resize(static_cast<std::size_t>(place.max_frames));
+    made->group = group_;
+    for (const auto* list : {&heard, &opened_.heard})
+        for (const auto& other : *list) made->id += other->group == group_;
+    choose_source(*made, place, period, std::move(instead));
+    uses_->heard.push_back(opened_.heard.emplace_back(std::move(made)).get());
+    return uses_->heard.back()->port;
 }
 
 void EngineHost::expect_sounds(const compile::Plan& plan) {
     channel_names_.clear();
-    for (const compile::PlanNode& node : plan.nodes)
-        if (const std::optional<compile::SoundTarget> target = compile::sound_target(node)) {
-            std::vector<std::string>& names = channel_names_[target->card];
-            const auto index = static_cast<std::size_t>(target->channel - 1);
-            if (index >= names.size()) names.resize(index + 1);
-            names[index] = node.name;
-        }
+    const auto note = [](std::vector<std::string>& names, int channel, const std::string& name) {
+        const auto index = static_cast<std::size_t>(channel - 1);
+        if (index >= names.size()) names.resize(index + 1);
+        names[index] = name;
+    };
+    for (const compile::PlanNode& node : plan.nodes) {
+        if (const std::optional<compile::SoundTarget> target = compile::sound_target(node))
+            note(channel_names_[target->card].outputs, target->channel, node.name);
+        if (const std::optional<compile::SoundTarget> source = compile::sound_source(node))
+            note(channel_names_[source->card].inputs, source->channel, node.name);
+    }
 }
 
 RecordStream& EngineHost::audio(const StreamFormat& format, const SoundPlace& place) {

@@ -2,6 +2,7 @@
 #include "engine/io/sound_card.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 
 namespace tactus::io {
@@ -10,8 +11,21 @@ bool SoundChannel::write(std::int64_t first, const void* values, std::size_t cou
     return card_.write(index_, first, values, count, stride);
 }
 
-SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, CardUse use) : sink_(std::move(sink)), use_(std::move(use)) {
+SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, CardUse use, std::shared_ptr<audio::InputRing> inputs)
+    : sink_(std::move(sink)), use_(std::move(use)), is_played_(use_.is_played) {
     follower_.prepare(rate_of(use_.period), use_.margin_s);
+    if (inputs) input_.emplace(std::move(inputs), rate(), use_.margin_s);
+}
+
+void SoundCard::hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept {
+    const std::int64_t now = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+    input_->read(channel, first, into, count, now);
+    if (is_played_ || first < silent_until_) return;
+    static constexpr float silence[256] = {};
+    silent_until_ = first + static_cast<std::int64_t>(count);
+    for (std::int64_t at = first; at < silent_until_; at += std::ssize(silence))
+        write(0, at, silence, static_cast<std::size_t>(std::min(silent_until_ - at, std::ssize(silence))),
+              sizeof(float));
 }
 
 void SoundCard::open(const std::vector<std::string>& names) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dsp/control/card_follower.hpp"
+#include "engine/io/card_input.hpp"
 #include "engine/io/channel_gather.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/setup.hpp"
@@ -41,16 +42,25 @@ struct CardUse {
     std::string wanted = {};  ///< the text by which the card was chosen
     bool is_shared = false;  ///< nodes share it, each with a channel of its own
     int max_frames = 256;  ///< most samples per write
+    bool is_played = true;  ///< false: nodes only hear it; silence is played, so that the clock follows it
 };
 
 class SoundCard {
 public:
-    SoundCard(std::unique_ptr<AudioSink> sink, CardUse use);
+    /// `inputs`: what the card's callback fills, or null.
+    SoundCard(std::unique_ptr<AudioSink> sink, CardUse use, std::shared_ptr<audio::InputRing> inputs = {});
 
     /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
     bool write(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
 
+    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1; wait-free.
+    void hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept;
+
     // Control thread.
+    /// A node plays on it from now on.
+    void note_output() noexcept { is_played_ = true; }
+    int inputs() const { return input_ ? input_->channels() : 0; }
+    const CardInput* input() const { return input_ ? &*input_ : nullptr; }
     /// Opens the card with one channel per name. Programs that connect sound show the names that are not empty. Throws
     /// Error.
     void open(const std::vector<std::string>& names);
@@ -84,6 +94,9 @@ private:
     std::unique_ptr<AudioSink> sink_;
     CardUse use_;
     std::vector<std::unique_ptr<SoundChannel>> listed_;
+    std::optional<CardInput> input_;
+    std::atomic<bool> is_played_;
+    std::int64_t silent_until_ = 0;  // thread of the group
     ChannelGather gather_;  // thread of the group
     control::CardFollower follower_;
     std::atomic<std::int64_t> shift_{0};  // index of the activation that is frame 0 of the ring

@@ -4,6 +4,7 @@
 #include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "engine/run/link.hpp"
+#include "engine/take/sound_record.hpp"
 
 #include <algorithm>
 
@@ -51,6 +52,22 @@ void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elaps
     sample(slot, elapsed);
     if (driver.is_forsaken()) return;
     log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
+}
+
+void Decisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept {
+    heard.fill(tick, frames);
+    note_heard(heard, tick, frames);
+}
+
+/// Every record begins with the call, so that the log stays in the order of time: the last `value` activations of each
+/// are those of its samples.
+void Decisions::note_heard(const io::SoundHeard& heard, std::int64_t tick, int frames) noexcept {
+    if (!log_.ring) return;
+    for (int from = 0; from < frames; from += take::sound_record_samples) {
+        const int count = std::min(frames - from, take::sound_record_samples);
+        const DeviceSample packed = take::pack_sound(heard.port.samples.data() + from, count);
+        log_.note(take::TimingKind::heard, tick, {heard.id, from + count, count, &packed});
+    }
 }
 
 bool Decisions::drops(const Link&, std::int64_t, int) noexcept { return false; }

@@ -108,6 +108,8 @@ public:
     /// Puts the device's state into its port. `elapsed` in flicks since the last call. When the thread was left behind in
     /// the driver, `driver` says so.
     virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
+    /// Fills the port with the activations of the call. Wait-free.
+    virtual void hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept;
     virtual LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                              int frames) noexcept = 0;
     /// What the call gives is not published on `link`.
@@ -128,6 +130,7 @@ protected:
     static bool is_late(const Link& link, std::int64_t index, std::int64_t last, std::int64_t tick) noexcept;
     /// From the device itself.
     void sample(build::DeviceSlot& slot, Flicks elapsed) noexcept;
+    void note_heard(const io::SoundHeard& heard, std::int64_t tick, int frames) noexcept;
 
     DecisionLog& log_;
 };

@@ -62,6 +62,7 @@ Engine::Parts::Parts(const EngineOptions& options_)
       pause(timeline, time),
       offline(options, timeline, recorder) {
     if (options.devices) host.imitate(*options.devices);
+    if (options.replay) host.hear_from_log();
     if (options.only_checked) host.describe_hardware();
     if (options.take || options.tap)
         context.take = [this](const io::FrameLayout& layout, const GroupRuntime& group) {

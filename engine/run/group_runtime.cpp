@@ -60,7 +60,8 @@ bool GroupRuntime::ready() const noexcept {
     return decisions_->may_begin(program_->outputs, next_);
 }
 
-void GroupRuntime::acquire() noexcept {
+void GroupRuntime::acquire(int frames) noexcept {
+    for (io::SoundHeard* heard : program_->heard) decisions_->hear(*heard, next_, frames);
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
     for (build::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
 }
@@ -137,7 +138,7 @@ void GroupRuntime::begin_call(int frames) noexcept {
     while (n > 1 && !decisions_->has_room(program_->outputs, next_, n)) n /= 2;
     begun_ = n;
     now = next_ * plan->period;
-    acquire();
+    acquire(n);
     if (is_forsaken()) return;
     RealtimeScope scope;
     read_links(n);

@@ -122,7 +122,7 @@ private:
     bool read_link(Link& link, const GroupRuntime& producer, int frames) noexcept;
     /// Tells nodes which of their snapshots are still looked at.
     void note_readers(int frames) noexcept;
-    void acquire() noexcept;
+    void acquire(int frames) noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
     template <bool watched>

@@ -3,6 +3,7 @@
 
 #include "engine/run/group_runtime.hpp"
 #include "engine/run/link.hpp"
+#include "engine/take/sound_record.hpp"
 
 #include <algorithm>
 
@@ -79,6 +80,7 @@ std::int64_t ReplayedDecisions::end_of_call(std::int64_t tick, std::int64_t unti
     for (std::size_t i = first_; i < records_.size(); ++i) {
         const TimingRecord& record = records_[i];
         if (record.tick >= until) break;
+        if (record.kind == TimingKind::heard) continue;
         const std::int64_t at = record.tick > tick ? record.tick : record.tick + record.count;
         if (at > tick) until = std::min(until, at);
     }
@@ -105,6 +107,22 @@ void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flic
     if (const TimingRecord* logged = find(TimingKind::device_sample, slot.id, tick)) slot.port.sample = logged->sample;
     else sample(slot, elapsed);
     log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
+}
+
+void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept {
+    heard.fill(tick, frames);
+    for (std::int64_t at = tick; at < tick + frames; ++at) {
+        // The first that reaches so far: each one reaches further than the one before.
+        const TimingRecord* const record = find(TimingKind::heard, heard.id, at);
+        if (!record) continue;
+        const std::int64_t end = record->tick + record->count, first = end - record->value;
+        const auto samples = take::unpack_sound(record->sample);
+        for (; at < std::min(end, tick + frames); ++at)
+            if (const std::int64_t i = at - first; i >= 0 && i < take::sound_record_samples)
+                heard.port.samples[static_cast<std::size_t>(at - tick)] = samples[static_cast<std::size_t>(i)];
+        --at;
+    }
+    note_heard(heard, tick, frames);
 }
 
 LinkReading ReplayedDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int) noexcept {

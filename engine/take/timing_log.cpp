@@ -104,7 +104,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     log.seconds = header.seconds;
     TimingRecord record;
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
-        if (record.kind > TimingKind::whole || record.tick < 0 || record.count < 0 || !has_flags(record.sample))
+        if (record.kind > TimingKind::heard || record.tick < 0 || record.count < 0 || !has_flags(record.sample))
             fail("a record of the timing log is damaged");
         ++log.records;
         if (record.kind == TimingKind::whole) {

@@ -32,6 +32,8 @@ enum class TimingKind : std::uint8_t {
     progress,  ///< all before tick is in the log; where a log that was cut off can be trusted to
     end,  ///< the group ran up to tick − 1
     whole,  ///< the last record of a log that was written to its end; `value` is the number of all records
+    heard,  ///< samples of sound input `source`, in `sample` (take/sound_record.hpp): the last `value` ones of
+    ///< activations tick … tick + count − 1
 };
 
 /// Written by the group that decides, in its own order.

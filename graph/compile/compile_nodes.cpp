@@ -101,32 +101,15 @@ void check_assets(const PlanNode& node, const std::vector<std::string>& names,
     }
 }
 
-/// Gives nodes that name an actuator its settings, where they have none of their own.
+/// Gives nodes that name an actuator or a sensor its settings, where they have none of their own.
 class Actuators {
 public:
     Actuators(const std::vector<patch::PatchActuator>& list, patch::Problems& problems)
         : list_(list), problems_(problems) {}
 
     void apply(const patch::PatchNode& node, const PlanNode& made, const Collector& collector) {
-        const auto text = made.texts.find("actuator");
-        if (text == made.texts.end() || text->second->value.empty()) return;
-        const std::string& wanted = text->second->value;
-        const auto actuator = std::ranges::find(list_, wanted, &patch::PatchActuator::name);
-        if (actuator == list_.end()) {
-            std::vector<std::string> names;
-            for (const patch::PatchActuator& known : list_) names.push_back(known.name);
-            problems_.add(text->second->where,
-                          fmt::format("no actuator '{}' in [actuators]{}", wanted, did_you_mean(wanted, names)));
-            return;
-        }
-        Seen& seen = seen_[actuator->name];
-        for (const OptionText& given : actuator->settings) {
-            if (!collector.knows(given.name) || given.name == "actuator") continue;
-            seen.known.insert(given.name);
-            if (std::ranges::find(node.settings, given.name, &OptionText::name) == node.settings.end())
-                collector.apply(given, problems_);
-        }
-        std::ranges::copy(collector.names(), std::back_inserter(seen.names));
+        apply(node, made, collector, {"actuator", "actuators", ""});
+        apply(node, made, collector, {"sensor", "sensors", "sensors."});
     }
 
     /// A setting that no node understands is an error.
@@ -134,15 +117,46 @@ public:
         for (const patch::PatchActuator& actuator : list_) {
             const auto seen = seen_.find(actuator.name);
             if (seen == seen_.end()) continue;
+            const bool is_sensor = actuator.name.starts_with("sensors.");
             for (const OptionText& given : actuator.settings)
                 if (!seen->second.known.contains(given.name))
-                    problems_.add(given.where,
-                                  fmt::format("no node that names actuator '{}' has a parameter '{}'{}", actuator.name,
-                                              given.name, did_you_mean(given.name, seen->second.names)));
+                    problems_.add(given.where, fmt::format("no node that names {} '{}' has a parameter '{}'{}",
+                                                           is_sensor ? "sensor" : "actuator",
+                                                           actuator.name.substr(is_sensor ? 8 : 0), given.name,
+                                                           did_you_mean(given.name, seen->second.names)));
         }
     }
 
 private:
+    struct Kind {
+        const char *param, *table, *prefix;
+    };
+
+    void apply(const patch::PatchNode& node, const PlanNode& made, const Collector& collector, const Kind& kind) {
+        const auto text = made.texts.find(kind.param);
+        if (text == made.texts.end() || text->second->value.empty()) return;
+        const std::string wanted = kind.prefix + text->second->value;
+        const auto actuator = std::ranges::find(list_, wanted, &patch::PatchActuator::name);
+        if (actuator == list_.end()) {
+            std::vector<std::string> names;
+            const std::string prefix = kind.prefix;
+            for (const patch::PatchActuator& known : list_)
+                if (known.name.starts_with(prefix) && known.name.find('.', prefix.size()) == std::string::npos)
+                    names.push_back(known.name.substr(prefix.size()));
+            problems_.add(text->second->where, fmt::format("no {} '{}' in [{}]{}", kind.param, text->second->value,
+                                                           kind.table, did_you_mean(text->second->value, names)));
+            return;
+        }
+        Seen& seen = seen_[actuator->name];
+        for (const OptionText& given : actuator->settings) {
+            if (!collector.knows(given.name) || given.name == kind.param) continue;
+            seen.known.insert(given.name);
+            if (std::ranges::find(node.settings, given.name, &OptionText::name) == node.settings.end())
+                collector.apply(given, problems_);
+        }
+        std::ranges::copy(collector.names(), std::back_inserter(seen.names));
+    }
+
     struct Seen {
         std::unordered_set<std::string> known;
         std::vector<std::string> names;

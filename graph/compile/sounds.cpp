@@ -9,28 +9,41 @@
 
 namespace tactus::compile {
 
-std::optional<SoundTarget> sound_target(const PlanNode& node) {
-    if (!node.type || node.type->role != NodeRole::sound_sink) return std::nullopt;
+namespace {
+
+std::optional<SoundTarget> channel_of(const PlanNode& node) {
     const auto channel = node.params.find("channel");
     const auto card = node.texts.find("card");
     if (channel == node.params.end() || card == node.texts.end() || channel->second->value < 1.0) return std::nullopt;
     return SoundTarget{card->second->value, static_cast<int>(channel->second->value)};
 }
 
+}  // namespace
+
+std::optional<SoundTarget> sound_target(const PlanNode& node) {
+    return node.type && node.type->role == NodeRole::sound_sink ? channel_of(node) : std::nullopt;
+}
+
+std::optional<SoundTarget> sound_source(const PlanNode& node) {
+    return node.texts.contains("sensor") ? channel_of(node) : std::nullopt;
+}
+
 void check_sounds(const Plan& plan, patch::Problems& problems) {
     std::map<std::string, const PlanNode*> cards;
     std::map<std::pair<std::string, int>, const PlanNode*> channels;
     for (const PlanNode& node : plan.nodes) {
-        const std::optional<SoundTarget> target = sound_target(node);
-        if (!target) continue;
-        const auto& [card, channel] = *target;
+        const std::optional<SoundTarget> target = sound_target(node), source = sound_source(node);
+        if (!target && !source) continue;
+        const auto& [card, channel] = target ? *target : *source;
         const std::string of_card = card.empty() ? "of the sound card" : fmt::format("of card '{}'", card);
-        if (const auto [first, is_new] = channels.try_emplace({card, channel}, &node); !is_new)
+        if (!target) {
+            // Any number of nodes may hear one channel.
+        } else if (const auto [first, is_new] = channels.try_emplace({card, channel}, &node); !is_new)
             problems.add(node.where, fmt::format("node '{}' plays on channel {} {}, and so does '{}'", node.name,
                                                  channel, of_card, first->second->name));
         if (const auto [first, is_new] = cards.try_emplace(card, &node); first->second->group != node.group)
             problems.add(node.where,
-                         fmt::format("nodes '{}' and '{}' play on channels {}, so they need one rate and one group",
+                         fmt::format("nodes '{}' and '{}' use channels {}, so they need one rate and one group",
                                      first->second->name, node.name, of_card));
     }
 }

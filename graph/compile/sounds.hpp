@@ -17,7 +17,10 @@ struct SoundTarget {
 /// The channel that a node plays on; none when it has a stream of its own, or plays nothing.
 std::optional<SoundTarget> sound_target(const PlanNode& node);
 
-/// A channel of a card has one node, and all nodes with channels of one card are in one group.
+/// The channel that a node hears; none when it hears nothing. Such a node has the text parameters `sensor` and `card`.
+std::optional<SoundTarget> sound_source(const PlanNode& node);
+
+/// An output channel of a card has one node, and all nodes with channels of one card are in one group.
 void check_sounds(const Plan& plan, patch::Problems& problems);
 
 }  // namespace tactus::compile

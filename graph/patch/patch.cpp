@@ -21,9 +21,9 @@ namespace tactus::patch {
 
 namespace {
 
-const std::array<std::string, 15> top_level{"title",  "about",   "wires",      "quantum",   "seed",
-                                            "assets", "groups",  "devices",    "actuators", "nodes",
-                                            "inputs", "outputs", "parameters", "parts",     "window"};
+const std::array<std::string, 16> top_level{"title",   "about",      "wires",     "quantum", "seed",  "assets",
+                                            "groups",  "devices",    "actuators", "sensors", "nodes", "inputs",
+                                            "outputs", "parameters", "parts",     "window"};
 
 class PatchReader {
 public:
@@ -88,7 +88,9 @@ private:
         else if (name == "groups") for_each(value, name, [this](const auto& k, const toml::node& v) { group(k, v); });
         else if (name == "devices") for_each(value, name, [this](const auto& k, const toml::node& v) { device(k, v); });
         else if (name == "actuators")
-            for_each(value, name, [this](const auto& k, const toml::node& v) { actuator(k, v); });
+            for_each(value, name, [this](const auto& k, const toml::node& v) { actuator(k, v, "actuators"); });
+        else if (name == "sensors")
+            for_each(value, name, [this](const auto& k, const toml::node& v) { actuator(k, v, "sensors"); });
         else if (name == "nodes") for_each(value, name, [this](const auto& k, const toml::node& v) { node(k, v); });
         else if (name == "inputs" || name == "parameters" || name == "outputs") {
             auto& ends = name == "inputs" ? patch_.inputs : name == "outputs" ? patch_.outputs : patch_.parameters;
@@ -281,12 +283,14 @@ private:
         patch_.devices.push_back(std::move(device));
     }
 
-    void actuator(const toml::key& key, const toml::node& value) {
-        const toml::table* table = table_of(key, value, "actuators");
+    /// A sensor is kept among the actuators, as "sensors.NAME": names have no point.
+    void actuator(const toml::key& key, const toml::node& value, const char* kind) {
+        const toml::table* table = table_of(key, value, kind);
         if (!table) return;
-        PatchActuator actuator{std::string(key.str()), at(key.source()), {}};
-        for (const auto& [name, item] : *table)
-            setting(name, item, fmt::format("actuators.{}", actuator.name), actuator.settings);
+        const std::string name = fmt::format("{}.{}", kind, key.str());
+        PatchActuator actuator{
+            kind == std::string_view("sensors") ? name : std::string(key.str()), at(key.source()), {}};
+        for (const auto& [option, item] : *table) setting(option, item, name, actuator.settings);
         sort_by_place(actuator.settings);
         patch_.actuators.push_back(std::move(actuator));
     }

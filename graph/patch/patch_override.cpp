@@ -24,21 +24,25 @@ void set(Patch& patch, const std::string& assignment) {
     const SourceLocation where{"--set " + assignment, 0, 0};
     const std::size_t equals = assignment.find('=');
     std::string_view target = std::string_view(assignment).substr(0, equals);
-    const bool is_device = target.starts_with("devices."), is_actuator = target.starts_with("actuators.");
+    const bool is_device = target.starts_with("devices."), is_sensor = target.starts_with("sensors.");
+    const bool is_actuator = target.starts_with("actuators.");
     if (is_device) target.remove_prefix(8);
     else if (is_actuator) target.remove_prefix(10);
     else if (target.starts_with("nodes.")) target.remove_prefix(6);
-    const std::size_t dot = target.find('.');
+    // A sensor has its table in its name.
+    const std::size_t dot = target.find('.', is_sensor ? 8 : 0);
     if (equals == std::string::npos || dot == std::string_view::npos || dot + 1 == target.size())
         throw Error(where, "write NODE.PARAM=VALUE");
     const std::string_view owner = target.substr(0, dot), key = target.substr(dot + 1);
     std::string_view text = std::string_view(assignment).substr(equals + 1);
     if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-    if (is_actuator) {
+    if (is_actuator || is_sensor) {
         std::vector<std::string> names;
         for (const PatchActuator& a : patch.actuators) names.push_back(a.name);
         PatchActuator* actuator = find_named(patch.actuators, owner);
-        if (!actuator) throw Error(where, fmt::format("no actuator '{}'{}", owner, did_you_mean(owner, names)));
+        if (!actuator)
+            throw Error(where, fmt::format("no {} '{}'{}", is_sensor ? "sensor" : "actuator", owner,
+                                           did_you_mean(owner, names)));
         put(actuator->settings, key, text, where);
     } else if (PatchNode* node = is_device ? nullptr : find_named(patch.nodes, owner)) {
         if (key == "type") {

@@ -59,6 +59,12 @@ RecordStream& FakeHost::audio(const StreamFormat& format, const SoundPlace&) {
 
 RecordStream& FakeHost::send(const StreamFormat& format, const SourceLocation& where) { return record(format, where); }
 
+const SoundInPort& FakeHost::listen(const SoundPlace& place, Flicks, std::optional<std::vector<float>>) {
+    SoundInPort& port = *heard.emplace_back(std::make_unique<SoundInPort>());
+    port.samples.resize(static_cast<std::size_t>(place.max_frames));
+    return port;
+}
+
 struct NodeHarness::InputSlot {
     std::string name;
     Input* port;
@@ -248,6 +254,12 @@ void NodeHarness::fill_inputs(std::int64_t first, int frames) {
         }
     }
     for (auto& [name, port] : host.devices) device_feed(first, *port);
+    for (const auto& port : host.heard) {
+        port->first = first;
+        for (int i = 0; i < frames; ++i)
+            sample_value(value::signal, Random{options_.seed}, first + i, options_.feed,
+                         &port->samples[static_cast<std::size_t>(i)]);
+    }
 }
 
 void NodeHarness::spoil_signals() {

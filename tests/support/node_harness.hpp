@@ -4,12 +4,14 @@
 #pragma once
 
 #include "graph/node/node.hpp"
+#include "graph/node/sound_input.hpp"
 
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,15 +37,18 @@ struct MemoryStream final : RecordStream {
     bool gapless = true;
 };
 
-struct FakeHost final : Host {
+struct FakeHost final : Host, SoundInputs {
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SoundPlace& place) override;
     RecordStream& send(const StreamFormat& format, const SourceLocation& where) override;
+    const SoundInPort& listen(const SoundPlace& place, Flicks period,
+                              std::optional<std::vector<float>> instead) override;
 
     std::map<std::string, std::unique_ptr<DevicePort>> devices;
     bool driven = false;  ///< a node asked to drive one
     std::vector<std::unique_ptr<MemoryStream>> records, sounds;
+    std::vector<std::unique_ptr<SoundInPort>> heard;  ///< what they hear follows the feed
 };
 
 /// What the inputs without a function of their own carry.

@@ -37,5 +37,6 @@ Verb segment_verb();
 Verb vessel_verb();
 Verb rope_verb();
 Verb reconstruct_verb();
+Verb peers_verb();
 
 }  // namespace tactus::bench

@@ -60,6 +60,13 @@ Json card_json(const io::SoundCard& card) {
               {"frames_left_out", s.frames_left_out},
               {"runs_fast_ppm", 1e6 * card.follower().loop().rate_error()},
               {"losses", card.losses()}};
+    if (const io::CardInput* input = card.input())
+        json["heard"] = {{"channels", input->channels()},
+                         {"xruns", input->xruns()},
+                         {"card_xruns", input->card_xruns()},
+                         {"frames_missed", input->frames_missed()},
+                         {"resyncs", input->resyncs()},
+                         {"latency_ms", 1e3 * input->latency_s()}};
     if (card.lost_at()) json["lost_at_s"] = tactus::seconds(*card.lost_at());
     return json;
 }

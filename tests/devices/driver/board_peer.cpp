@@ -40,7 +40,8 @@ double angle_for(double x, double y, int side) {
 class BoardPeer : public Peer {
 public:
     explicit BoardPeer(bool speaks_frames) : speaks_frames_(speaks_frames) {
-        turns = moves_up = false;
+        turns = false;
+        moves_along = 2;
         buttons = speaks_frames ? 2 : 0;
         // µrad, or degrees as float32.
         exact = speaks_frames ? 5e-7 : 2e-7;

@@ -37,7 +37,9 @@ double turned_apart(const Quat& a, const Quat& b) {
 }
 
 /// In reach of every peer.
-Vec3 reachable(const Peer& peer, const Vec3& wanted) { return peer.moves_up ? wanted : Vec3(wanted.x, wanted.y, 0.0); }
+Vec3 reachable(const Peer& peer, const Vec3& wanted) {
+    return {wanted.x, peer.moves_along > 1 ? wanted.y : 0.0, peer.moves_along > 2 ? wanted.z : 0.0};
+}
 
 }  // namespace
 
@@ -68,7 +70,7 @@ TEST_CASE("forces along each axis reach every device in its own frame", "[live]"
         const auto peer = kind.make();
         peer->place(reachable(*peer, {0.012, -0.1, 0.0}), Quat(1.0, 0.0, 0.0, 0.0));
         const auto device = open_peer(*peer);
-        for (int axis = 0; axis < (peer->moves_up ? 3 : 2); ++axis)
+        for (int axis = 0; axis < peer->moves_along; ++axis)
             for (const double newton : {0.75, -0.5}) {
                 Wrench wanted;
                 wanted.force[axis] = newton;

@@ -2,17 +2,16 @@
 #include "tests/devices/driver/peer.hpp"
 
 #include "tests/devices/driver/board_peer.hpp"
+#include "tests/devices/driver/event_peer.hpp"
 #include "tests/devices/driver/library_peers.hpp"
 #include "tests/devices/driver/service_peer.hpp"
 
 namespace tactus::test {
 
 const std::vector<PeerKind>& peer_kinds() {
-    static const std::vector<PeerKind> all{{"force_dimension", make_dhd_peer},
-                                           {"touch", make_hd_peer},
-                                           {"haply", make_haply_peer},
-                                           {"serial_board", make_frame_board_peer},
-                                           {"haply_2diy", make_diy_peer}};
+    static const std::vector<PeerKind> all{{"force_dimension", make_dhd_peer}, {"touch", make_hd_peer},
+                                           {"haply", make_haply_peer},         {"serial_board", make_frame_board_peer},
+                                           {"haply_2diy", make_diy_peer},      {"wheel", make_wheel_peer}};
     return all;
 }
 

@@ -32,7 +32,7 @@ public:
     virtual void burst() {}
 
     bool turns = true;  ///< senses rotation
-    bool moves_up = true;  ///< false: it moves in a plane
+    int moves_along = 3;  ///< axes: 1: x; 2: and y; 3: and z
     bool twists = false;  ///< gives torque
     int buttons = 4;
     double exact = 1e-15;  ///< m, error of a pose that is due to the peer's own format

@@ -2,6 +2,7 @@
 // A gamepad whose events come through a pipe.
 #include "devices/haptic/gamepad.hpp"
 
+#include "tests/devices/driver/event_peer.hpp"
 #include "tests/support/catch.hpp"
 
 #include <fcntl.h>
@@ -144,4 +145,71 @@ TEST_CASE("without a gamepad the driver says what to do") {
     CHECK_THROWS_WITH(
         haptic::open_gamepad(options, [](const std::string& name) { return std::filesystem::path(name); }),
         Catch::Matchers::ContainsSubstring("cannot open /nowhere/event7"));
+}
+
+namespace {
+
+/// A gamepad of the stand-in for the kernel, with motors.
+struct RumblePad {
+    test::FakeEvents events;
+    std::unique_ptr<HapticDevice> device;
+
+    RumblePad() {
+        events.axes[ABS_X] = {.value = 0, .minimum = -128, .maximum = 127, .fuzz = 0, .flat = 0, .resolution = 0};
+        events.keys = {BTN_SOUTH, BTN_EAST};
+        events.effects = {FF_RUMBLE, FF_GAIN};
+    }
+    void open(std::vector<OptionText> given = {}) {
+        Options options("device 'pad'", std::move(given));
+        device = haptic::open_gamepad_of(events, options);
+        device->prepare(1e-3);
+    }
+    int strength() {
+        int sum = 0;
+        for (const ff_effect& one : events.playing()) sum += one.u.rumble.strong_magnitude;
+        return sum;
+    }
+    bool reaches(int wanted) {
+        for (int n = 0; n < 2000; ++n) {
+            if (std::abs(strength() - wanted) <= 1) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the motors of a gamepad rumble as large as the force is, and rest without one and at the end") {
+    RumblePad pad;
+    pad.open({{"rumble", "8 N", {}}});
+    CHECK(pad.events.gain == 0xFFFF);
+    pad.device->commit({{0.0, 1.2, -1.6}, {}});
+    CHECK(pad.reaches(65535 / 4));
+    pad.device->commit({{0.0, 100.0, 0.0}, {}});
+    CHECK(pad.reaches(65535));
+    pad.device->commit({{std::nan(""), 0.0, 0.0}, {}});
+    CHECK(pad.reaches(0));
+    pad.device->commit({{8.0, 0.0, 0.0}, {}});
+    CHECK(pad.reaches(65535));
+    pad.device.reset();
+    CHECK(pad.events.uploaded() == 0);
+    CHECK(pad.events.open_files() == 0);
+}
+
+TEST_CASE("a gamepad that may only be read, or whose motors are to rest, still has its sticks") {
+    for (const bool is_read_only : {true, false}) {
+        RumblePad pad;
+        pad.events.is_read_only = is_read_only;
+        pad.open(is_read_only ? std::vector<OptionText>{} : std::vector<OptionText>{{"rumble", "0 N", {}}});
+        pad.events.say(EV_ABS, ABS_X, 127);
+        bool has_moved = false;
+        for (int n = 0; n < 2000 && !has_moved; ++n) {
+            has_moved = pad.device->acquire(1e-3).pose.position.x > 0.005;
+            pad.device->commit({{5.0, 0.0, 0.0}, {}});
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        CHECK(has_moved);
+        CHECK(pad.events.uploaded() == 0);
+    }
 }

@@ -5,6 +5,7 @@
 #include "devices/audio/portaudio.hpp"
 #include "engine/io/host.hpp"
 #include "graph/analyse/latency.hpp"
+#include "graph/compile/sounds.hpp"
 #include "tools/command/run/check_process.hpp"
 
 #include <fmt/format.h>
@@ -62,8 +63,14 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
 Json sound_json(const compile::Plan& plan) {
     const bool plays = std::ranges::any_of(
         plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::sound_sink; });
-    if (!plays) return {};
-    Json json{{"buffer_ms", 1e3 * io::AudioChoice{}.margin_s}, {"card", nullptr}, {"card_ms", nullptr}};
+    const bool hears = std::ranges::any_of(
+        plan.nodes, [](const compile::PlanNode& node) { return compile::sound_source(node).has_value(); });
+    if (!plays && !hears) return {};
+    Json json{{"buffer_ms", 1e3 * io::AudioChoice{}.margin_s},
+              {"card", nullptr},
+              {"card_ms", nullptr},
+              {"plays", plays},
+              {"hears", hears}};
     try {
         for (const audio::AudioOutput& output : audio::list_audio_outputs())
             if (output.is_default) {

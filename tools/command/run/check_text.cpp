@@ -93,8 +93,14 @@ void print_loops(const Json& loops) {
                    loop["hand_stiffness_N_per_mm"].get<double>(), loop["ok"].get<bool>() ? "" : "  UNSTABLE");
 }
 
-/// What a sound card adds to the paths that end there.
+/// What a sound card adds to the paths that begin or end there.
 void print_sound(const Json& sound) {
+    if (sound["hears"].get<bool>())
+        fmt::print(
+            "Hearing: what a card hears waits {:.4g} ms (--audio-margin) and one callback, and as long as the card "
+            "itself needs.\n",
+            sound["buffer_ms"].get<double>());
+    if (!sound["plays"].get<bool>()) return;
     fmt::print("Sound: a run adds the card's buffer, {:.4g} ms (--audio-margin) and one callback, and ",
                sound["buffer_ms"].get<double>());
     if (sound["card"].is_null()) fmt::print("a card's own latency; there is no card here.\n");

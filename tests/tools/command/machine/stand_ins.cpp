@@ -24,6 +24,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -72,24 +73,37 @@ double farthest(const fs::path& csv) {
     return far;
 }
 
-/// Saw training for 1 s with that driver, and its take again: the tool has moved, and the results are the same.
-void saws_with(const std::string& driver, bool has_motors) {
+/// What a patch keeps of the hand, and what keeps it away from forces.
+struct Scene {
+    const char *patch, *pose, *rest;
+    std::vector<const char*> hands;  ///< nodes that name its device
+};
+/// Away from the bone: there a fault ends as soon as samples are back.
+const Scene sawing{"saw-training", "pose.csv", " --set place.clearance=100mm", {"hand"}};
+const Scene planning{"planning-trauma", nullptr, "", {"hand"}};
+const Scene gripping{"gripper-on-arm", nullptr, "", {"arm", "arm_out"}};
+
+/// The scene for 1 s with that driver, and its take again: the tool has moved, and the results are the same.
+void runs_with(const Scene& scene, const std::string& driver, bool has_motors, const std::string& before = {}) {
     const Folder folder;
+    CAPTURE(scene.patch, driver);
     ::setenv("XDG_CONFIG_HOME", (folder.path / "config").c_str(), 1);
+    if (!before.empty()) ::setenv("LD_PRELOAD", before.c_str(), 1);
     // A busy machine makes ticks late; such a run ends with a fault, and is made again.
     Outcome run;
     fs::path take;
     for (int attempt = 0; attempt < 3 && run.code != 0; ++attempt) {
         take = folder.path / ("take" + std::to_string(attempt));
-        // Away from the bone: there a fault ends as soon as samples are back.
-        run = folder.tactus("run saw-training --set hand.device=" + driver +
-                            " --set place.clearance=100mm --audio none --seconds 1 --record " + take.string() +
-                            " --out " + take.string() + "-out");
+        std::string hands;
+        for (const char* node : scene.hands) hands += " --set " + std::string(node) + ".device=" + driver;
+        run = folder.tactus("run " + std::string(scene.patch) + hands + scene.rest +
+                            " --audio none --seconds 1 --record " + take.string() + " --out " + take.string() + "-out");
     }
+    ::unsetenv("LD_PRELOAD");
     ::unsetenv("XDG_CONFIG_HOME");
     INFO(run.out << run.err);
     REQUIRE(run.code == 0);
-    CHECK(farthest(fs::path(take.string() + "-out") / "pose.csv") > 2e-3);
+    if (scene.pose) CHECK(farthest(fs::path(take.string() + "-out") / scene.pose) > 2e-3);
     CHECK((run.err.find("untested on hardware: at most 0.5 N") != std::string::npos) == has_motors);
     const Outcome replay = folder.tactus("replay " + take.string() + " --json");
     INFO(replay.out << replay.err);
@@ -97,17 +111,22 @@ void saws_with(const std::string& driver, bool has_motors) {
     CHECK(json::parse(replay.out)["identical"] == true);
 }
 
+/// In each of the library's scenes for a hand.
+void runs_everywhere_with(const std::string& driver, bool has_motors, const std::string& before = {}) {
+    for (const Scene& scene : {sawing, planning, gripping}) runs_with(scene, driver, has_motors, before);
+}
+
 }  // namespace
 
-TEST_CASE("saw training runs with a 2diy, and its take repeats it", "[live]") {
+TEST_CASE("the library's scenes run with a 2diy, and their takes repeat them", "[live]") {
     const auto board = make_diy_peer();
     const Every moves([&](double t) { board->place(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
     ::setenv("TACTUS_BOARD_PORT", line_of(*board).c_str(), 1);
-    saws_with("haply_2diy", true);
+    runs_everywhere_with("haply_2diy", true);
     ::unsetenv("TACTUS_BOARD_PORT");
 }
 
-TEST_CASE("saw training runs with an Inverse3, and its take repeats it", "[live]") {
+TEST_CASE("the library's scenes run with an Inverse3, and their takes repeat them", "[live]") {
     std::optional<HaplyService> service;
     try {
         service.emplace(10001);  // where the driver looks
@@ -115,11 +134,11 @@ TEST_CASE("saw training runs with an Inverse3, and its take repeats it", "[live]
         return skip(error.what());
     }
     const Every moves([&](double t) { service->move(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
-    saws_with("haply", true);
+    runs_everywhere_with("haply", true);
     CHECK(service->texts > 100);
 }
 
-TEST_CASE("saw training runs with a 3D mouse, and its take repeats it", "[live]") {
+TEST_CASE("the library's scenes run with a 3D mouse, and their takes repeat them", "[live]") {
     SpaceDaemon daemon;
     ::setenv("SPNAV_SOCKET", daemon.path.c_str(), 1);
     {
@@ -127,12 +146,12 @@ TEST_CASE("saw training runs with a 3D mouse, and its take repeats it", "[live]"
             daemon.accept_now();
             daemon.send(motion(static_cast<int>(200.0 * std::sin(6.283 * t)), 0, 0, 0, 0, 0));
         });
-        saws_with("space_mouse", false);
+        runs_everywhere_with("space_mouse", false);
     }
     ::unsetenv("SPNAV_SOCKET");
 }
 
-TEST_CASE("saw training runs with a tracked tool, and its take repeats it", "[live]") {
+TEST_CASE("the library's scenes run with a tracked tool, and their takes repeat them", "[live]") {
     std::shared_ptr<openigtlink::TransformServer> server;
     try {
         server = openigtlink::TransformServer::at("127.0.0.1", 18944);  // where the driver looks
@@ -144,5 +163,30 @@ TEST_CASE("saw training runs with a tracked tool, and its take repeats it", "[li
         pose.position = place_at(t);
         server->send(openigtlink::transform_message("Stylus", pose, t));
     });
-    saws_with("openigtlink", false);
+    runs_everywhere_with("openigtlink", false);
+}
+
+TEST_CASE("the library's scenes run with a board, and their takes repeat them", "[live]") {
+    const auto board = make_frame_board_peer();
+    const Every moves([&](double t) { board->place(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
+    ::setenv("TACTUS_BOARD_PORT", line_of(*board).c_str(), 1);
+    // A board is a sector with one motor until its options say else: the hand moves along x.
+    runs_everywhere_with("serial_board", true);
+    ::unsetenv("TACTUS_BOARD_PORT");
+}
+
+TEST_CASE("the library's scenes run with a wheel and with a gamepad, and their takes repeat them", "[live]") {
+    const fs::path library = fs::path(command()).parent_path() / "tests/libevent_device.so";
+    for (const auto& [driver, kind] : {std::pair{"wheel", "wheel"}, {"gamepad", "pad"}}) {
+        const Folder devices;
+        devices.write("event7", "");
+        ::setenv("FAKE_EVENT_FOLDER", devices.path.c_str(), 1);
+        ::setenv("FAKE_EVENT_DEVICE", kind, 1);
+        runs_everywhere_with(driver, std::string(driver) == "wheel", library.string());
+        // At most 0.5 N of 2 N m at 140 mm, until somebody has confirmed it.
+        if (fs::exists(devices.path / "strength") && std::string(driver) == "wheel")
+            CHECK(std::stoi(slurp(devices.path / "strength")) <= std::lround(32767.0 * 0.5 * 0.14 / 2.0));
+        ::unsetenv("FAKE_EVENT_FOLDER");
+        ::unsetenv("FAKE_EVENT_DEVICE");
+    }
 }

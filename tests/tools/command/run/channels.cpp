@@ -190,7 +190,7 @@ b = { type = "audio_output", rate = "%R", %B }
     CHECK_THAT(refused("channel = 2", "actuator = \"palm\""),
                ContainsSubstring("p.toml:10:1: node 'b' plays on channel 2 of the sound card, and so does 'a'"));
     CHECK_THAT(refused("channel = 2", "channel = 1", "24 kHz"),
-               ContainsSubstring("nodes 'a' and 'b' play on channels of the sound card, so they need one rate"));
+               ContainsSubstring("nodes 'a' and 'b' use channels of the sound card, so they need one rate"));
     CHECK_THAT(refused("channel = 2", "actuator = \"plam\""),
                ContainsSubstring("no actuator 'plam' in [actuators]; did you mean 'palm'?"));
     CHECK_THAT(refused("channel = 1", "actuator = \"wrist\""),
