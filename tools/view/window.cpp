@@ -19,6 +19,7 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace tactus::view {
 
@@ -64,6 +65,7 @@ Window::Window(const std::string& title, int width, int height, double scale) {
     apply_theme(scale_);
     if (!ImGui_ImplGlfw_InitForOpenGL(window_, false) || !ImGui_ImplOpenGL3_Init("#version 330"))
         throw Error("the window cannot be drawn: OpenGL 3.3 rejects the shaders");
+    damage_.emplace();
     listen();
 }
 
@@ -100,6 +102,8 @@ void Window::listen() {
         auto& dropped = static_cast<Listener*>(glfwGetWindowUserPointer(w))->dropped;
         dropped.insert(dropped.end(), paths, paths + count);
     });
+    glfwSetWindowRefreshCallback(
+        window_, [](GLFWwindow* w) { static_cast<Listener*>(glfwGetWindowUserPointer(w))->is_uncovered = true; });
     glfwSetWindowCloseCallback(window_, leave);
     glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int iconified) {
         if (iconified) leave(w);
@@ -134,6 +138,9 @@ void Window::hand_on_input() {
 
 Window::~Window() {
     if (!window_) return;
+    damage_.reset();
+    glDeleteFramebuffers(1, &kept_);
+    glDeleteRenderbuffers(1, &kept_colour_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -168,6 +175,7 @@ void Window::rescale(double scale) {
     load_fonts();
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+    damage_->forget();
     ImGui::GetStyle() = ImGuiStyle();
     apply_theme(scale_);
 }
@@ -183,33 +191,85 @@ bool Window::begin() {
     // The window may have moved to another screen.
     if (const double scale = scale_of_screen(window_); follows_screen_ && scale != scale_) rescale(scale);
     began_s_ = glfwGetTime();
+    forget_versions();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     hand_on_input();
     return true;
 }
 
-void Window::end() {
-    ImGui::Render();
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+/// Drawn frames are kept, because after a swap the window's own buffer may hold anything.
+void Window::make_kept() {
+    if (kept_ != 0 && kept_width_ == width_ && kept_height_ == height_) return;
+    kept_width_ = width_;
+    kept_height_ = height_;
+    if (kept_ == 0) {
+        glGenFramebuffers(1, &kept_);
+        glGenRenderbuffers(1, &kept_colour_);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, kept_);
+    glBindRenderbuffer(GL_RENDERBUFFER, kept_colour_);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, kept_colour_);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw Error(fmt::format("the graphics driver cannot make a window of {} x {} pixels", width_, height_));
+    damage_->forget();
+}
+
+void Window::draw() {
+    ImDrawData& all = *ImGui::GetDrawData();
+    make_kept();
+    if (draws_all_ || all.FramebufferScale.x != 1.0f || all.FramebufferScale.y != 1.0f) damage_->forget();
+    const auto& boxes = damage_->find(all, width_, height_, ImGui::GetIO().Fonts->TexID);
+    if (boxes.empty()) return;
+    has_news_ = true;
+    glBindFramebuffer(GL_FRAMEBUFFER, kept_);
     glViewport(0, 0, width_, height_);
     glClearColor(0.05f, 0.06f, 0.08f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    if (wants_picture_) {
-        wants_picture_ = false;
-        shown_.width = width_;
-        shown_.height = height_;
-        const auto row = static_cast<std::size_t>(width_) * 3;
-        std::vector<std::uint8_t> upwards(row * static_cast<std::size_t>(height_));
-        glPixelStorei(GL_PACK_ALIGNMENT, 1);
-        glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
-        shown_.rgb.resize(upwards.size());
-        for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
-            std::copy_n(upwards.data() + y * row, row,
-                        shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
+    glEnable(GL_SCISSOR_TEST);
+    for (const PixelBox& box : boxes) {
+        glScissor(box.left, height_ - box.bottom, box.right - box.left, box.bottom - box.top);
+        glClear(GL_COLOR_BUFFER_BIT);
     }
+    glDisable(GL_SCISSOR_TEST);
+    const bool is_whole = boxes.size() == 1 && boxes[0] == PixelBox{0, 0, width_, height_};
+    ImGui_ImplOpenGL3_RenderDrawData(is_whole ? &all : &damage_->part());
+}
+
+void Window::show() {
+    // Once in a while all the same, should the system have lost it.
+    constexpr double at_least_every_s = 1.0;
+    const double now = glfwGetTime();
+    if (!std::exchange(has_news_, false) && !std::exchange(listener_.is_uncovered, false) &&
+        now - shown_at_s_ < at_least_every_s)
+        return;
+    shown_at_s_ = now;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, kept_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glfwSwapBuffers(window_);
+}
+
+void Window::read_picture() {
+    shown_.width = width_;
+    shown_.height = height_;
+    const auto row = static_cast<std::size_t>(width_) * 3;
+    std::vector<std::uint8_t> upwards(row * static_cast<std::size_t>(height_));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, kept_);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
+    shown_.rgb.resize(upwards.size());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
+        std::copy_n(upwards.data() + y * row, row,
+                    shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
+}
+
+void Window::end() {
+    ImGui::Render();
+    draw();
+    if (std::exchange(wants_picture_, false)) read_picture();
+    show();
     drawn_s_ += glfwGetTime() - began_s_;
 }
 

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "devices/display/offscreen.hpp"
+#include "tools/view/frame/damage.hpp"
 #include "tools/view/input_queue.hpp"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,8 +28,11 @@ public:
 
     /// Processes input. False while minimised: it has then waited for a moment, and nothing is drawn.
     bool begin();
-    /// Shows the frame; waits for vertical sync.
+    /// Draws what differs from the frame before, and shows it; waits for vertical sync. A frame that does not differ is
+    /// not shown again.
     void end();
+    /// From now on every frame is drawn as a whole.
+    void draw_all() { draws_all_ = true; }
 
     bool wants_to_close() const;
     void keep_open();
@@ -60,6 +66,10 @@ private:
     void load_fonts();
     void listen();
     void hand_on_input();
+    void draw();
+    void show();
+    void read_picture();
+    void make_kept();
 
     struct Library {
         Library();
@@ -71,6 +81,7 @@ private:
         InputQueue input;
         std::vector<std::string> dropped;
         bool was_left = false;  // at once, not after the events that wait
+        bool is_uncovered = false;  // another window lay over it
     };
     Listener listener_;
     int width_ = 0, height_ = 0;
@@ -79,6 +90,11 @@ private:
     double began_s_ = 0.0, drawn_s_ = 0.0;
     display::Image shown_;
     bool wants_picture_ = false;
+    std::optional<Damage> damage_;
+    bool draws_all_ = false, has_news_ = true;  // news: drawn, and not yet shown
+    double shown_at_s_ = 0.0;
+    std::uint32_t kept_ = 0, kept_colour_ = 0;  // framebuffer of the last frame
+    int kept_width_ = 0, kept_height_ = 0;
 };
 
 }  // namespace tactus::view
