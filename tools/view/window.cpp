@@ -9,6 +9,7 @@
 
 #include "tools/view/window.hpp"
 
+#include "devices/display/gl_program.hpp"
 #include "devices/display/system_font.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/theme.hpp"
@@ -139,8 +140,6 @@ void Window::hand_on_input() {
 Window::~Window() {
     if (!window_) return;
     damage_.reset();
-    glDeleteFramebuffers(1, &kept_);
-    glDeleteRenderbuffers(1, &kept_colour_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -198,67 +197,64 @@ bool Window::begin() {
     return true;
 }
 
-/// Drawn frames are kept, because after a swap the window's own buffer may hold anything.
-void Window::make_kept() {
-    if (kept_ != 0 && kept_width_ == width_ && kept_height_ == height_) return;
-    kept_width_ = width_;
-    kept_height_ = height_;
-    if (kept_ == 0) {
-        glGenFramebuffers(1, &kept_);
-        glGenRenderbuffers(1, &kept_colour_);
-    }
-    glBindFramebuffer(GL_FRAMEBUFFER, kept_);
-    glBindRenderbuffer(GL_RENDERBUFFER, kept_colour_);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, kept_colour_);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw Error(fmt::format("the graphics driver cannot make a window of {} x {} pixels", width_, height_));
-    damage_->forget();
+std::vector<std::uint8_t> Window::pixels() const {
+    std::vector<std::uint8_t> upwards(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
+    return upwards;
 }
 
-void Window::draw() {
+/// True when it drew.
+bool Window::draw() {
+    // The system may lose what a window showed, and its size may be news to the driver later than to GLFW.
+    constexpr double all_every_s = 2.0, size_settles_s = 0.3;
     ImDrawData& all = *ImGui::GetDrawData();
-    make_kept();
-    if (draws_all_ || all.FramebufferScale.x != 1.0f || all.FramebufferScale.y != 1.0f) damage_->forget();
+    const double now = glfwGetTime();
+    if (width_ != drawn_width_ || height_ != drawn_height_) resized_s_ = now;
+    drawn_width_ = width_;
+    drawn_height_ = height_;
+    const bool is_uncovered = std::exchange(listener_.is_uncovered, false);
+    const bool is_dense = all.FramebufferScale.x != 1.0f || all.FramebufferScale.y != 1.0f;
+    const bool draws_all =
+        is_uncovered || is_dense || now - drawn_all_s_ > all_every_s || now - resized_s_ < size_settles_s;
+    if (draws_all) damage_->forget();
     const auto& boxes = damage_->find(all, width_, height_, ImGui::GetIO().Fonts->TexID);
-    if (boxes.empty()) return;
-    has_news_ = true;
-    glBindFramebuffer(GL_FRAMEBUFFER, kept_);
+    if (boxes.empty()) return false;
+    const bool is_whole = draws_all || keeps_pixels_ != Keeps::yes;
+    if (is_whole) drawn_all_s_ = now;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width_, height_);
     glClearColor(0.05f, 0.06f, 0.08f, 1.0f);
+    if (is_whole) {
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(&all);
+        return true;
+    }
     glEnable(GL_SCISSOR_TEST);
     for (const PixelBox& box : boxes) {
         glScissor(box.left, height_ - box.bottom, box.right - box.left, box.bottom - box.top);
         glClear(GL_COLOR_BUFFER_BIT);
     }
     glDisable(GL_SCISSOR_TEST);
-    const bool is_whole = boxes.size() == 1 && boxes[0] == PixelBox{0, 0, width_, height_};
-    ImGui_ImplOpenGL3_RenderDrawData(is_whole ? &all : &damage_->part());
+    ImGui_ImplOpenGL3_RenderDrawData(&damage_->part());
+    return true;
 }
 
+/// Whether a window's buffer still holds its pixels after it was shown is up to the driver: without a graphics card it
+/// does.
 void Window::show() {
-    // Once in a while all the same, should the system have lost it.
-    constexpr double at_least_every_s = 1.0;
-    const double now = glfwGetTime();
-    if (!std::exchange(has_news_, false) && !std::exchange(listener_.is_uncovered, false) &&
-        now - shown_at_s_ < at_least_every_s)
-        return;
-    shown_at_s_ = now;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, kept_);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (keeps_pixels_ != Keeps::unknown) return glfwSwapBuffers(window_);
+    const std::vector<std::uint8_t> before = pixels();
     glfwSwapBuffers(window_);
+    keeps_pixels_ = display::is_software_driver() && pixels() == before ? Keeps::yes : Keeps::no;
 }
 
 void Window::read_picture() {
+    const std::vector<std::uint8_t> upwards = pixels();
+    const auto row = static_cast<std::size_t>(width_) * 3;
     shown_.width = width_;
     shown_.height = height_;
-    const auto row = static_cast<std::size_t>(width_) * 3;
-    std::vector<std::uint8_t> upwards(row * static_cast<std::size_t>(height_));
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, kept_);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
     shown_.rgb.resize(upwards.size());
     for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
         std::copy_n(upwards.data() + y * row, row,
@@ -267,9 +263,10 @@ void Window::read_picture() {
 
 void Window::end() {
     ImGui::Render();
-    draw();
+    if (wants_picture_ && keeps_pixels_ != Keeps::yes) damage_->forget();
+    const bool is_new = draw();
     if (std::exchange(wants_picture_, false)) read_picture();
-    show();
+    if (is_new) show();
     drawn_s_ += glfwGetTime() - began_s_;
 }
 

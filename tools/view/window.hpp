@@ -31,8 +31,6 @@ public:
     /// Draws what differs from the frame before, and shows it; waits for vertical sync. A frame that does not differ is
     /// not shown again.
     void end();
-    /// From now on every frame is drawn as a whole.
-    void draw_all() { draws_all_ = true; }
 
     bool wants_to_close() const;
     void keep_open();
@@ -66,10 +64,10 @@ private:
     void load_fonts();
     void listen();
     void hand_on_input();
-    void draw();
+    bool draw();
     void show();
     void read_picture();
-    void make_kept();
+    std::vector<std::uint8_t> pixels() const;
 
     struct Library {
         Library();
@@ -91,10 +89,9 @@ private:
     display::Image shown_;
     bool wants_picture_ = false;
     std::optional<Damage> damage_;
-    bool draws_all_ = false, has_news_ = true;  // news: drawn, and not yet shown
-    double shown_at_s_ = 0.0;
-    std::uint32_t kept_ = 0, kept_colour_ = 0;  // framebuffer of the last frame
-    int kept_width_ = 0, kept_height_ = 0;
+    enum class Keeps { unknown, yes, no } keeps_pixels_ = Keeps::unknown;  // of a frame that was shown
+    int drawn_width_ = 0, drawn_height_ = 0;
+    double drawn_all_s_ = -1e9, resized_s_ = -1e9;
 };
 
 }  // namespace tactus::view

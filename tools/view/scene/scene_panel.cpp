@@ -30,9 +30,9 @@ namespace {
 // The scene is much slower to draw than the panels, so its rate is limited while the user does not move it, and reduced
 // when it takes more than a third of the time. A tracked head gets the full rate.
 constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
-// Triangle counts for software rendering: above the first, moving scenes are drawn coarsely; above the second, one
-// sample per pixel is smooth enough.
-constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
+// Triangle counts for software rendering: above the first, moving scenes are drawn coarsely and quickly; above the
+// second, one sample per pixel is smooth enough.
+constexpr std::size_t many_triangles = 20'000, very_many_triangles = 300'000;
 
 /// Waits until what was drawn is there, and says meanwhile that the window is alive.
 void finish(SceneHand& hand) {
@@ -220,13 +220,16 @@ void ScenePanel::render(int width, int height) {
     const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
                                    ImGui::IsItemActive(), now);
     if (next == SceneMotion::Next::nothing) return screens_.show();
-    picture.grain = next == SceneMotion::Next::coarse ? display::grain_of_motion : 0.0;
+    picture.is_quick = next == SceneMotion::Next::coarse;
+    picture.grain = picture.is_quick ? grain_.pixels() : 0.0;
     // A single fine picture of a still scene does not reduce the rate of moving ones.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
-    screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
+    const bool is_many = renderer_->is_software() && model_->triangles() > very_many_triangles;
+    screens_.samples = picture.is_quick ? grain_.samples() : is_many ? 1 : 4;
     hand_.beat();
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     ++pictures_;
+    if (picture.is_quick) grain_.drew(renderer_->drawn_triangles());
     hand_.beat();
     // Without a graphics card the processor draws, and the wait for it would come later, as a whole.
     if (renderer_->is_software()) finish(hand_);

@@ -104,6 +104,7 @@ private:
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
     SceneMotion motion_;
+    MotionGrain grain_;
     SceneHand hand_;
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
