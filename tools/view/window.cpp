@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
@@ -40,7 +41,14 @@ double scale_of_screen(GLFWwindow* window) {
 
 Window::Library::Library() {
     glfwSetErrorCallback(keep_error);
-    if (!glfwInit())
+    // An X server whose last window has just closed starts anew, and is not there for a moment.
+    constexpr int most_tries = 5;
+    bool is_there = glfwInit() == GLFW_TRUE;
+    for (int tried = 1; !is_there && tried < most_tries && std::getenv("DISPLAY"); ++tried) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        is_there = glfwInit() == GLFW_TRUE;
+    }
+    if (!is_there)
         throw Error(
             fmt::format("no window can be opened: {}; set DISPLAY; a run without --view needs none", last_error));
 }

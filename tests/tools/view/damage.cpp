@@ -50,9 +50,12 @@ std::vector<Corners> drawn_on(const ImDrawData& picture, int x, int y) {
     std::vector<Corners> all;
     for (int l = 0; l < picture.CmdListsCount; ++l)
         for (const ImDrawCmd& command : picture.CmdLists[l]->CmdBuffer) {
+            // The scissor of Dear ImGui's backend, which counts from below.
             const ImVec4& clip = command.ClipRect;
-            if (static_cast<float>(x) < clip.x || static_cast<float>(x + 1) > clip.z ||
-                static_cast<float>(y) < clip.y || static_cast<float>(y + 1) > clip.w)
+            const int left = static_cast<int>(clip.x), low = static_cast<int>(height - clip.w);
+            const int up = height - 1 - y;
+            if (x < left || x >= left + static_cast<int>(clip.z - clip.x) || up < low ||
+                up >= low + static_cast<int>(clip.w - clip.y))
                 continue;
             const ImDrawList& list = *picture.CmdLists[l];
             for (unsigned i = 0; i < command.ElemCount; i += 3) {
@@ -60,10 +63,10 @@ std::vector<Corners> drawn_on(const ImDrawData& picture, int x, int y) {
                 for (unsigned c = 0; c < 3; ++c)
                     corners.push_back(list.VtxBuffer[static_cast<int>(
                         command.VtxOffset + list.IdxBuffer[static_cast<int>(command.IdxOffset + i + c)])]);
-                const auto [left, right] = std::ranges::minmax(corners, {}, [](const auto& v) { return v.pos.x; });
+                const auto [first, last] = std::ranges::minmax(corners, {}, [](const auto& v) { return v.pos.x; });
                 const auto [top, bottom] = std::ranges::minmax(corners, {}, [](const auto& v) { return v.pos.y; });
                 const auto px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
-                if (px >= left.pos.x && px <= right.pos.x && py >= top.pos.y && py <= bottom.pos.y)
+                if (px >= first.pos.x && px <= last.pos.x && py >= top.pos.y && py <= bottom.pos.y)
                     all.push_back(corners);
             }
         }

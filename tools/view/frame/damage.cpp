@@ -24,15 +24,17 @@ PixelBox common(const PixelBox& a, const PixelBox& b) {
 }
 
 /// What is not finite counts as far away.
-int pixel(float at) {
+float near(float at) {
     constexpr float far = 1e6f;
-    return static_cast<int>(std::floor(at > -far ? (at < far ? at : far) : -far));
+    return at > -far ? (at < far ? at : far) : -far;
 }
+int pixel_from(float at) { return static_cast<int>(std::floor(near(at))); }
+int pixel_behind(float at) { return static_cast<int>(std::ceil(near(at))); }
 
 /// The pixels that ImGui's OpenGL backend lets a command draw on: its glScissor, which cuts off fractions.
 PixelBox pixels_of(const ImVec4& clip, int width, int height) {
     if (clip.z <= clip.x || clip.w <= clip.y) return {};
-    const auto whole = [](float v) { return static_cast<int>(std::clamp(v, -1e6f, 1e6f)); };
+    const auto whole = [](float v) { return static_cast<int>(near(v)); };
     const int left = whole(clip.x), low = whole(static_cast<float>(height) - clip.w);
     const int wide = whole(clip.z - clip.x), high = whole(clip.w - clip.y);
     return common({left, height - low - high, left + wide, height - low}, {0, 0, width, height});
@@ -66,10 +68,10 @@ void Damage::take(const ImDrawData& picture, ImTextureID fonts) {
             for (unsigned i = 0; i + 2 < command.ElemCount; i += 3) {
                 const ImDrawVert *const a = vertices + index[i], *const b = vertices + index[i + 1],
                                         *const c = vertices + index[i + 2];
-                const PixelBox box{pixel(std::min({a->pos.x, b->pos.x, c->pos.x})),
-                                   pixel(std::min({a->pos.y, b->pos.y, c->pos.y})),
-                                   pixel(std::max({a->pos.x, b->pos.x, c->pos.x})) + 1,
-                                   pixel(std::max({a->pos.y, b->pos.y, c->pos.y})) + 1};
+                const PixelBox box{pixel_from(std::min({a->pos.x, b->pos.x, c->pos.x})),
+                                   pixel_from(std::min({a->pos.y, b->pos.y, c->pos.y})),
+                                   pixel_behind(std::max({a->pos.x, b->pos.x, c->pos.x})),
+                                   pixel_behind(std::max({a->pos.y, b->pos.y, c->pos.y}))};
                 Hash hash = base;
                 for (const ImDrawVert* vertex : {a, b, c}) hash.add_bytes(vertex, sizeof *vertex);
                 triangles_.push_back({hash.state, common(box, clip)});
