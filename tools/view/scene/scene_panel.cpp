@@ -72,6 +72,21 @@ std::span<const SceneModel::Part> ScenePanel::parts() const {
     return model_ ? std::span(model_->parts()) : std::span<const SceneModel::Part>();
 }
 
+void ScenePanel::use_map(std::shared_ptr<const picture::SurfaceMap> map, double range) {
+    map_ = std::move(map);
+    set_map_range(range);
+}
+
+void ScenePanel::set_map_range(double range) {
+    map_range_ = range;
+    if (model_) model_->use_map(map_, map_range_);
+    needs_picture_ = true;
+}
+
+std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() const {
+    return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
+}
+
 std::vector<int> ScenePanel::chosen_places() const {
     std::vector<int> places;
     if (!model_) return places;
@@ -293,6 +308,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             SceneOutline outline = outline_of(*bench_.plan());
             if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
             else model_->follow(std::move(outline));
+            model_->use_map(map_, map_range_);
             sight_.follow(model_->outline());
             hand_.follow(observer_, model_->outline());
             plan_version_ = bench_.plan_version();
