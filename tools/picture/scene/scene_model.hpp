@@ -66,6 +66,8 @@ public:
     const display::Legend& legend() const { return legend_; }
     /// Bounds of static bodies and of the initial tool poses, for fitting the camera.
     const display::Bounds& bounds() const { return bounds_; }
+    /// False while something of the outline has not been seen yet, for some pictures at most: bounds still grow.
+    bool is_fitted() const { return !is_fitting_; }
     /// A place on the hand's side of a blade or a ball on a hand, in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
     /// Whether mesh `index` of the last picture is a bone that is carved.
@@ -165,6 +167,8 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_waiting_ = false;  ///< something that the outline names was not seen
+    int waits_ = 0;  ///< pictures since the outline changed
     bool is_guide_shown_ = true;  // of the node whose guides are being drawn
 };
 

@@ -135,6 +135,7 @@ void SceneModel::show_bodies() {
     std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
     for (const SceneOutline::Bodies* scene : scenes) {
         const auto seen = observer_.latest<observe::SeenScene>(scene->port);
+        is_waiting_ = is_waiting_ || !seen || seen->value.count == 0;
         if (!seen) continue;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
@@ -142,6 +143,7 @@ void SceneModel::show_bodies() {
             const std::string name = name_of_body(*scene, i);
             const Vec3 colour = colour_of_body(name, *scene, i);
             BodyMesh* mesh = mesh_of(object.body, colour);
+            is_waiting_ = is_waiting_ || !mesh;
             if (!mesh) continue;
             Pose pose = object.pose;
             const SceneOutline::Held* held = nullptr;

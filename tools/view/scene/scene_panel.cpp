@@ -225,7 +225,7 @@ void ScenePanel::render(int width, int height) {
         static_cast<double>(width) / height * (sight_.mode_of(0) == display::StereoMode::side_by_side ? 0.5 : 1.0);
     if (!is_aimed_ && !model_->bounds().empty()) {
         camera.fit(model_->bounds(), aspect);
-        is_aimed_ = true;
+        is_aimed_ = model_->is_fitted();
     }
     picture.clip = clip_plane();
     const auto views = screens_.aim(sight_, camera, picture.bounds);
