@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string_view>
 
 namespace tactus::display {
 namespace {
@@ -29,6 +30,12 @@ GLuint compile(GLenum kind, const char* source) {
 }
 
 }  // namespace
+
+bool is_software_driver() {
+    const GLubyte* const name = glGetString(GL_RENDERER);
+    const std::string_view driver = name ? reinterpret_cast<const char*>(name) : "";
+    return driver.find("llvmpipe") != std::string_view::npos || driver.find("softpipe") != std::string_view::npos;
+}
 
 GlProgram::GlProgram(const char* vertex, const char* fragment) : program_(glCreateProgram()) {
     for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shader program.
+// A shader program, and what draws it.
 #pragma once
 
 #include <utility>
 
 namespace tactus::display {
+
+/// True when the current context draws on the processor (Mesa's llvmpipe and softpipe).
+bool is_software_driver();
 
 /// A linked vertex and fragment shader. Its context must be current when it is used or destroyed.
 class GlProgram {

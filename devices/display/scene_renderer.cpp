@@ -14,7 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <string>
 
 namespace tactus::display {
 
@@ -28,6 +28,8 @@ void set(GLint location, const Vec3& value) {
     glUniform3f(location, static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z));
 }
 
+float upwards(const DrawnView& view) { return view.flip == Flip::upside_down ? -1.0f : 1.0f; }
+
 /// The clip plane in the frame of the mesh: the negative side is removed.
 void set_clip(const GlProgram& program, const Picture& picture, const DrawnMesh& drawn) {
     glm::vec4 plane(0.0f, 0.0f, 0.0f, 1.0f);
@@ -37,6 +39,10 @@ void set_clip(const GlProgram& program, const Picture& picture, const DrawnMesh&
         plane = glm::vec4(glm::dvec4(-normal, glm::dot(normal, point)));
     }
     glUniform4fv(program.uniform("keep"), 1, glm::value_ptr(plane));
+}
+
+std::string with_lighting(const char* shader) {
+    return fmt::format("#version 330 core\n{}{}", scene_shaders::lighting, shader);
 }
 
 void check_version() {
@@ -55,7 +61,8 @@ void check_version() {
 
 struct SceneRenderer::Programs {
     GlProgram background{scene_shaders::background_vertex, scene_shaders::background_fragment};
-    GlProgram mesh{scene_shaders::mesh_vertex, scene_shaders::mesh_fragment};
+    GlProgram mesh{scene_shaders::mesh_vertex, with_lighting(scene_shaders::mesh_fragment).c_str()};
+    GlProgram quick_mesh{with_lighting(scene_shaders::quick_mesh_vertex).c_str(), scene_shaders::quick_mesh_fragment};
     GlProgram points{scene_shaders::point_vertex, scene_shaders::point_fragment};
     GlProgram pick{scene_shaders::mesh_vertex, scene_shaders::pick_fragment};
     GLuint no_attributes = 0, point_array = 0, point_buffer = 0, pick_frame = 0, pick_buffers[2] = {};
@@ -111,20 +118,18 @@ SceneRenderer::SceneRenderer() {
     check_version();
     programs_ = std::make_unique<Programs>();
     pool_ = std::make_unique<MeshPool>();
-    const GLubyte* const name = glGetString(GL_RENDERER);
-    const std::string_view driver = name ? reinterpret_cast<const char*>(name) : "";
-    is_software_ =
-        driver.find("llvmpipe") != std::string_view::npos || driver.find("softpipe") != std::string_view::npos;
+    is_software_ = is_software_driver();
 }
 
 SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, bool see_through) {
     const Projection& projection = view.projection;
-    const GlProgram& program = programs_->mesh;
+    const GlProgram& program = picture.is_quick ? programs_->quick_mesh : programs_->mesh;
     program.use();
     set(program.uniform("to_clip"), projection.to_clip);
     set(program.uniform("section"), picture.section);
+    glUniform2f(program.uniform("way"), view.flip == Flip::left_right ? -1.0f : 1.0f, upwards(view));
     for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
         const DrawnMesh& drawn = picture.meshes[i];
         if ((drawn.opacity < 1.0) != see_through || !is_valid(drawn.pose)) continue;
@@ -159,6 +164,7 @@ void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, b
 /// Draws the occluded part of meshes that shine through.
 void SceneRenderer::draw_hidden(const Picture& picture, const DrawnView& view) {
     Picture hidden;
+    hidden.is_quick = picture.is_quick;
     for (const DrawnMesh& drawn : picture.meshes)
         if (drawn.shines_through) hidden.meshes.push_back({drawn.mesh, drawn.pose, 0.3, false, false, false});
     if (hidden.meshes.empty()) return;
@@ -200,8 +206,6 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
         if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
         glColorMask(red, cyan, cyan, GL_TRUE);
-        const float across = view.flip == Flip::left_right ? -1.0f : 1.0f,
-                    upwards = view.flip == Flip::upside_down ? -1.0f : 1.0f;
         glViewport(view.x, view.y, view.width, view.height);
         glScissor(view.x, view.y, view.width, view.height);
         glDepthMask(GL_TRUE);
@@ -211,14 +215,12 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         programs_->background.use();
         set(programs_->background.uniform("sky"), picture.sky);
         set(programs_->background.uniform("ground"), picture.ground);
-        glUniform1f(programs_->background.uniform("upwards"), upwards);
+        glUniform1f(programs_->background.uniform("upwards"), upwards(view));
         glBindVertexArray(programs_->no_attributes);
         glDrawArrays(GL_TRIANGLES, 0, 3);
         glEnable(GL_DEPTH_TEST);
         glEnable(GL_CLIP_DISTANCE0);
         glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
-        programs_->mesh.use();
-        glUniform2f(programs_->mesh.uniform("way"), across, upwards);
         draw_meshes(picture, view, false);
         draw_points(picture, view.projection);
         glEnable(GL_BLEND);

@@ -39,6 +39,7 @@ struct Picture {
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
     Vec3 sky{0.96, 0.97, 0.98}, ground{0.78, 0.80, 0.83};  ///< sRGB of the background, above and below
     Bounds bounds;  ///< of all meshes
+    bool is_quick = false;  ///< lit at the vertices, not at each pixel: cheap where the processor draws
     double grain = 0.0;  ///< level-of-detail cell size for moving scenes, pixels; 0: all triangles
 };
 

@@ -38,24 +38,10 @@ void main() {
 })";
 
 // The lights move with the camera: key light from the upper left, fill light from the right, rim light from behind;
-// `way` flips them for pictures seen in a mirror. A section shows the back faces of the far wall in a flat colour.
-inline constexpr const char* mesh_fragment = R"(#version 330 core
-in vec3 eye_position, eye_normal;
-in vec4 surface;
-uniform float opacity;
-uniform vec3 section;
-uniform bool is_cut;
+// `way` flips them for pictures seen in a mirror. `v` points to the eye.
+inline constexpr const char* lighting = R"(
 uniform vec2 way;
-out vec4 colour;
-void main() {
-    if (is_cut && !gl_FrontFacing) {
-        colour = vec4(section, opacity * surface.a);
-        return;
-    }
-    vec3 n = normalize(eye_normal);
-    vec3 v = normalize(-eye_position);
-    // The face normal decides which side is visible; an interpolated normal may point away at the rim.
-    if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
+vec3 lit(vec3 n, vec3 v, vec3 surface) {
     vec3 key = normalize(vec3(-0.45 * way.x, 0.65 * way.y, 0.65));
     vec3 fill = normalize(vec3(0.85 * way.x, 0.05 * way.y, 0.35));
     float diffuse = 0.78 * max(dot(n, key), 0.0) + 0.24 * max(dot(n, fill), 0.0);
@@ -63,9 +49,55 @@ void main() {
     float gloss = 0.10 * pow(max(dot(n, normalize(key + v)), 0.0), 48.0);
     float edge = 1.0 - max(dot(n, v), 0.0);
     float rim = 0.10 * pow(edge, 4.0);
-    vec3 light = pow(surface.rgb, vec3(2.2)) * (diffuse + ambient) * (1.0 - 0.25 * edge * edge) + gloss + rim;
-    colour = vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), opacity * surface.a);
+    vec3 light = pow(surface, vec3(2.2)) * (diffuse + ambient) * (1.0 - 0.25 * edge * edge) + gloss + rim;
+    return pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2));
 })";
+
+// A section shows the back faces of the far wall in a flat colour.
+inline constexpr const char* mesh_fragment = R"(
+in vec3 eye_position, eye_normal;
+in vec4 surface;
+uniform float opacity;
+uniform vec3 section;
+uniform bool is_cut;
+out vec4 colour;
+void main() {
+    if (is_cut && !gl_FrontFacing) {
+        colour = vec4(section, opacity * surface.a);
+        return;
+    }
+    vec3 n = normalize(eye_normal);
+    // The face normal decides which side is visible; an interpolated normal may point away at the rim.
+    if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
+    colour = vec4(lit(n, normalize(-eye_position), surface.rgb), opacity * surface.a);
+})";
+
+// Both sides lit at the vertices: on a processor a triangle of a few pixels costs much less so.
+inline constexpr const char* quick_mesh_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 colour;
+uniform mat4 to_eye, to_clip;
+uniform vec4 keep;
+out vec4 front;
+out vec3 back;
+void main() {
+    vec4 at = to_eye * vec4(position, 1.0);
+    vec3 n = normalize(mat3(to_eye) * normal), v = normalize(-at.xyz);
+    front = vec4(lit(n, v, colour.rgb), colour.a);
+    back = lit(-n, v, colour.rgb);
+    gl_ClipDistance[0] = dot(keep, vec4(position, 1.0));
+    gl_Position = to_clip * at;
+})";
+
+inline constexpr const char* quick_mesh_fragment = R"(#version 330 core
+in vec4 front;
+in vec3 back;
+uniform float opacity;
+uniform vec3 section;
+uniform bool is_cut;
+out vec4 colour;
+void main() { colour = vec4(gl_FrontFacing ? front.rgb : is_cut ? section : back, opacity * front.a); })";
 
 // Depth is biased towards the viewer, so that dots on a surface stay visible.
 inline constexpr const char* point_vertex = R"(#version 330 core

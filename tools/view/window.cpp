@@ -9,6 +9,7 @@
 
 #include "tools/view/window.hpp"
 
+#include "devices/display/gl_program.hpp"
 #include "devices/display/system_font.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/theme.hpp"
@@ -18,7 +19,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace tactus::view {
 
@@ -38,7 +41,14 @@ double scale_of_screen(GLFWwindow* window) {
 
 Window::Library::Library() {
     glfwSetErrorCallback(keep_error);
-    if (!glfwInit())
+    // An X server whose last window has just closed starts anew, and is not there for a moment.
+    constexpr int most_tries = 5;
+    bool is_there = glfwInit() == GLFW_TRUE;
+    for (int tried = 1; !is_there && tried < most_tries && std::getenv("DISPLAY"); ++tried) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        is_there = glfwInit() == GLFW_TRUE;
+    }
+    if (!is_there)
         throw Error(
             fmt::format("no window can be opened: {}; set DISPLAY; a run without --view needs none", last_error));
 }
@@ -64,6 +74,7 @@ Window::Window(const std::string& title, int width, int height, double scale) {
     apply_theme(scale_);
     if (!ImGui_ImplGlfw_InitForOpenGL(window_, false) || !ImGui_ImplOpenGL3_Init("#version 330"))
         throw Error("the window cannot be drawn: OpenGL 3.3 rejects the shaders");
+    damage_.emplace();
     listen();
 }
 
@@ -100,6 +111,8 @@ void Window::listen() {
         auto& dropped = static_cast<Listener*>(glfwGetWindowUserPointer(w))->dropped;
         dropped.insert(dropped.end(), paths, paths + count);
     });
+    glfwSetWindowRefreshCallback(
+        window_, [](GLFWwindow* w) { static_cast<Listener*>(glfwGetWindowUserPointer(w))->is_uncovered = true; });
     glfwSetWindowCloseCallback(window_, leave);
     glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int iconified) {
         if (iconified) leave(w);
@@ -134,6 +147,7 @@ void Window::hand_on_input() {
 
 Window::~Window() {
     if (!window_) return;
+    damage_.reset();
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -168,6 +182,7 @@ void Window::rescale(double scale) {
     load_fonts();
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+    damage_->forget();
     ImGui::GetStyle() = ImGuiStyle();
     apply_theme(scale_);
 }
@@ -183,33 +198,83 @@ bool Window::begin() {
     // The window may have moved to another screen.
     if (const double scale = scale_of_screen(window_); follows_screen_ && scale != scale_) rescale(scale);
     began_s_ = glfwGetTime();
+    forget_versions();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     hand_on_input();
     return true;
 }
 
-void Window::end() {
-    ImGui::Render();
+std::vector<std::uint8_t> Window::pixels() const {
+    std::vector<std::uint8_t> upwards(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
+    return upwards;
+}
+
+/// True when it drew.
+bool Window::draw() {
+    // The system may lose what a window showed, and its size may be news to the driver later than to GLFW.
+    constexpr double all_every_s = 2.0, size_settles_s = 0.3;
+    ImDrawData& all = *ImGui::GetDrawData();
+    const double now = glfwGetTime();
+    if (width_ != drawn_width_ || height_ != drawn_height_) resized_s_ = now;
+    drawn_width_ = width_;
+    drawn_height_ = height_;
+    const bool is_uncovered = std::exchange(listener_.is_uncovered, false);
+    const bool is_dense = all.FramebufferScale.x != 1.0f || all.FramebufferScale.y != 1.0f;
+    const bool draws_all =
+        is_uncovered || is_dense || now - drawn_all_s_ > all_every_s || now - resized_s_ < size_settles_s;
+    if (draws_all) damage_->forget();
+    const auto& boxes = damage_->find(all, width_, height_, ImGui::GetIO().Fonts->TexID);
+    if (boxes.empty()) return false;
+    const bool is_whole = draws_all || keeps_pixels_ != Keeps::yes;
+    if (is_whole) drawn_all_s_ = now;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width_, height_);
     glClearColor(0.05f, 0.06f, 0.08f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    if (wants_picture_) {
-        wants_picture_ = false;
-        shown_.width = width_;
-        shown_.height = height_;
-        const auto row = static_cast<std::size_t>(width_) * 3;
-        std::vector<std::uint8_t> upwards(row * static_cast<std::size_t>(height_));
-        glPixelStorei(GL_PACK_ALIGNMENT, 1);
-        glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
-        shown_.rgb.resize(upwards.size());
-        for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
-            std::copy_n(upwards.data() + y * row, row,
-                        shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
+    if (is_whole) {
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(&all);
+        return true;
     }
+    glEnable(GL_SCISSOR_TEST);
+    for (const PixelBox& box : boxes) {
+        glScissor(box.left, height_ - box.bottom, box.right - box.left, box.bottom - box.top);
+        glClear(GL_COLOR_BUFFER_BIT);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    ImGui_ImplOpenGL3_RenderDrawData(&damage_->part());
+    return true;
+}
+
+/// Whether a window's buffer still holds its pixels after it was shown is up to the driver: without a graphics card it
+/// does.
+void Window::show() {
+    if (keeps_pixels_ != Keeps::unknown) return glfwSwapBuffers(window_);
+    const std::vector<std::uint8_t> before = pixels();
     glfwSwapBuffers(window_);
+    keeps_pixels_ = display::is_software_driver() && pixels() == before ? Keeps::yes : Keeps::no;
+}
+
+void Window::read_picture() {
+    const std::vector<std::uint8_t> upwards = pixels();
+    const auto row = static_cast<std::size_t>(width_) * 3;
+    shown_.width = width_;
+    shown_.height = height_;
+    shown_.rgb.resize(upwards.size());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
+        std::copy_n(upwards.data() + y * row, row,
+                    shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
+}
+
+void Window::end() {
+    ImGui::Render();
+    if (wants_picture_ && keeps_pixels_ != Keeps::yes) damage_->forget();
+    const bool is_new = draw();
+    if (std::exchange(wants_picture_, false)) read_picture();
+    if (is_new) show();
     drawn_s_ += glfwGetTime() - began_s_;
 }
 

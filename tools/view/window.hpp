@@ -3,9 +3,12 @@
 #pragma once
 
 #include "devices/display/offscreen.hpp"
+#include "tools/view/frame/damage.hpp"
 #include "tools/view/input_queue.hpp"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,7 +28,8 @@ public:
 
     /// Processes input. False while minimised: it has then waited for a moment, and nothing is drawn.
     bool begin();
-    /// Shows the frame; waits for vertical sync.
+    /// Draws what differs from the frame before, and shows it; waits for vertical sync. A frame that does not differ is
+    /// not shown again.
     void end();
 
     bool wants_to_close() const;
@@ -60,6 +64,10 @@ private:
     void load_fonts();
     void listen();
     void hand_on_input();
+    bool draw();
+    void show();
+    void read_picture();
+    std::vector<std::uint8_t> pixels() const;
 
     struct Library {
         Library();
@@ -71,6 +79,7 @@ private:
         InputQueue input;
         std::vector<std::string> dropped;
         bool was_left = false;  // at once, not after the events that wait
+        bool is_uncovered = false;  // another window lay over it
     };
     Listener listener_;
     int width_ = 0, height_ = 0;
@@ -79,6 +88,10 @@ private:
     double began_s_ = 0.0, drawn_s_ = 0.0;
     display::Image shown_;
     bool wants_picture_ = false;
+    std::optional<Damage> damage_;
+    enum class Keeps { unknown, yes, no } keeps_pixels_ = Keeps::unknown;  // of a frame that was shown
+    int drawn_width_ = 0, drawn_height_ = 0;
+    double drawn_all_s_ = -1e9, resized_s_ = -1e9;
 };
 
 }  // namespace tactus::view

@@ -138,3 +138,30 @@ TEST_CASE("near enough to see its triangles, something that moves has all of the
     const display::Image still = scene.draw(0.0);
     CHECK(scene.draw(display::grain_of_motion).rgb == still.rgb);
 }
+
+TEST_CASE("lit at its vertices, something dense looks as it does lit at each pixel") {
+    if (!can_render()) return;
+    Scene scene;
+    scene.camera.look_from(display::NamedView::iso);
+    scene.camera.fit(scene.picture.bounds, static_cast<double>(width) / height);
+    for (const bool is_clipped : {false, true}) {
+        if (is_clipped)
+            scene.picture.clip =
+                display::Plane{0.5 * (scene.picture.bounds.low + scene.picture.bounds.high), {1.0, 0.0, 0.0}};
+        scene.picture.is_quick = false;
+        const display::Image slow = scene.draw(0.0);
+        scene.picture.is_quick = true;
+        const display::Image quick = scene.draw(0.0);
+        double sum = 0.0;
+        int far = 0;
+        for (std::size_t i = 0; i < slow.rgb.size(); ++i) {
+            const int apart = std::abs(static_cast<int>(slow.rgb[i]) - static_cast<int>(quick.rgb[i]));
+            sum += apart;
+            far += apart > 24;
+        }
+        INFO((is_clipped ? "clipped" : "whole"));
+        CHECK(quick.rgb != slow.rgb);
+        CHECK(sum / static_cast<double>(slow.rgb.size()) < 1.0);
+        CHECK(static_cast<double>(far) < 0.005 * static_cast<double>(slow.rgb.size()));
+    }
+}

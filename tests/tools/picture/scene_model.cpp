@@ -4,11 +4,13 @@
 #include "devices/display/picture_maker.hpp"
 #include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
+#include "tools/picture/scene/body_surface.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 using namespace tactus;
 using namespace tactus::picture;
@@ -124,4 +126,102 @@ TEST_CASE("what an edit took away leaves the picture, and what it brings comes i
     model.follow(first);
     model.update();
     CHECK(model.triangles() == ball_triangles);
+}
+
+namespace {
+
+/// A scene of one ball of 8 mm radius, which comes after the hand.
+struct Ball {
+    contact::Voxmap field = contact::make_voxmap(ball(0.008));
+    coupling::Scene scene;
+
+    Ball() {
+        scene.count = 1;
+        scene.objects[0].body.map = &field;
+        scene.objects[0].body.content_hash = 7;
+        scene.content_hash = coupling::hash_of(scene);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a body has the colours of the map that is used, and its own again without one") {
+    if (!can_render()) return;
+    const Ball body;
+    observe::Observer observer;
+    const auto port =
+        observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(body.scene));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes.push_back({});
+    outline.scenes.back().port = "case.scene";
+    SceneModel model(outline, observer, maker.renderer());
+    display::OrbitCamera camera;
+    const auto draw = [&] {
+        observer.advance();
+        display::Picture& picture = model.update();
+        camera.fit(model.bounds(), 1.0);
+        const auto views = display::views_of(camera, picture.bounds, 64, 64, display::StereoMode::mono);
+        const display::Image image = maker.draw(picture, views);
+        const std::uint8_t* const pixel = image.pixel(32, 32);
+        return Vec3(pixel[0], pixel[1], pixel[2]);
+    };
+    const Vec3 own = draw();
+    const auto bodies = observer.bodies();
+    REQUIRE(bodies.size() == 1);
+    const std::size_t vertices =
+        make_body_surface(*bodies[0], contact::make_voxmap(bodies[0]->distance), {}, {}).patch.vertices.size();
+    const auto use = [&](double distance, double range) {
+        auto map = std::make_shared<SurfaceMap>();
+        map->distance[7].assign(vertices, static_cast<float>(distance));
+        model.use_map(map, range);
+        return draw();
+    };
+    const Vec3 gap = use(0.5e-3, 0.5e-3), wide_range = use(0.5e-3, 50e-3), overlap = use(-0.5e-3, 0.5e-3);
+    CHECK(gap.x > 1.8 * gap.z);
+    CHECK(overlap.z > 1.8 * overlap.x);
+    CHECK(wide_range.z > 0.75 * wide_range.x);
+    REQUIRE(model.legend().scales.size() == 2);
+    CHECK(model.legend().scales[0].high_text == "0.5");
+    // A map of another shape of the body is not used.
+    auto other = std::make_shared<SurfaceMap>();
+    other->distance[7].assign(vertices - 1, 0.0f);
+    model.use_map(other, 1e-3);
+    CHECK(draw() == own);
+    model.use_map(nullptr, 1e-3);
+    CHECK(draw() == own);
+    CHECK(model.legend().scales.empty());
+}
+
+TEST_CASE("a view is fitted to a body that comes after the hand, too") {
+    if (!can_render()) return;
+    const Ball body;
+    const coupling::Scene none;
+    const Pose here;
+    observe::Observer observer;
+    const auto scene = observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(none));
+    const auto hand = observer.open({"hand.pose", at_60_hz, 1}, value::pose, bytes_of(here));
+    const auto shape = observer.open({"ball.body", at_60_hz, 1}, value::snapshot<coupling::Body>,
+                                     bytes_of(body.scene.objects[0].body));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.balls = {{"hand.pose", "", "", 0.001}};
+    outline.scenes.push_back({});
+    outline.scenes.back().port = "case.scene";
+    SceneModel model(outline, observer, maker.renderer());
+    observer.advance();
+    model.update();
+    CHECK_FALSE(model.is_fitted());
+    CHECK(model.bounds().radius() < 0.003);
+    scene->see(1, bytes_of(body.scene), 1, 0);
+    observer.advance();
+    model.update();
+    CHECK(model.is_fitted());
+    CHECK(model.bounds().radius() > 0.008);
+    // What never comes does not keep the bounds from standing still.
+    SceneOutline more = outline;
+    more.bones = {{"carve.bone"}};
+    model.follow(more);
+    for (int i = 0; i < 1000; ++i) model.update();
+    CHECK(model.is_fitted());
 }

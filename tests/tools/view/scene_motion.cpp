@@ -52,3 +52,24 @@ TEST_CASE("a scene looks otherwise when anything in it moves, changes, is cut, o
     views[0].projection.to_eye[3].x = 0.1;
     CHECK(looks_of(picture, 1, views, legend) != before);
 }
+
+TEST_CASE(
+    "what has too many triangles while it moves is drawn more coarsely until it has not, and finely again when it "
+    "may") {
+    MotionGrain grain;
+    CHECK(grain.pixels() == display::grain_of_motion);
+    // Each level of detail has a third of the triangles of the one before.
+    const auto drawn = [&](double cells) { return static_cast<std::size_t>(1.5e7 / (cells * cells)); };
+    for (int i = 0; i < 20; ++i) grain.drew(drawn(grain.pixels()));
+    CHECK(drawn(grain.pixels()) <= 100'000);
+    CHECK(drawn(grain.pixels()) > 30'000);
+    const double settled = grain.pixels();
+    grain.drew(drawn(settled));
+    CHECK(grain.pixels() == settled);
+    CHECK(grain.samples() == 1);
+    for (int i = 0; i < 20; ++i) grain.drew(9'000);
+    CHECK(grain.pixels() == display::grain_of_motion);
+    CHECK(grain.samples() == 4);
+    for (int i = 0; i < 50; ++i) grain.drew(10'000'000);
+    CHECK(grain.pixels() <= 20.0);
+}

@@ -83,6 +83,7 @@ void SceneModel::follow(SceneOutline outline) {
     shapes_.clear();  // the length of a blade may have changed
     take_names();
     is_fitting_ = true;
+    waits_ = 0;
 }
 
 std::size_t SceneModel::triangles() const {
@@ -143,6 +144,7 @@ display::Picture& SceneModel::update() {
     remeshed_ = 0;
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
+    is_waiting_ = false;
     show_bones();
     show_still_bones();
     show_bodies();
@@ -159,7 +161,9 @@ display::Picture& SceneModel::update() {
     if (notes_ != shown_notes_) renderer_.meshes().set_part(notes_mesh_, 0, shown_notes_ = notes_);
     show(notes_mesh_, {}, display::bounds_of(notes_), 1.0, false, !outline_.handles.empty());
     picture_.meshes.back().shines_through = true;
-    is_fitting_ = is_fitting_ && bounds_.empty();
+    // What never comes must not let the bounds follow the tools for ever.
+    constexpr int most_waits = 200;
+    is_fitting_ = is_fitting_ && (bounds_.empty() || (is_waiting_ && ++waits_ < most_waits));
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
     return picture_;
@@ -192,6 +196,7 @@ bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
 void SceneModel::show_bones() {
     for (const auto& [port] : outline_.bones) {
         const auto seen = observer_.bone(port);
+        is_waiting_ = is_waiting_ || !seen;
         if (!seen) continue;
         BoneMesh& bone = bones_[port];
         const bool is_new = bone.of.lock() != seen;

@@ -6,6 +6,7 @@
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observe/observer.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
+#include "tools/picture/scene/surface_map.hpp"
 
 #include <map>
 #include <memory>
@@ -49,6 +50,11 @@ public:
     void show_part(const std::string& name, bool wanted);
     /// Gives a body a colour of its own, sRGB, from the next picture on.
     void colour_part(const std::string& name, const Vec3& colour);
+    /// Colours the bodies that a map has, from the next picture on; null: none. `range`: m, distance of the fullest
+    /// colour.
+    void use_map(std::shared_ptr<const SurfaceMap> map, double range);
+    /// Of the scene of a plan, in the plan's order; null where one was not drawn yet.
+    std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
     /// Parts that are marked, in the order in which they were chosen.
     const std::vector<std::string>& chosen_parts() const { return chosen_; }
     /// Marks a part, or no longer if it was the only one; `adds`: the others stay as they are. Empty: none.
@@ -60,6 +66,8 @@ public:
     const display::Legend& legend() const { return legend_; }
     /// Bounds of static bodies and of the initial tool poses, for fitting the camera.
     const display::Bounds& bounds() const { return bounds_; }
+    /// False while something of the outline has not been seen yet, for some pictures at most: bounds still grow.
+    bool is_fitted() const { return !is_fitting_; }
     /// A place on the hand's side of a blade or a ball on a hand, in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
     /// Whether mesh `index` of the last picture is a bone that is carved.
@@ -82,6 +90,7 @@ private:
         std::shared_ptr<const observe::SeenBody> body;
         contact::Voxmap field;
         bool has_paint = false;
+        int map = 0;  ///< number of the map whose colours it has
     };
 
     display::MeshPool::Mesh shape_mesh(const std::string& name, const geometry::SurfacePatch& patch);
@@ -119,6 +128,7 @@ private:
     void show_force(const std::string& wrench, const Vec3& at);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     void mark(const BodyMesh& mesh, const Pose& pose);
+    void set_surface(BodyMesh& mesh, std::uint64_t content);
     BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
     SceneOutline outline_;
@@ -141,6 +151,9 @@ private:
     };
     std::map<std::string, RopeMesh> ropes_;  // by port
     std::map<std::uint64_t, BodyMesh> bodies_;
+    std::shared_ptr<const SurfaceMap> map_;
+    double map_range_ = 1e-3;
+    int map_number_ = 0;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;
@@ -161,6 +174,8 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_waiting_ = false;  ///< something that the outline names was not seen
+    int waits_ = 0;  ///< pictures since the outline changed
     bool is_guide_shown_ = true;  // of the node whose guides are being drawn
 };
 

@@ -61,13 +61,55 @@ Vec3 SceneModel::colour_of_body(const std::string& name, const SceneOutline::Bod
 
 void SceneModel::colour_part(const std::string& name, const Vec3& colour) { given_colours_[name] = colour; }
 
+void SceneModel::use_map(std::shared_ptr<const SurfaceMap> map, double range) {
+    if (map == map_ && (!map || range == map_range_)) return;
+    map_ = std::move(map);
+    map_range_ = range;
+    ++map_number_;
+}
+
+std::vector<std::shared_ptr<const observe::SeenBody>> SceneModel::plan_bodies() const {
+    std::vector<std::shared_ptr<const observe::SeenBody>> all;
+    for (const SceneOutline::Bodies& scene : outline_.scenes) {
+        const auto seen = scene.plan.empty() ? std::nullopt : observer_.latest<observe::SeenScene>(scene.port);
+        if (!seen) continue;
+        for (std::size_t i = 0; i < seen->value.count; ++i) {
+            const auto known = bodies_.find(seen->value.objects[i].body);
+            all.push_back(known != bodies_.end() ? known->second.body : nullptr);
+        }
+        break;
+    }
+    return all;
+}
+
+/// Its surface in its colour, or in those of the map.
+void SceneModel::set_surface(BodyMesh& mesh, std::uint64_t content) {
+    BodySurface surface = make_body_surface(*mesh.body, mesh.field, mesh.colour, paint_colour);
+    mesh.has_paint = surface.has_paint;
+    mesh.bounds = surface.bounds;
+    mesh.map = map_number_;
+    auto& vertices = surface.patch.vertices;
+    const std::vector<float>* distances = nullptr;
+    if (map_)
+        if (const auto of = map_->distance.find(content); of != map_->distance.end()) distances = &of->second;
+    if (distances && distances->size() == vertices.size()) {
+        const auto plain = geometry::packed_colour(glm::mix(mesh.colour, Vec3(0.55), 0.75));
+        for (std::size_t n = 0; n < vertices.size(); ++n) {
+            const double distance = static_cast<double>((*distances)[n]);
+            vertices[n].colour =
+                std::isfinite(distance) ? geometry::packed_colour(map_colour(distance, map_range_)) : plain;
+        }
+        mesh.has_paint = false;
+    }
+    renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
+}
+
 SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& colour) {
     if (const auto known = bodies_.find(content); known != bodies_.end()) {
         BodyMesh& mesh = known->second;
-        if (mesh.colour != colour && mesh.body) {
+        if (mesh.body && (mesh.colour != colour || mesh.map != map_number_)) {
             mesh.colour = colour;
-            renderer_.meshes().set_part(mesh.mesh, 0,
-                                        make_body_surface(*mesh.body, mesh.field, colour, paint_colour).patch);
+            set_surface(mesh, content);
         }
         return &mesh;
     }
@@ -77,11 +119,8 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
         mesh.body = body;
         mesh.colour = colour;
         mesh.field = contact::make_voxmap(body->distance);
-        BodySurface surface = make_body_surface(*body, mesh.field, colour, paint_colour);
-        mesh.has_paint = surface.has_paint;
-        mesh.bounds = surface.bounds;
         mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
-        renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
+        set_surface(mesh, content);
         return &mesh;
     }
     return nullptr;
@@ -96,6 +135,7 @@ void SceneModel::show_bodies() {
     std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
     for (const SceneOutline::Bodies* scene : scenes) {
         const auto seen = observer_.latest<observe::SeenScene>(scene->port);
+        is_waiting_ = is_waiting_ || !seen || seen->value.count == 0;
         if (!seen) continue;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
@@ -103,6 +143,7 @@ void SceneModel::show_bodies() {
             const std::string name = name_of_body(*scene, i);
             const Vec3 colour = colour_of_body(name, *scene, i);
             BodyMesh* mesh = mesh_of(object.body, colour);
+            is_waiting_ = is_waiting_ || !mesh;
             if (!mesh) continue;
             Pose pose = object.pose;
             const SceneOutline::Held* held = nullptr;
@@ -150,6 +191,8 @@ void SceneModel::show_bodies() {
             show_penetration(*mesh, pose, i, seen->value);
         }
     }
+    if (map_)
+        for (display::Legend::Scale& scale : map_scales(map_->kind, map_range_)) legend_.scales.push_back(scale);
     if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
 }
 

@@ -42,6 +42,8 @@ public:
     /// As the run last wrote it; null until then.
     const cases::CasePlan* plan() const { return plan_ ? &*plan_ : nullptr; }
     const std::filesystem::path& file() const { return file_; }
+    /// When it was written.
+    std::filesystem::file_time_type written() const { return written_; }
     const std::vector<StepLine>& steps() const { return steps_; }
 
     /// Presses the button node that is wired to an input of the plan: "undo", "redo", "join", "split", "lock", "hide",

@@ -107,6 +107,35 @@ void PlanPanel::studies() {
     if (!case_.found().empty()) ImGui::TextWrapped("%s", case_.found().c_str());
 }
 
+/// Colours of the fragments in the scene.
+void PlanPanel::maps() {
+    using Kind = PlanMap::Kind;
+    const auto choose = [&](const char* label, Kind kind, const char* tip, bool is_first) {
+        const bool is_on = map_.shown() == kind;
+        if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
+        const bool pressed = button(label, case_.plan() != nullptr, tip, is_first);
+        if (is_on) ImGui::PopStyleColor();
+        if (pressed) map_.show(is_on ? std::nullopt : std::optional(kind));
+    };
+    choose("gap map", Kind::gaps,
+           "colours each fragment by its distance to what faces it, where the last step of the plan left them; again: "
+           "its own colours",
+           true);
+    choose("mirror map", Kind::healthy, "colours each fragment by its distance from the mirrored healthy side", false);
+    if (!map_.shown()) return;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
+    auto range = static_cast<float>(map_.range() * 1e3);
+    if (ImGui::DragFloat("##range", &range, 0.02f, 0.1f, 20.0f, "up to %.2f mm", ImGuiSliderFlags_AlwaysClamp))
+        map_.set_range(1e-3 * static_cast<double>(range));
+    mark_spot("map range");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("distance of the fullest colour; drag, or Ctrl and click to type");
+    if (map_.is_busy()) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("...");
+    }
+}
+
 void PlanPanel::step_list() {
     if (button("undo step", case_.can_press("undo"), "of the plan; let the fragment go first", true))
         case_.press("undo");
@@ -136,6 +165,8 @@ void PlanPanel::draw(const Fonts&) {
     fit_line();
     fragment_buttons();
     studies();
+    map_.tend();
+    maps();
     ImGui::Separator();
     step_list();
 }

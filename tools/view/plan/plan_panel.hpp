@@ -4,13 +4,14 @@
 
 #include "tools/view/painter.hpp"
 #include "tools/view/plan/case_run.hpp"
+#include "tools/view/plan/plan_map.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
 namespace tactus::view {
 
 class PlanPanel {
 public:
-    PlanPanel(Workbench& bench, ScenePanel& scene) : case_(bench), scene_(scene) {}
+    PlanPanel(Workbench& bench, ScenePanel& scene) : case_(bench), scene_(scene), map_(bench, case_, scene) {}
 
     CaseRun& case_run() { return case_; }
     void draw(const Fonts& fonts);
@@ -20,10 +21,12 @@ private:
     void fit_line() const;
     void fragment_buttons();
     void studies();
+    void maps();
     void step_list();
 
     CaseRun case_;
     ScenePanel& scene_;
+    PlanMap map_;
     std::size_t listed_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -14,6 +15,22 @@ namespace tactus::view {
 /// pool.
 std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes,
                        std::span<const display::DrawnView> views, const display::Legend& legend);
+
+/// How coarsely to draw what moves where the processor draws: as coarsely as its triangles need.
+class MotionGrain {
+public:
+    /// After a picture of what moves, in which so many triangles were drawn.
+    void drew(std::size_t triangles);
+    /// Cell size of the level of detail, pixels: `display::grain_of_motion`, or larger after pictures with too many
+    /// triangles.
+    double pixels() const { return pixels_; }
+    /// Samples per pixel that such a scene is worth.
+    int samples() const { return samples_; }
+
+private:
+    double pixels_ = display::grain_of_motion;
+    int samples_ = 4;
+};
 
 class SceneMotion {
 public:

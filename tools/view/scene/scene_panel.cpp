@@ -2,6 +2,7 @@
 #include "tools/view/scene/scene_panel.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/view/frame/damage.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -29,9 +30,9 @@ namespace {
 // The scene is much slower to draw than the panels, so its rate is limited while the user does not move it, and reduced
 // when it takes more than a third of the time. A tracked head gets the full rate.
 constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
-// Triangle counts for software rendering: above the first, moving scenes are drawn coarsely; above the second, one
-// sample per pixel is smooth enough.
-constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
+// Triangle counts for software rendering: above the first, moving scenes are drawn coarsely and quickly; above the
+// second, one sample per pixel is smooth enough.
+constexpr std::size_t many_triangles = 20'000, very_many_triangles = 300'000;
 
 /// Waits until what was drawn is there, and says meanwhile that the window is alive.
 void finish(SceneHand& hand) {
@@ -69,6 +70,21 @@ void ScenePanel::reset() {
 
 std::span<const SceneModel::Part> ScenePanel::parts() const {
     return model_ ? std::span(model_->parts()) : std::span<const SceneModel::Part>();
+}
+
+void ScenePanel::use_map(std::shared_ptr<const picture::SurfaceMap> map, double range) {
+    map_ = std::move(map);
+    set_map_range(range);
+}
+
+void ScenePanel::set_map_range(double range) {
+    map_range_ = range;
+    if (model_) model_->use_map(map_, map_range_);
+    needs_picture_ = true;
+}
+
+std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() const {
+    return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
 }
 
 std::vector<int> ScenePanel::chosen_places() const {
@@ -209,7 +225,7 @@ void ScenePanel::render(int width, int height) {
         static_cast<double>(width) / height * (sight_.mode_of(0) == display::StereoMode::side_by_side ? 0.5 : 1.0);
     if (!is_aimed_ && !model_->bounds().empty()) {
         camera.fit(model_->bounds(), aspect);
-        is_aimed_ = true;
+        is_aimed_ = model_->is_fitted();
     }
     picture.clip = clip_plane();
     const auto views = screens_.aim(sight_, camera, picture.bounds);
@@ -219,13 +235,16 @@ void ScenePanel::render(int width, int height) {
     const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
                                    ImGui::IsItemActive(), now);
     if (next == SceneMotion::Next::nothing) return screens_.show();
-    picture.grain = next == SceneMotion::Next::coarse ? display::grain_of_motion : 0.0;
+    picture.is_quick = next == SceneMotion::Next::coarse;
+    picture.grain = picture.is_quick ? grain_.pixels() : 0.0;
     // A single fine picture of a still scene does not reduce the rate of moving ones.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
-    screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
+    const bool is_many = renderer_->is_software() && model_->triangles() > very_many_triangles;
+    screens_.samples = picture.is_quick ? grain_.samples() : is_many ? 1 : 4;
     hand_.beat();
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     ++pictures_;
+    if (picture.is_quick) grain_.drew(renderer_->drawn_triangles());
     hand_.beat();
     // Without a graphics card the processor draws, and the wait for it would come later, as a whole.
     if (renderer_->is_software()) finish(hand_);
@@ -289,6 +308,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             SceneOutline outline = outline_of(*bench_.plan());
             if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
             else model_->follow(std::move(outline));
+            model_->use_map(map_, map_range_);
             sight_.follow(model_->outline());
             hand_.follow(observer_, model_->outline());
             plan_version_ = bench_.plan_version();
@@ -326,6 +346,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             const SceneScreens::Tile& tile = screens_.tiles()[i];
             const Point at = corner + Point{tile.x / dense, tile.y / dense};
             const Point far = at + Point{tile.width / dense, tile.height / dense};
+            say_version(tile.texture, static_cast<std::uint64_t>(pictures_));
             paint.list()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(tile.texture)),
                                           vec(at), vec(far), ImVec2(0, 1), ImVec2(1, 0), 0xFFFFFFFF,
                                           static_cast<float>(6.0 * fonts.scale));

@@ -58,6 +58,11 @@ public:
     std::span<const SceneModel::Part> parts() const;
     /// Places in their scene of the chosen bodies, in the order in which they were chosen.
     std::vector<int> chosen_places() const;
+    /// Colours the fragments of a plan; null: by their own colours. `range`: m, distance of the fullest colour.
+    void use_map(std::shared_ptr<const picture::SurfaceMap> map, double range);
+    void set_map_range(double range);
+    /// Of the plan in the scene, in its order; empty: not seen yet.
+    std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
     bool is_measuring = false;
     bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool has_few_tools = false;  ///< above the picture: views and the hand, as a trainee needs them
@@ -101,9 +106,12 @@ private:
     std::shared_ptr<observe::Observer> observer_;
     std::unique_ptr<display::SceneRenderer> renderer_;
     std::unique_ptr<SceneModel> model_;
+    std::shared_ptr<const picture::SurfaceMap> map_;
+    double map_range_ = 1e-3;
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
     SceneMotion motion_;
+    MotionGrain grain_;
     SceneHand hand_;
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports

@@ -21,7 +21,7 @@ void TextureTarget::remove() {
     glDeleteFramebuffers(1, &resolved_);
     glDeleteRenderbuffers(2, buffers_);
     glDeleteTextures(1, &texture_);
-    frame_ = 0;
+    frame_ = resolved_ = 0;
 }
 
 void TextureTarget::make(int width, int height, int wanted) {
@@ -32,26 +32,31 @@ void TextureTarget::make(int width, int height, int wanted) {
     GLint most_samples = 0;
     glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
     const int samples = std::min(most_samples, wanted);
-    glGenRenderbuffers(2, buffers_);
-    glGenFramebuffers(1, &frame_);
-    glBindFramebuffer(GL_FRAMEBUFFER, frame_);
-    const auto attach = [&](GLuint buffer, GLenum where, GLenum kind) {
-        glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-        glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, kind, width, height);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
-    };
-    attach(buffers_[0], GL_COLOR_ATTACHMENT0, GL_RGBA8);
-    attach(buffers_[1], GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24);
-    const bool good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     glGenTextures(1, &texture_);
     glBindTexture(GL_TEXTURE_2D, texture_);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glGenFramebuffers(1, &resolved_);
-    glBindFramebuffer(GL_FRAMEBUFFER, resolved_);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
-    if (!good || glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    glGenFramebuffers(1, &frame_);
+    const auto is_complete = [] { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; };
+    const auto attach = [&](GLuint buffer, GLenum where, GLenum kind) {
+        glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+        glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, kind, width, height);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
+    };
+    bool good = true;
+    glGenRenderbuffers(2, buffers_);
+    if (samples > 1) {
+        glGenFramebuffers(1, &resolved_);
+        glBindFramebuffer(GL_FRAMEBUFFER, resolved_);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+        good = is_complete();
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+    if (samples > 1) attach(buffers_[0], GL_COLOR_ATTACHMENT0, GL_RGBA8);
+    else glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    attach(buffers_[1], GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24);
+    if (!good || !is_complete())
         throw Error(fmt::format("the graphics driver cannot make a picture of {} x {} pixels", width, height));
 }
 
@@ -65,6 +70,7 @@ void TextureTarget::begin(int width, int height, int samples) {
 }
 
 void TextureTarget::end() {
+    if (resolved_ == 0) return glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
     glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);

@@ -19,7 +19,7 @@ public:
 
     /// Redirects drawing into it, with up to `samples` per pixel. A new size reallocates it. Throws Error.
     void begin(int width, int height, int samples = 4);
-    /// Restores the window's framebuffer and resolves the samples.
+    /// Restores the window's framebuffer and resolves the samples, if there are several.
     void end();
 
     /// After `end`: draws an image on top, with its lower left corner at (x, y).

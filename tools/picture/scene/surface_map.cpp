@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/scene/surface_map.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/fit/gap.hpp"
+#include "tools/picture/scene/body_surface.hpp"
+#include "tools/study/bones/intact_side.hpp"
+#include "tools/study/planning/plan_matching.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace tactus::picture {
+
+namespace {
+
+// Told apart with most kinds of colour blindness.
+const Vec3 nothing{0.97, 0.95, 0.86}, wide{0.78, 0.13, 0.10}, inside{0.10, 0.25, 0.70};
+
+/// The vertices that are drawn, in the frame of the fragment's file.
+std::vector<contact::SurfacePoint> vertices_of(const observe::SeenBody& body) {
+    const BodySurface surface = make_body_surface(body, contact::make_voxmap(body.distance), Vec3(0.0), Vec3(0.0));
+    std::vector<contact::SurfacePoint> points;
+    for (const geometry::SurfaceVertex& v : surface.patch.vertices) {
+        const Vec3 at(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+                      static_cast<double>(v.position[2]));
+        const Vec3 normal(v.normal[0], v.normal[1], v.normal[2]);
+        contact::SurfacePoint point;
+        point.position = body.home.apply(at);
+        point.normal = body.home.rotate(normal / std::max(glm::length(normal), 1e-12));
+        points.push_back(point);
+    }
+    return points;
+}
+
+}  // namespace
+
+SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
+                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies) {
+    const cases::PlanState state = cases::state_of(plan);
+    const std::size_t count = std::min(bodies.size(), plan.fragments.size());
+    std::vector<study::CaseFragment> fragments;
+    std::optional<fit::RegistrationTarget> healthy;
+    if (kind == SurfaceMap::Kind::gaps) fragments = study::load_fragments(plan, folder);
+    else if (state.mirror) healthy.emplace(study::laid_target(*state.mirror, folder));
+    else throw Error("the plan has no healthy side; make one by 'tactus plan mirror'");
+    SurfaceMap map;
+    map.kind = kind;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!bodies[i]) continue;
+        const int mine = static_cast<int>(i);
+        const std::vector<contact::SurfacePoint> points = vertices_of(*bodies[i]);
+        std::vector<float>& nearest = map.distance[bodies[i]->content_hash];
+        nearest.assign(points.size(), std::numeric_limits<float>::infinity());
+        const Pose& at = state.arrangement.pose(mine);
+        if (healthy) {
+            std::ranges::transform(points, nearest.begin(), [&](const contact::SurfacePoint& point) {
+                return static_cast<float>(healthy->distance(at.apply(point.position)));
+            });
+            continue;
+        }
+        if (state.arrangement.is_hidden(mine)) continue;
+        for (int other = 0; other < static_cast<int>(fragments.size()); ++other) {
+            if (other == mine || state.arrangement.is_hidden(other)) continue;
+            const fit::SurfaceGap gap = fit::gap_between(points, at, fragments[static_cast<std::size_t>(other)].map,
+                                                         state.arrangement.pose(other));
+            for (std::size_t n = 0; n < points.size(); ++n)
+                if (std::abs(gap.distance[n]) < std::abs(nearest[n])) nearest[n] = gap.distance[n];
+        }
+    }
+    return map;
+}
+
+Vec3 map_colour(double distance, double range) {
+    return glm::mix(nothing, distance < 0.0 ? inside : wide, std::min(std::abs(distance) / range, 1.0));
+}
+
+std::vector<display::Legend::Scale> map_scales(SurfaceMap::Kind kind, double range) {
+    const std::string most = fmt::format("{:.3g}", range * 1e3);
+    if (kind == SurfaceMap::Kind::healthy) return {{"from the healthy side, mm", "0", most, nothing, wide}};
+    return {{"gap, mm", "0", most, nothing, wide}, {"overlap, mm", "0", most, nothing, inside}};
+}
+
+}  // namespace tactus::picture

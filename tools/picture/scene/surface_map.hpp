@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances on the drawn surfaces of a plan's fragments, as colours: to what faces them, or to the healthy side.
+#pragma once
+
+#include "assets/cases/case_plan.hpp"
+#include "devices/display/legend.hpp"
+#include "engine/observe/seen_values.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tactus::picture {
+
+struct SurfaceMap {
+    enum class Kind : std::uint8_t {
+        gaps,  ///< as fit::gap_between: signed, negative inside the other
+        healthy,  ///< as fit::RegistrationTarget::distance: never negative
+    };
+    Kind kind = Kind::gaps;
+    /// m, for each vertex of make_body_surface; by the content of the body. Infinite where nothing faces it.
+    std::map<std::uint64_t, std::vector<float>> distance;
+};
+
+/// Of the fragments where the plan's state has them; hidden ones face nothing. `bodies`: of each fragment, in the order
+/// of the plan; null ones are left out. Takes seconds. Throws Error for a file that is missing or has changed, and
+/// without a healthy side where one is asked for.
+SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
+                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies);
+
+/// sRGB at a finite distance, full at `range` (m): from light to red for a gap or a distance, to blue for an overlap.
+Vec3 map_colour(double distance, double range);
+/// What the colours mean.
+std::vector<display::Legend::Scale> map_scales(SurfaceMap::Kind kind, double range);
+
+}  // namespace tactus::picture

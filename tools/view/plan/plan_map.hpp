@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours of the scene by gaps or by the distance from the healthy side: computed beside the window from the plan's
+// file, and again after each step.
+#pragma once
+
+#include "tools/picture/scene/surface_map.hpp"
+#include "tools/view/plan/case_run.hpp"
+#include "tools/view/scene/scene_panel.hpp"
+
+#include <future>
+#include <memory>
+#include <optional>
+
+namespace tactus::view {
+
+class PlanMap {
+public:
+    using Kind = picture::SurfaceMap::Kind;
+
+    PlanMap(Workbench& bench, CaseRun& run, ScenePanel& scene) : bench_(bench), run_(run), scene_(scene) {}
+
+    /// Once per picture.
+    void tend();
+    /// None: the fragments have their own colours.
+    void show(std::optional<Kind> kind);
+    const std::optional<Kind>& shown() const { return kind_; }
+    bool is_busy() const { return making_.valid(); }
+    /// m, distance of the fullest colour.
+    double range() const { return range_; }
+    void set_range(double range);
+
+private:
+    Workbench& bench_;
+    CaseRun& run_;
+    ScenePanel& scene_;
+    std::optional<Kind> kind_, made_;  ///< made: what `map_` or `making_` is of
+    double range_ = 1e-3;
+    std::filesystem::file_time_type of_{};
+    std::future<picture::SurfaceMap> making_;
+};
+
+}  // namespace tactus::view
