@@ -11,13 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
 namespace {
 
 constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
-constexpr std::int64_t ticking_ns = 500'000'000;  // the run is under way
 constexpr std::int64_t longest_hold_ns = 1'000'000'000;  // of what is held, without a picture
 constexpr int first_pictures = 6;
 constexpr double radians_per_pixel = 0.006;
@@ -34,12 +34,22 @@ constexpr std::array<HandButton, 4> hand_buttons{
 
 }  // namespace
 
+SceneHand::SceneHand() : pulse_(haptic::window_hand(), hosted::steady_ns) {}
+
 void SceneHand::begin_picture() {
+    pulse_.begin_picture();
     const std::int64_t now = hosted::steady_ns();
     interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
     picture_ns_ = now;
-    if (now - felt_.at_ns < ticking_ns) pictures_ = std::min(pictures_ + 1, first_pictures);
+    // Only ticks count: between the device and the first of them the window may still read the scene.
+    if (const std::int64_t ticked = std::exchange(ticked_ns_, felt_.at_ns); ticked != felt_.at_ns)
+        pictures_ = std::min(pictures_ + 1, first_pictures);
     beat();
+}
+
+void SceneHand::end_picture() {
+    beat();
+    pulse_.end_picture();
 }
 
 void SceneHand::let_go() {
@@ -51,24 +61,23 @@ void SceneHand::let_go() {
 }
 
 void SceneHand::beat() {
-    haptic::WindowHand& link = haptic::window_hand();
     const std::int64_t now = hosted::steady_ns();
     const bool was_silent = spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns;
     spoke_ns_ = now;
     std::uint64_t number = 0;
-    if (!link.felt.read(felt_, number)) return;
+    if (!haptic::window_hand().felt.read(felt_, number)) return;
     is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
     if (was_silent) let_go();
-    if (!is_there_) return;
+    if (!is_there_) return pulse_.forget();
     if (felt_.run != run_) {
         run_ = felt_.run;
         cursor_.begin(felt_.pose);
         latched_ = keys_ = 0;
         pictures_ = 0;
     }
-    if (pictures_ < first_pictures) return;
+    if (pictures_ < first_pictures) return pulse_.forget();
     cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));
-    link.wanted.write({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
+    pulse_.say({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
 }
 
 std::int64_t SceneHand::held_buttons() const {

@@ -62,6 +62,11 @@ std::string score_words(const study::ScoredRun& run) {
                     ? fmt::format("{}: injured, {:.1f} mm³\n", spared.name, spared.injured_mm3)
                     : fmt::format("{}: spared, nearest {:.1f} mm\n", spared.name, spared.closest_mm);
     if (s.over_limit_Ns > 0.0) text += fmt::format("above the limit of force: {:.2f} N s\n", s.over_limit_Ns);
+    if (s.shown_share && *s.shown_share < study::complete_share)
+        text += fmt::format(
+            "the bone was felt in only {:.0f} % of the time of contact, as forces were away: do not "
+            "compare this attempt with others\n",
+            std::floor(100.0 * *s.shown_share));
     return text + "the scores are not validated";
 }
 
