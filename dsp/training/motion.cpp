@@ -11,6 +11,7 @@ namespace tactus::training {
 namespace {
 
 constexpr double least_stroke = 2e-3;  // m
+constexpr double no_force = 1e-3;      // N
 constexpr std::size_t most_track = 100'000'000;
 
 double median_step(std::span<const AttemptSample> samples) {
@@ -121,7 +122,7 @@ std::optional<double> log_dimensionless_jerk(const Track& track, std::size_t fir
 
 MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCut& cut, double force_limit) {
     MotionMeasures m;
-    double contact_time = 0.0, impulse = 0.0;
+    double impulse = 0.0;
     bool touched = false;
     for (std::size_t n = 0; n < samples.size(); ++n) {
         const double step = n + 1 < samples.size() ? samples[n + 1].time - samples[n].time
@@ -134,11 +135,12 @@ MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCu
         if (!touched) m.begin = samples[n].time;
         touched = true;
         m.end = samples[n].time;
-        contact_time += step;
+        m.contact += step;
+        if (!(force > no_force)) m.without_force += step;
         impulse += force * step;
     }
     if (!touched) return m;
-    if (contact_time > 0.0) m.mean_force = impulse / contact_time;
+    if (m.contact > 0.0) m.mean_force = impulse / m.contact;
     const Track track = low_pass(samples);
     const std::size_t first = index_of(track, m.begin), last = index_of(track, m.end);
     for (std::size_t n = first; n < last; ++n) m.path += glm::length(track.position[n + 1] - track.position[n]);

@@ -21,12 +21,14 @@ struct AttemptSample {
 
 struct MotionMeasures {
     double begin = 0.0, end = 0.0;  ///< s: first and last touch; equal when there was none
-    double mean_force = 0.0;        ///< N, over the time of contact
-    double max_force = 0.0;         ///< N
-    double over_limit = 0.0;        ///< N s: integral of the force beyond the limit
-    std::optional<double> jerk;     ///< see jerk_of; none without movement
-    int strokes = 0;                ///< to and fro
-    double path = 0.0;              ///< m, of the middle of the tooth edge between first and last touch
+    double contact = 0.0;           ///< s: time of contact
+    double without_force = 0.0;  ///< s: of it, when the hand was given no force: after a fault, or before engagement
+    double mean_force = 0.0;  ///< N, over the time of contact
+    double max_force = 0.0;  ///< N
+    double over_limit = 0.0;  ///< N s: integral of the force beyond the limit
+    std::optional<double> jerk;  ///< see jerk_of; none without movement
+    int strokes = 0;  ///< to and fro
+    double path = 0.0;  ///< m, of the middle of the tooth edge between first and last touch
 };
 
 /// Positions are resampled to even steps and filtered (low_pass below). A stroke is a movement to and fro along the
@@ -36,7 +38,7 @@ MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCu
 /// Even samples of positions.
 struct Track {
     double begin = 0.0, step = 1e-3;  ///< s
-    std::vector<Vec3> position;       ///< m
+    std::vector<Vec3> position;  ///< m
 };
 
 /// The positions in even steps (the median of the samples' own), by linear interpolation, then filtered forwards and

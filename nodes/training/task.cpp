@@ -151,6 +151,7 @@ struct Task {
         report.set("task", "hash", fmt::format("{:016x}", task_->hash));
         report.set("task", "bone", task_->bone.string());
         report.set("task", "record", file.value);
+        report.set("task", "force", std::string(force.connected ? "recorded" : "not recorded"));
         report.set("task", "scores", std::string("not validated"));
         report.set("task", "deepest_mm", deepest_ * 1e3);
         report.set("task", "largest_distance_mm", worst_distance_ * 1e3);

@@ -9,10 +9,11 @@ namespace tactus::session {
 
 using control::ForceState;
 
-std::string HandForces::text() const {
+std::string HandForces::text(bool has_button) const {
     if (state == ForceState::on || state == ForceState::unknown) return {};
     std::string how = control::describe(state);
-    if (state == ForceState::by_hand) how += fmt::format(": tactus set {}.recover=N, with another N each time", node);
+    if (state == ForceState::by_hand && !has_button)
+        how += fmt::format(": tactus set {}.recover=N, with another N each time", node);
     if (fault.empty()) return fmt::format("{} (since {:.2f} s)", how, since_s);
     return fmt::format("{}, since {:.2f} s: {}", fault, fault_since_s, how);
 }

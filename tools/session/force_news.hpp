@@ -21,8 +21,8 @@ struct HandForces {
     double fault_since_s = 0.0;
 
     /// What happened, since when, and how to go on: "no force arrived in time, since 1.62 s: forces return …". Empty
-    /// while forces are on.
-    std::string text() const;
+    /// while forces are on. `has_button`: beside it, so that no command is named for what it does.
+    std::string text(bool has_button = false) const;
 };
 
 /// A fault of a device that is or was.

@@ -209,7 +209,9 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
             throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
         return found->get<std::string>();
     };
-    TaskSummary summary{text("file"), text("hash"), text("record"), {}, false};
+    TaskSummary summary{text("file"), text("hash"), text("record"), {}, true, false};
+    if (const auto force = task->find("force"); force != task->end() && force->is_string())
+        summary.has_force = force->get<std::string>() == "recorded";
     if (const auto sources = json.find("carve_sources"); sources != json.end() && sources->is_object())
         for (const auto& [node, hash] : sources->items())
             if (hash.is_string()) summary.bones.push_back(hash.get<std::string>());

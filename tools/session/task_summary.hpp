@@ -12,6 +12,7 @@ struct TaskSummary {
     std::string file, hash;  ///< of the task
     std::string record;      ///< name of the table of the attempt, beside the summary
     std::vector<std::string> bones;  ///< bone::content_hash of each bone that was cut; empty: the run does not say
+    bool has_force = true;  ///< the record holds the force on the hand
     bool refined = false;  ///< a bone was resampled around the site
 };
 

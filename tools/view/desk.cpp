@@ -64,7 +64,9 @@ void Desk::follow_run() {
 }
 
 void Desk::show_messages(double height) {
-    ImGui::BeginChild("messages", vec({0.0, height}));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 4.0 * fonts_.scale}));
+    ImGui::BeginChild("messages", vec({0.0, height}), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    ImGui::PopStyleVar();
     const auto& all = bench_.messages();
     for (std::size_t i = all.size() > 60 ? all.size() - 60 : 0; i < all.size(); ++i) {
         ImGui::PushStyleColor(ImGuiCol_Text, all[i].is_problem ? tone::bad : tone::dim);
@@ -97,7 +99,11 @@ void Desk::ask_farewell() {
     ImGui::SameLine();
     choose("Continue the run", Farewell::goes_on);
     ImGui::SameLine();
-    choose("Keep the window", Farewell::none);
+    choose("Keep the window (Esc)", Farewell::none);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+        farewell = Farewell::none;
+        ImGui::CloseCurrentPopup();
+    }
     if (farewell == Farewell::none) bench_.want_edits();
     ImGui::EndPopup();
 }
@@ -111,7 +117,8 @@ void Desk::draw() {
     shortcuts();
     if (start_page_.is_open) return draw_start();
     // On a narrow window the words of the run need the room of the menus.
-    draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0);
+    draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0,
+               std::exchange(wants_menus_, false));
     run_bar(bench_, take_, fonts_);
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);

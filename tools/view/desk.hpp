@@ -118,6 +118,7 @@ private:
     StartPage start_page_;
     FileDialog dialog_;
     CommandList list_;
+    bool wants_menus_ = false;
     std::vector<Command> commands_;
     std::string value_of_, value_;  ///< the parameter whose value is asked for
     bool asks_value_ = false;

@@ -86,6 +86,7 @@ void Desk::add_view_commands(std::vector<Command>& all) {
     all.push_back({"View", "Look at the scene anew", "", "camera reset fit", [this] { scene_.reset(); }});
     all.push_back({"View", "List of node types", "", "catalogue library", [this] { nodes_.wants_catalogue = true; }});
     all.push_back({"Help", "Find a command...", "Ctrl+P", "palette search", [this] { list_.open(all_commands()); }});
+    all.push_back({"Help", "Menus by keyboard", "F10", "open", [this] { wants_menus_ = true; }});
     all.push_back({"Help", "Keys", "F1", "shortcuts help", [this] { list_.open_help(); }});
 }
 

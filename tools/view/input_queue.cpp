@@ -51,7 +51,10 @@ void InputQueue::take(const InputEvent& event) {
 
 namespace {
 
-constexpr int first_control_key = 256;  // of GLFW: Enter, arrows, modifiers, …
+// Of GLFW: Enter, arrows, modifiers, …
+constexpr int first_control_key = 256, left_control = 341, right_control = 345;
+
+bool has_control(const InputState& state) { return state.key[left_control] || state.key[right_control]; }
 
 }  // namespace
 
@@ -82,7 +85,8 @@ const InputState& InputQueue::next(bool is_typing) {
                 break;
             case Kind::key:
                 if (has_clicked) return state_;
-                if (is_typing && event.code < first_control_key) break;
+                // Letters come by themselves, but not those of a shortcut: "choose all" of a field.
+                if (is_typing && event.code < first_control_key && !has_control(state_)) break;
                 if (code < pressed.size() && pressed[code]) return state_;
                 // Letters come before a key that ends or changes the text.
                 if (event.is_down && !state_.letters.empty()) return state_;

@@ -19,8 +19,9 @@ bool begin_question(const char* title) {
 }
 
 /// `spot`: its name for scripts.
-bool answer(const char* label, const char* spot) {
-    const bool pressed = ImGui::Button(label);
+bool answer(const char* label, const char* spot, bool has_escape = false) {
+    const bool pressed =
+        ImGui::Button(label) || (has_escape && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
     mark_spot(spot);
     if (pressed) ImGui::CloseCurrentPopup();
     ImGui::SameLine();
@@ -49,7 +50,7 @@ void Questions::ask_leaving() {
         bench_.drop_edits();
         leaving = Leaving::leaves;
     }
-    if (answer("Cancel", "cancel closing")) leaving = Leaving::none;
+    if (answer("Cancel (Esc)", "cancel closing", true)) leaving = Leaving::none;
     ImGui::EndPopup();
 }
 
@@ -61,14 +62,15 @@ void Questions::ask_name() {
     if (!begin_question("Save as")) return;
     ImGui::Text("Patches of the library cannot be changed. Save the patch as:");
     ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
-    ImGui::InputText("##file", name_.data(), name_.size());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("##file", name_.data(), name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     mark_spot("file name");
     if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
-    if (answer("Save", "save as")) {
+    if (answer("Save", "save as") || entered) {
         if (!bench_.save_as(name_.data())) problem_ = bench_.messages().back().text;
         else if (leaves_when_saved_) leaving = Leaving::leaves;
     }
-    if (answer("Cancel", "cancel saving")) bench_.wants_name = false;
+    if (answer("Cancel (Esc)", "cancel saving", true)) bench_.wants_name = false;
     if (!bench_.wants_name) {
         leaves_when_saved_ = false;
         name_.fill('\0');

@@ -32,25 +32,31 @@ void state_banner(Workbench& bench, const Fonts& fonts) {
     const ImVec2 screen = ImGui::GetMainViewport()->Size;
     // Over the messages, which it repeats: no control is below it.
     ImGui::SetNextWindowPos(ImVec2(gap, screen.y - gap), ImGuiCond_Always, ImVec2(0.0f, 1.0f));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(screen.x - 2.0f * gap, screen.y));
+    const float wide = screen.x - 2.0f * gap;
+    ImGui::SetNextWindowSizeConstraints(ImVec2(wide, static_cast<float>(38.0 * fonts.scale)), ImVec2(wide, screen.y));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(gap, 0.6f * gap));
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour(0x3a1d22, 240));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour(0x3a1d22));
     ImGui::Begin("state", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
     ImGui::PushTextWrapPos(screen.x - 4.0f * gap);
     for (const session::HandForces& forces : status->forces) {
         if (!is_told(forces, status->time)) continue;
-        const std::string text =
-            status->forces.size() > 1 ? fmt::format("{}: {}", forces.device, forces.text()) : forces.text();
+        const bool has_button = forces.state == control::ForceState::by_hand && !forces.node.empty();
+        if (has_button) {
+            // On the line of the text, so that the note covers only the messages in a small window, too.
+            ImGui::PushID(forces.device.c_str());
+            if (ImGui::Button("Let forces return")) bench.running()->recover(forces.node);
+            mark_spot("Let forces return");
+            ImGui::PopID();
+            ImGui::SameLine();
+            ImGui::AlignTextToFramePadding();
+        }
+        std::string text = forces.text(has_button);
+        if (status->forces.size() > 1) text = fmt::format("{}: {}", forces.device, text);
         ImGui::PushStyleColor(ImGuiCol_Text, control::is_off(forces.state) ? tone::bad : tone::warm);
         ImGui::TextUnformatted(text.c_str());
         ImGui::PopStyleColor();
-        if (forces.state != control::ForceState::by_hand || forces.node.empty()) continue;
-        ImGui::PushID(forces.device.c_str());
-        if (ImGui::Button("Let forces return")) bench.running()->recover(forces.node);
-        mark_spot("Let forces return");
-        ImGui::PopID();
     }
     ImGui::PopTextWrapPos();
     ImGui::End();

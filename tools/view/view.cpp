@@ -93,12 +93,12 @@ public:
             if (has_picture) {
                 if (script_) script_->move_mouse();
                 desk_->draw();
-                desk_->scene().hand().beat();
                 window_.end();
-                desk_->scene().hand().beat();
+                desk_->scene().hand().end_picture();
             } else {
                 bench_->tend();
                 desk_->scene().hand().begin_picture();
+                desk_->scene().hand().end_picture();
             }
             if (script_) script_->step(*desk_, window_);
             for (const std::string& file : window_.take_dropped()) desk_->take_dropped(file);

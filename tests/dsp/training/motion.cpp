@@ -65,6 +65,19 @@ TEST_CASE("strokes, path and force are those of the movement") {
     CHECK(std::abs(m.end - 10.0) < 1e-9);
 }
 
+TEST_CASE("time in the bone without force on the hand is counted, and time outside of it is not") {
+    auto samples = sawing(10.0, 0.0, 5.0);
+    CHECK(training::motion_of(samples, test::block_plan(), INFINITY).without_force == 0.0);
+    for (AttemptSample& s : samples) {
+        if (s.time >= 2.0 && s.time < 4.0) s.force = {};
+        if (s.time < 1.0) s.contact = false;
+        if (s.time < 0.5) s.force = {};
+    }
+    const training::MotionMeasures m = training::motion_of(samples, test::block_plan(), INFINITY);
+    CHECK(std::abs(m.without_force - 2.0) < 2e-3);
+    CHECK(std::abs(m.contact - 9.0) < 2e-3);
+}
+
 TEST_CASE("a trembling hand has more jerk and a longer path, and no more strokes") {
     const auto calm = training::motion_of(sawing(6.0, 0.0, 5.0), test::block_plan(), INFINITY);
     const auto trembling = training::motion_of(sawing(6.0, 0.5 * mm, 5.0), test::block_plan(), INFINITY);

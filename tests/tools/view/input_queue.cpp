@@ -131,3 +131,15 @@ TEST_CASE("a window that was left says so until the keys before it have been see
     CHECK(queue.next().key[84]);
     CHECK_FALSE(queue.waits_to_leave());
 }
+
+TEST_CASE("a shortcut that is pressed and released within one picture reaches the field in which one types") {
+    InputQueue queue;
+    constexpr int control = 341, a = 'A';
+    for (const InputEvent& event : {key(control, true), key(a, true), key(a, false), key(control, false)})
+        queue.add(event);
+    const InputState pressed = queue.next(true);
+    CHECK(pressed.key[control]);
+    CHECK(pressed.key[a]);
+    const InputState released = queue.next(true);
+    CHECK_FALSE(released.key[a]);
+}

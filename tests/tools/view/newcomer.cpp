@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Somebody who has never seen the window, with a mouse and a keyboard and nothing else: builds a patch from an empty
 // canvas, hears it and saves it elsewhere; opens a take and finds the largest force.
-#include "devices/display/png.hpp"
 #include "engine/take/take_reader.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/view/person.hpp"
+#include "tests/tools/view/eyes.hpp"
 #include "tools/view/signal/feed.hpp"
 
 #include <sndfile.h>
@@ -13,7 +12,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <future>
-#include <random>
 
 using namespace tactus::test;
 using nlohmann::json;
@@ -24,29 +22,6 @@ namespace {
 std::future<Outcome> begin(const Display& display, const Folder& folder, const std::string& arguments) {
     return std::async(std::launch::async,
                       [&display, &folder, arguments] { return on(display, folder, arguments, 280); });
-}
-
-/// Waits until the window shows what was done: pictures are slow on a busy machine.
-void settle(const Person& person) {
-    Picture before = person.look();
-    for (int i = 0; i < 30; ++i) {
-        Person::wait(0.5);
-        Picture now = person.look();
-        if (now.rgb == before.rgb) return;
-        before = std::move(now);
-    }
-}
-
-/// TACTUS_KEEP_PICTURES names a folder for pictures that somebody looks at.
-void keep(const Person& person, const std::string& name) {
-    const char* folder = std::getenv("TACTUS_KEEP_PICTURES");
-    if (!folder) return;
-    const Picture seen = person.look();
-    tactus::display::Image image;
-    image.width = seen.width;
-    image.height = seen.height;
-    image.rgb = seen.rgb;
-    tactus::display::write_png(image, (fs::path(folder) / (name + ".png")).string());
 }
 
 double loudest(const fs::path& sound) {
@@ -176,44 +151,4 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
     }
-}
-
-TEST_CASE("whatever mouse and keys do at random, the window lives and undo leads back to the first byte", "[display]") {
-    NEEDS_PERSON(person, display)
-    const Folder folder;
-    const char* wanted = std::getenv("TACTUS_CHAOS");
-    const double seconds = wanted ? std::atof(wanted) : 6.0;
-    const fs::path library = tactus::test::library_folder();
-    fs::copy_file(library / "patches/touch-sphere.toml", folder.path / "p.toml");
-    folder.write("script", fmt::format("size 1000 700\nwait {}\nundo all\ntext after.toml\nclose\n", seconds + 8.0));
-    auto done = std::async(std::launch::async, [&] {
-        return on(display, folder, "view p.toml --view-scale 1 --view-script script", static_cast<int>(seconds) + 100);
-    });
-    REQUIRE(person.sees_window("Tactus", 30.0));
-    Person::wait(2.0);
-    std::mt19937 random(wanted ? static_cast<unsigned>(std::time(nullptr)) : 7u);
-    const auto upto = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most)); };
-    static const std::vector<std::string> keys{"Tab",  "Return", "Escape", "Delete", "Up",       "Down",
-                                               "Left", "Right",  "a",      "f",      "1",        "7",
-                                               "h",    "t",      "F1",     "space",  "BackSpace"};
-    static const std::vector<std::string> chords{"z", "y", "x", "c", "v", "d", "a", "g", "1", "2", "3"};
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (std::chrono::steady_clock::now() < end) {
-        const double x = upto(1000), y = 36 + upto(660);
-        switch (upto(7)) {
-            case 0: person.click(x, y); break;
-            case 1: person.drag(x, y, upto(1000), 36 + upto(660), 0.1, 1 + upto(3)); break;
-            case 2: person.double_click(x, y); break;
-            case 3: person.tap(keys[static_cast<std::size_t>(upto(static_cast<int>(keys.size())))]); break;
-            case 4:
-                person.chord({"Control_L"}, chords[static_cast<std::size_t>(upto(static_cast<int>(chords.size())))]);
-                break;
-            case 5: person.button(4 + upto(2), true), person.button(4, false), person.button(5, false); break;
-            default: person.move(x, y), person.button(3, true), person.button(3, false);
-        }
-    }
-    const Outcome outcome = done.get();
-    INFO(outcome.err);
-    CHECK(outcome.code == 0);
-    CHECK(slurp(folder.path / "after.toml") == slurp(library / "patches/touch-sphere.toml"));
 }

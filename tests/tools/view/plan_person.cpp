@@ -6,7 +6,7 @@
 #include "dsp/display/camera.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/jaw_case.hpp"
-#include "tests/tools/view/person.hpp"
+#include "tests/tools/view/eyes.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -26,50 +26,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Spot {
-    double left, top, right, bottom;
-};
-
-/// What the person sees: where the controls are, and how the held fragment lies.
-struct Eyes {
-    fs::path folder;
-
-    std::map<std::string, Spot> spots() const {
-        std::map<std::string, Spot> all;
-        std::ifstream file(folder / "spots.txt");
-        for (std::string line; std::getline(file, line);) {
-            std::istringstream words(line.substr(line.find('\t') + 1));
-            Spot spot{};
-            words >> spot.left >> spot.top >> spot.right >> spot.bottom;
-            all[line.substr(0, line.find('\t'))] = spot;
-        }
-        return all;
-    }
-    Spot spot(const std::string& name) const {
-        for (int i = 0; i < 100; ++i) {
-            const auto all = spots();
-            if (const auto found = all.find(name); found != all.end()) return found->second;
-            Person::wait(0.1);
-        }
-        FAIL("no control '" << name << "'");
-        return {};
-    }
+/// Also how the held fragment lies.
+struct PlannerEyes : Eyes {
     /// Of the held body: its middle, and its rotation since the scan.
     std::optional<Pose> held() const {
-        std::ifstream file(folder / "out/fragment.csv.part", std::ios::ate);
-        const auto size = static_cast<std::streamoff>(file.tellg());
-        file.seekg(std::max<std::streamoff>(0, size - 400));
-        std::string text((std::istreambuf_iterator<char>(file)), {});
-        const std::size_t end = text.rfind('\n'), begin = end == std::string::npos ? end : text.rfind('\n', end - 1);
-        if (begin == std::string::npos) return std::nullopt;
-        std::string line = text.substr(begin + 1, end - begin - 1);
-        std::ranges::replace(line, ',', ' ');
-        std::istringstream words(line);
-        double t = 0.0;
-        Pose pose;
-        words >> t >> pose.position.x >> pose.position.y >> pose.position.z >> pose.orientation.w >>
-            pose.orientation.x >> pose.orientation.y >> pose.orientation.z;
-        return words.fail() ? std::nullopt : std::optional(pose);
+        const std::vector<double> row = last_row("out/fragment.csv");
+        if (row.size() < 8) return std::nullopt;
+        return Pose{{row[1], row[2], row[3]}, {row[4], row[5], row[6], row[7]}};
     }
     cases::CasePlan plan() const { return cases::load_case_plan(folder / "out/case.plan.json"); }
 };
@@ -86,37 +49,17 @@ display::OrbitCamera front_view(double aspect) {
     return camera;
 }
 
-/// Ends the command that works in the folder, as Ctrl-C does.
-void interrupt(const fs::path& folder) {
-    std::error_code none;
-    for (const auto& process : fs::directory_iterator("/proc", none)) {
-        std::ifstream name(process.path() / "comm");
-        std::string comm;
-        if (!(name >> comm) || comm != "tactus" || fs::read_symlink(process.path() / "cwd", none) != folder) continue;
-        ::kill(std::stoi(process.path().filename()), SIGINT);
-    }
-}
-
-/// Waits until something is to be seen, for half a minute at most.
-template <class Condition>
-void sees(Condition&& is_there) {
-    for (int i = 0; i < 150 && !is_there(); ++i) Person::wait(0.2);
-}
-
 class Planner {
 public:
-    Planner(Person& person, Eyes eyes) : person_(person), eyes_(std::move(eyes)), scene_(eyes_.spot("scene picture")) {
+    Planner(Person& person, PlannerEyes eyes)
+        : person_(person), eyes_(std::move(eyes)), scene_(eyes_.spot("scene picture")) {
         camera_ = front_view(width() / height());
         right_ = camera_.orientation * Vec3(1.0, 0.0, 0.0);
         up_ = camera_.orientation * Vec3(0.0, 1.0, 0.0);
         forward_ = camera_.orientation * Vec3(0.0, 0.0, -1.0);
     }
 
-    void press(const std::string& control) {
-        const Spot at = eyes_.spot(control);
-        person_.click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
-        Person::wait(0.3);
-    }
+    void press(const std::string& control) { test::press(person_, eyes_, control); }
     /// The hand goes to what is seen there.
     void reach(const Vec3& point) {
         const auto seen = camera_.projection(width() / height(), bounds_of(point)).seen(point);
@@ -210,7 +153,7 @@ private:
     }
 
     Person& person_;
-    Eyes eyes_;
+    PlannerEyes eyes_;
     Spot scene_;
     std::string reached_;
     display::OrbitCamera camera_;
@@ -239,7 +182,7 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
                   300);
     });
     REQUIRE(person.sees_window("Planning", 30.0));
-    const Eyes eyes{folder.path};
+    const PlannerEyes eyes{{folder.path}};
     // Not before the first picture of that layout, and a run that ticks.
     for (int i = 0; i < 300 && !eyes.spots().contains("trigger (T)"); ++i) Person::wait(0.2);
     Person::wait(3.0);

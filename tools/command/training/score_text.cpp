@@ -24,7 +24,11 @@ Json json_of(const study::Score& s) {
         {"over_mm3", s.over_mm3},
         {"under_mm3", s.under_mm3},
         {"spared", Json::array()},
-        {"force", {{"mean_N", s.mean_N}, {"over_limit_Ns", s.over_limit_Ns}, {"jerk", or_null(s.jerk)}}},
+        {"force",
+         {{"mean_N", s.mean_N},
+          {"over_limit_Ns", s.over_limit_Ns},
+          {"shown", or_null(s.shown_share)},
+          {"jerk", or_null(s.jerk)}}},
         {"breakthrough",
          {{"depth_mm", or_null(s.breakthrough_mm)}, {"speed_mm_per_s", or_null(s.breakthrough_mm_per_s)}}},
         {"strokes", s.strokes},
@@ -108,6 +112,8 @@ std::string score_text(std::span<const study::ScoredRun> runs, std::span<const s
         }
         for (const study::SparedScore& one : run.score.spared)
             if (one.injured_mm3 > 0.0) text += fmt::format("  injured: {}, {:.3g} mm³\n", one.name, one.injured_mm3);
+        if (run.score.shown_share && *run.score.shown_share < study::complete_share)
+            text += "  the blade was in the bone without force on the hand: do not compare this attempt with others\n";
     }
     return text + "scores are not validated\n";
 }

@@ -23,7 +23,7 @@ std::optional<double> closest(const Score& s) {
     return std::ranges::min_element(s.spared, {}, &SparedScore::closest_mm)->closest_mm;
 }
 
-const std::array<Measure, 16> all{{
+const std::array<Measure, 17> all{{
     {"plane.rms_mm", "rms distance from the plan, mm", Better::less, [](const Score& s) { return s.rms_mm; }},
     {"plane.max_mm", "greatest distance from the plan, mm", Better::less, [](const Score& s) { return s.max_mm; }},
     {"plane.angle_deg", "angle to the plan, °", Better::less, [](const Score& s) { return s.angle_deg; }},
@@ -35,6 +35,8 @@ const std::array<Measure, 16> all{{
      [](const Score& s) { return std::optional(s.mean_N); }},
     {"force.over_limit_Ns", "impulse above the limit, N s", Better::less,
      [](const Score& s) { return std::optional(s.over_limit_Ns); }},
+    {"force.shown", "share of the contact with force on the hand", Better::unknown,
+     [](const Score& s) { return s.shown_share; }},
     {"force.jerk", "log dimensionless jerk of a stroke", Better::less, [](const Score& s) { return s.jerk; }},
     {"breakthrough.depth_mm", "plunge behind the bone, mm", Better::less,
      [](const Score& s) { return s.breakthrough_mm; }},

@@ -21,12 +21,16 @@ struct SparedScore {
     double closest_mm = 0.0;  ///< 0 when it was injured
 };
 
+/// Below this share of shown force an attempt is not comparable: it was cut in part without feeling the bone.
+inline constexpr double complete_share = 0.99;
+
 /// Empty values: the run does not say, or there is no such thing (a plane of a bone that was not cut).
 struct Score {
     std::optional<double> rms_mm, max_mm, angle_deg;
     double over_mm3 = 0.0, under_mm3 = 0.0;
     std::vector<SparedScore> spared;
     double mean_N = 0.0, over_limit_Ns = 0.0;
+    std::optional<double> shown_share;  ///< of the time of contact, in which the hand was given a force
     std::optional<double> jerk, breakthrough_mm, breakthrough_mm_per_s;
     int strokes = 0;
     double seconds = 0.0, path_mm = 0.0;

@@ -49,7 +49,7 @@ int key_of(const std::string& key) {
         std::string_view name;
         int code;
     };
-    static constexpr std::array<Named, 15> names{{{"Space", 32},
+    static constexpr std::array<Named, 16> names{{{"Space", 32},
                                                   {"Esc", 256},
                                                   {"Enter", 257},
                                                   {"Tab", 258},
@@ -63,7 +63,8 @@ int key_of(const std::string& key) {
                                                   {"End", 269},
                                                   {"F1", 290},
                                                   {"F2", 291},
-                                                  {"F5", 294}}};
+                                                  {"F5", 294},
+                                                  {"F10", 299}}};
     for (const Named& named : names)
         if (named.name == key) return named.code;
     return key.size() == 1 ? static_cast<int>(static_cast<unsigned char>(key[0])) : -1;
@@ -71,7 +72,7 @@ int key_of(const std::string& key) {
 
 }  // namespace
 
-void draw_menus(const std::vector<Command>& commands, double room) {
+void draw_menus(const std::vector<Command>& commands, double room, bool wants_all) {
     const std::vector<std::string> menus = menus_of(commands);
     const ImGuiStyle& style = ImGui::GetStyle();
     float wide = 0.0f;
@@ -84,6 +85,14 @@ void draw_menus(const std::vector<Command>& commands, double room) {
         ImGui::SetNextWindowPos(below, ImGuiCond_Appearing);
         return ImGui::BeginPopup(label);
     };
+    const auto draw_all = [&] {
+        for (const std::string& menu : menus)
+            if (ImGui::BeginMenu(menu.c_str())) {
+                draw_menu(commands, menu);
+                ImGui::EndMenu();
+            }
+        ImGui::EndPopup();
+    };
     if (static_cast<double>(wide) <= room) {
         for (const std::string& menu : menus) {
             if (open(menu.c_str())) {
@@ -93,16 +102,13 @@ void draw_menus(const std::vector<Command>& commands, double room) {
             ImGui::SameLine(0.0f, 0.0f);
         }
         ImGui::SameLine();
+        // All menus in one, for the keyboard.
+        if (wants_all) ImGui::OpenPopup("Menu");
+        if (ImGui::BeginPopup("Menu")) draw_all();
         return;
     }
-    if (open("Menu")) {
-        for (const std::string& menu : menus)
-            if (ImGui::BeginMenu(menu.c_str())) {
-                draw_menu(commands, menu);
-                ImGui::EndMenu();
-            }
-        ImGui::EndPopup();
-    }
+    if (wants_all) ImGui::OpenPopup("Menu");
+    if (open("Menu")) draw_all();
     ImGui::SameLine();
 }
 
@@ -207,6 +213,8 @@ void CommandList::draw(const std::vector<Command>& commands, const Fonts& fonts)
         row("in the scene", "");
         row("1 to 7", "seven sides");
         row("H; T, Y, U, I", "mouse for the hand or the view; buttons of the hand");
+        row("in a menu or a question", "");
+        row("arrows, Enter, Esc", "go to an item, press it, leave");
         row("in a field", "");
         row("Ctrl-click, Enter", "type a number, with its unit shown; Tab goes to the next field");
         ImGui::EndTable();

@@ -10,8 +10,9 @@
 
 namespace tactus::view {
 
-/// Menus of all commands, on the current line; one button when there is less room than `room`, pixels.
-void draw_menus(const std::vector<Command>& commands, double room);
+/// Menus of all commands, on the current line; one button when there is less room than `room`, pixels. `wants_all` opens one
+/// menu that has all of them, for the keyboard.
+void draw_menus(const std::vector<Command>& commands, double room, bool wants_all);
 
 /// Runs the command whose keys are pressed in this frame.
 void run_pressed(const std::vector<Command>& commands);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/frame/whole_window.hpp"
 
+#include "tools/view/frame/popup_keys.hpp"
 #include "tools/view/spots.hpp"
 
 #include <imgui.h>
@@ -9,6 +10,7 @@ namespace tactus::view {
 
 void begin_whole_window(const char* name, const Fonts& fonts) {
     forget_spots();
+    use_keys_in_popups();
     ImGui::NewFrame();
     ImGui::PushFont(fonts.body);
     const ImGuiViewport* viewport = ImGui::GetMainViewport();

@@ -11,13 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
 namespace {
 
 constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
-constexpr std::int64_t ticking_ns = 500'000'000;  // the run is under way
 constexpr std::int64_t longest_hold_ns = 1'000'000'000;  // of what is held, without a picture
 constexpr int first_pictures = 6;
 constexpr double radians_per_pixel = 0.006;
@@ -34,12 +34,22 @@ constexpr std::array<HandButton, 4> hand_buttons{
 
 }  // namespace
 
+SceneHand::SceneHand() : pulse_(haptic::window_hand(), hosted::steady_ns) {}
+
 void SceneHand::begin_picture() {
+    pulse_.begin_picture();
     const std::int64_t now = hosted::steady_ns();
     interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
     picture_ns_ = now;
-    if (now - felt_.at_ns < ticking_ns) pictures_ = std::min(pictures_ + 1, first_pictures);
+    // Only ticks count: between the device and the first of them the window may still read the scene.
+    if (const std::int64_t ticked = std::exchange(ticked_ns_, felt_.at_ns); ticked != felt_.at_ns)
+        pictures_ = std::min(pictures_ + 1, first_pictures);
     beat();
+}
+
+void SceneHand::end_picture() {
+    beat();
+    pulse_.end_picture();
 }
 
 void SceneHand::let_go() {
@@ -51,24 +61,23 @@ void SceneHand::let_go() {
 }
 
 void SceneHand::beat() {
-    haptic::WindowHand& link = haptic::window_hand();
     const std::int64_t now = hosted::steady_ns();
     const bool was_silent = spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns;
     spoke_ns_ = now;
     std::uint64_t number = 0;
-    if (!link.felt.read(felt_, number)) return;
+    if (!haptic::window_hand().felt.read(felt_, number)) return;
     is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
     if (was_silent) let_go();
-    if (!is_there_) return;
+    if (!is_there_) return pulse_.forget();
     if (felt_.run != run_) {
         run_ = felt_.run;
         cursor_.begin(felt_.pose);
         latched_ = keys_ = 0;
         pictures_ = 0;
     }
-    if (pictures_ < first_pictures) return;
+    if (pictures_ < first_pictures) return pulse_.forget();
     cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));
-    link.wanted.write({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
+    pulse_.say({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
 }
 
 std::int64_t SceneHand::held_buttons() const {
@@ -199,35 +208,39 @@ void SceneHand::draw(const Painter& paint, const Box& picture,
     const double force = glm::length(felt_.force.force);
     const double share = std::clamp(force / std::max(limit_N, 0.1), 0.0, 1.0);
     const ImU32 ink = share > 0.8 ? tone::bad : share > 0.4 ? tone::warm : tone::good;
+    // As the letters, so that a dense screen shows them in the same size.
+    constexpr double usual_letters = 14.0;
+    const double s = static_cast<double>(ImGui::GetFontSize()) / usual_letters;
     if (hand && cursor) {
         // A spring of eight turns, which its stretch makes flat.
         constexpr int turns = 16;
         const Point along = *cursor - *hand;
         const double length = std::hypot(along.x, along.y);
         Point before = *hand;
-        for (int i = 1; i <= turns && length > 3.0; ++i) {
-            const double side = i == turns ? 0.0 : (i % 2 == 0 ? -4.0 : 4.0);
+        for (int i = 1; i <= turns && length > 3.0 * s; ++i) {
+            const double side = i == turns ? 0.0 : (i % 2 == 0 ? -4.0 : 4.0) * s;
             const Point at = *hand + along * (i / static_cast<double>(turns)) +
                              Point{-along.y / length * side, along.x / length * side};
-            paint.line(before, at, ink, 2.0);
+            paint.line(before, at, ink, 2.0 * s);
             before = at;
         }
-        paint.dot(*cursor, 6.0, ink);
-        paint.dot(*hand, 3.0, colour(0x1e293b));
+        paint.dot(*cursor, 6.0 * s, ink);
+        paint.dot(*hand, 3.0 * s, colour(0x1e293b));
     }
-    const double high = 0.4 * picture.height(), wide = 14.0, right = picture.right - 14.0;
-    const Box bar{right - wide, picture.bottom - 34.0 - high, right, picture.bottom - 34.0};
-    paint.box({bar.left - 4.0, bar.top - 4.0, bar.right + 4.0, picture.bottom - 8.0}, colour(0xffffff, 215), 4.0);
-    paint.frame(bar, colour(0x1e293b), 2.0);
-    paint.box({bar.left, bar.bottom - share * high, bar.right, bar.bottom}, ink, 2.0);
-    const double size = static_cast<double>(ImGui::GetFontSize()) * 0.85;
+    const double high = 0.4 * picture.height(), wide = 14.0 * s, right = picture.right - 14.0 * s;
+    const Box bar{right - wide, picture.bottom - 34.0 * s - high, right, picture.bottom - 34.0 * s};
+    paint.box({bar.left - 4.0 * s, bar.top - 4.0 * s, bar.right + 4.0 * s, picture.bottom - 8.0 * s},
+              colour(0xffffff, 215), 4.0 * s);
+    paint.frame(bar, colour(0x1e293b), 2.0 * s);
+    paint.box({bar.left, bar.bottom - share * high, bar.right, bar.bottom}, ink, 2.0 * s);
+    const double size = 0.85 * usual_letters * s;
     const std::string text = fmt::format("{:.1f} N", force);
     const double text_wide = paint.width_of(text, size);
-    paint.box({right - text_wide - 6.0, picture.bottom - 30.0, right + 4.0, picture.bottom - 8.0},
-              colour(0xffffff, 215), 4.0);
-    paint.text({right - text_wide, picture.bottom - 28.0}, size, colour(0x1e293b), text);
+    paint.box({right - text_wide - 6.0 * s, picture.bottom - 30.0 * s, right + 4.0 * s, picture.bottom - 8.0 * s},
+              colour(0xffffff, 215), 4.0 * s);
+    paint.text({right - text_wide, picture.bottom - 28.0 * s}, size, colour(0x1e293b), text);
     if (felt_.is_silent != 0)
-        paint.text({picture.left + 12.0, picture.top + 12.0}, size, tone::bad,
+        paint.text({picture.left + 12.0 * s, picture.top + 12.0 * s}, size, tone::bad,
                    "the hand was let go: pictures came too late");
 }
 

@@ -8,6 +8,7 @@
 #include "tools/picture/scene/scene_outline.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/scene/hand_cursor.hpp"
+#include "tools/view/scene/hand_pulse.hpp"
 
 #include <functional>
 #include <memory>
@@ -19,10 +20,13 @@ namespace tactus::view {
 
 class SceneHand {
 public:
-    /// Once per picture, and while there are none because the window is minimised.
+    SceneHand();
+
+    /// Once per picture, and while there are none because the window is minimised. From here to the end of the picture a
+    /// thread says that the window is alive, see HandPulse.
     void begin_picture();
-    /// Tells the driver where the hand is wanted, and that the window is alive; several times in a picture, which may take
-    /// long without a graphics card.
+    void end_picture();
+    /// Tells the driver where the hand is wanted, and that the window is alive.
     void beat();
     /// Lets go of everything, because the person has left the window: what is held must be pressed anew.
     void let_go();
@@ -53,11 +57,12 @@ private:
     std::int64_t held_buttons() const;
     void press_keys();
 
+    HandPulse pulse_;
     std::shared_ptr<observe::Observer> observer_;
     std::string frame_port_, scale_port_;
     haptic::FeltHand felt_;
     HandCursor cursor_;
-    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0;
+    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0, ticked_ns_ = 0;
     int pictures_ = 0;  // of this run; the first ones make meshes and take long
     bool is_there_ = false, is_on_ = true, is_hovered_ = false;
     unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit

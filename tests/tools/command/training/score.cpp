@@ -150,7 +150,8 @@ TEST_CASE("the scores of a run have exactly the documented shape", "[slow]") {
     CHECK(keys == std::vector<std::string>{"breakthrough", "force", "heat_s", "over_mm3", "path_mm", "plane", "seconds",
                                            "spared", "strokes", "under_mm3", "validity"});
     CHECK(score["plane"].size() == 3);
-    CHECK(score["force"].size() == 3);
+    CHECK(score["force"].size() == 4);
+    CHECK(score["force"]["shown"].is_number());
     CHECK(score["breakthrough"].size() == 2);
     CHECK(score["heat_s"].is_null());
     CHECK(score["spared"].empty());
@@ -170,6 +171,30 @@ TEST_CASE("the scores of a run have exactly the documented shape", "[slow]") {
     CHECK(csv.find("not validated") != std::string::npos);
     CHECK(page.find("not validated") != std::string::npos);
     CHECK(page.find("Learning curve") != std::string::npos);
+}
+
+TEST_CASE("an attempt whose force was away says so, and one whose force nobody recorded does not", "[slow]") {
+    const Folder folder;
+    write_block(folder, 0.3 * mm);
+    const std::string wire = R"("blade.wrench -> task.force",)";
+    const auto attempt = [&](const std::string& name, const std::string& instead) {
+        std::string patch = guided;
+        if (name == "away")
+            patch += "[nodes.out]\ntype = \"device_output\"\nrate = \"1 kHz\"\nmax_force = \"0.0001 N\"\n";
+        patch.replace(patch.find(wire), wire.size(), instead);
+        const std::string file = (folder.path / (name + ".toml")).string(), out = (folder.path / name).string();
+        folder.write(name + ".toml", patch);
+        REQUIRE(folder.tactus("render " + file + " --seconds 1 --out " + out).code == 0);
+        return out;
+    };
+    constexpr const char* warning = "without force on the hand: do not compare";
+    // A limiter that lets next to nothing through, as after a fault.
+    const std::string away = attempt("away", "\"blade.wrench -> out.wrench\",\n  \"out.applied -> task.force\",");
+    CHECK(scored(folder, away)["force"]["shown"].get<double>() < 0.99);
+    CHECK(folder.tactus("score " + away).out.find(warning) != std::string::npos);
+    const std::string unsaid = attempt("unsaid", "");
+    CHECK(scored(folder, unsaid)["force"]["shown"].is_null());
+    CHECK(folder.tactus("score " + unsaid).out.find(warning) == std::string::npos);
 }
 
 TEST_CASE("runs that cannot be scored are refused with what to do", "[slow]") {
@@ -237,6 +262,7 @@ TEST_CASE("a worse hand scores worse in every measure, and a take scores as its 
     };
     for (const char* key : {"rms_mm", "max_mm", "angle_deg"}) worse("plane", key);
     for (const char* key : {"mean_N", "over_limit_Ns", "jerk"}) worse("force", key);
+    CHECK(g["force"]["shown"].get<double>() > 0.99);
     for (const char* key : {"depth_mm", "speed_mm_per_s"}) worse("breakthrough", key);
     worse("", "over_mm3");
     CHECK(g["spared"][0]["injured_mm3"] == 0.0);
