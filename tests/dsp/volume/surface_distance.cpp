@@ -116,11 +116,11 @@ TEST_CASE("distances near a surface are those of the whole computation, and its 
         if (std::abs(there) < static_cast<float>(reach)) {
             // The whole computation takes over what its neighbours found; this one asks every triangle.
             REQUIRE(std::abs(near.values[n]) <= std::abs(there));
-            REQUIRE(std::abs(near.values[n] - there) < 0.05e-3f);
+            REQUIRE(std::abs(near.values[n] - there) < 0.07e-3f);
             if (std::abs(there) < 1e-3f) REQUIRE(near.values[n] == there);
         } else {
             ++beyond;
-            REQUIRE(near.values[n] == Approx(std::copysign(reach, static_cast<double>(there))).margin(0.05e-3));
+            REQUIRE(near.values[n] == Approx(std::copysign(reach, static_cast<double>(there))).margin(0.07e-3));
         }
     }
     CHECK(beyond > 1000);
