@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -90,6 +91,48 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
     return Step{solved[5], glm::dot(normal, out) - solved[1] / reach * glm::dot(normal, along)};
 }
 
+struct Opening {
+    double excess = 0.0, spread = 1.0;  ///< m
+    double misfit = std::numeric_limits<double>::infinity();
+};
+
+/// Strips over ridges and holes have steps of their own: their weight falls with the step that is left.
+Opening opening_from(double excess, const std::vector<Step>& steps) {
+    constexpr double usual = 0.2e-3;  // m, a step that is left
+    Opening found{excess, 1.0, 0.0};
+    for (int pass = 0; pass < 6; ++pass) {
+        double sum = 0.0, squares = 0.0, levers = 0.0, weights = 0.0;
+        for (const Step& s : steps) {
+            const double off = (s.step - found.excess * s.lever) / usual, weight = 1.0 / (1.0 + off * off);
+            sum += weight * s.lever * s.step;
+            levers += weight * s.lever * s.lever;
+            weights += weight;
+            squares += weight * off * off * usual * usual;
+        }
+        if (!(levers > 0.0)) return {};
+        found.excess = sum / levers;
+        const double mean_lever2 = levers / weights;
+        found.spread =
+            std::sqrt((squares / weights / independent + 0.5 * beside * beside) / std::max(mean_lever2, 1e-9));
+    }
+    for (const Step& s : steps) {
+        const double off = (s.step - found.excess * s.lever) / usual;
+        found.misfit += std::log1p(off * off);
+    }
+    return found;
+}
+
+/// The median of what single strips say, by how much they can say.
+double middle_opening(std::vector<Step> steps) {
+    std::erase_if(steps, [](const Step& s) { return !(std::abs(s.lever) > 0.1); });
+    std::ranges::sort(steps, {}, [](const Step& s) { return s.step / s.lever; });
+    double all = 0.0, below = 0.0;
+    for (const Step& s : steps) all += std::abs(s.lever);
+    for (const Step& s : steps)
+        if ((below += std::abs(s.lever)) >= 0.5 * all) return s.step / s.lever;
+    return 0.0;
+}
+
 }  // namespace
 
 ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose) {
@@ -104,24 +147,11 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
             steps.push_back(*step);
     found.strips = static_cast<int>(steps.size());
     if (found.strips < independent) return found;
-    double levers = 0.0, weights = 0.0;
-    // Strips over ridges and holes have steps of their own: their weight falls with the step that is left.
-    for (int pass = 0; pass < 6; ++pass) {
-        double sum = 0.0, squares = 0.0;
-        levers = weights = 0.0;
-        for (const Step& s : steps) {
-            const double off = (s.step - found.excess * s.lever) / 0.2e-3, weight = 1.0 / (1.0 + off * off);
-            sum += weight * s.lever * s.step;
-            levers += weight * s.lever * s.lever;
-            weights += weight;
-            squares += weight * off * off * 0.04e-6;
-        }
-        if (!(levers > 0.0)) return found;
-        found.excess = sum / levers;
-        const double mean_lever2 = levers / weights;
-        found.spread =
-            std::sqrt((squares / weights / independent + 0.5 * beside * beside) / std::max(mean_lever2, 1e-9));
-    }
+    // From no error, and from what half of the strips say: an error of millimetres is far from where it is looked for.
+    const Opening near = opening_from(0.0, steps), far = opening_from(middle_opening(steps), steps);
+    const Opening& best = far.misfit < near.misfit ? far : near;
+    found.excess = best.excess;
+    found.spread = best.spread;
     return found;
 }
 

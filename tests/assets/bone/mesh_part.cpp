@@ -6,6 +6,8 @@
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -117,8 +119,9 @@ TEST_CASE("a mesh is sampled to the same points from distances near its surface 
     REQUIRE(points.size() == whole.size());
     REQUIRE(points.size() > 1'000);
     for (std::size_t n = 0; n < points.size(); ++n) {
-        REQUIRE(points[n].position == whole[n].position);
-        REQUIRE(points[n].normal == whole[n].normal);
-        REQUIRE(points[n].area == whole[n].area);
+        // Beyond 1.5 voxels the distances of an import are not quite exact.
+        REQUIRE(glm::length(points[n].position - whole[n].position) < 1e-6);
+        REQUIRE(glm::length(points[n].normal - whole[n].normal) < 1e-3);
+        REQUIRE(points[n].area == Approx(whole[n].area));
     }
 }
