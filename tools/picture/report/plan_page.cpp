@@ -265,6 +265,8 @@ std::string steps(const Case& c) {
         std::string what(cases::name_of(step.kind));
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
+        if (step.mirror)
+            what += fmt::format(" {}, {:.2f} mm median residual", step.mirror->file, step.mirror->residual * 1e3);
         if (step.fit)
             what += fmt::format(", {} to {}, {:.0f} mm² in contact, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
                                 step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,

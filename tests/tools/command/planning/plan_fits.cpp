@@ -202,6 +202,11 @@ TEST_CASE("a healthy side that does not lie on the fragment is said to be none, 
     const json shown = json::parse(folder.tactus("plan show " + plan + " --json").out);
     CHECK(shown["fragments"][1]["pose"]["position_mm"] == json::array({0.0, 0.0, 0.0}));
     CHECK(shown["steps_in_all"] == 1);
+    // The report says which file the step laid, and how well.
+    REQUIRE(folder.tactus("plan report " + plan).code == 0);
+    const std::string page = slurp(folder.path / "case.html");
+    CHECK(says(page, "other.stl, "));
+    CHECK(says(page, " mm median residual</td>"));
 }
 
 TEST_CASE("a plan of which nothing is shown is not finished", "[slow]") {
