@@ -2,6 +2,7 @@
 #include "dsp/reconstruct/clearance.hpp"
 
 #include "dsp/reconstruct/cut.hpp"
+#include "dsp/reconstruct/jaw_normal.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -180,7 +181,7 @@ std::vector<Disc> cuts_of(const FibulaInputs& inputs, const FibulaPlan& plan) {
         double radius = s.farthest[end].value_or(no_donor);
         if (n > 0 && n <= last) radius = std::max(radius, plan.segments[n - 1].farthest[1].value_or(no_donor));
         else radius = std::max(radius, farthest_from_limb);
-        all.push_back({inputs.planes[n].origin, s.donor_to_target.rotate(s.donor_plane[end].normal), radius});
+        all.push_back({inputs.planes[n].origin, jaw_normal(inputs, n), radius});
     }
     return all;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/reach.hpp"
 
+#include "dsp/reconstruct/jaw_normal.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/rope/measure.hpp"
 #include "dsp/rope/rope.hpp"
@@ -193,18 +194,14 @@ void measure_spans(std::vector<SpanReach>& spans, const FlapVessel& vessel, cons
 }
 
 /// Of the first and the last plane, as far as they cut the jaw; normals into what is resected.
-std::vector<Plane> resection_planes(const FibulaInputs& inputs, const FibulaPlan& plan) {
+std::vector<Plane> resection_planes(const FibulaInputs& inputs) {
     std::vector<Plane> planes;
     for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
         if (inputs.resection == Resection::none || (inputs.resection == Resection::after_first && end == 1) ||
             (inputs.resection == Resection::before_last && end == 0))
             continue;
-        const std::size_t n = end == 0 ? 0 : plan.segments.size() - 1;
-        const FibulaSegment& s = plan.segments[n];
-        Plane plane{inputs.planes[n + end].origin, s.donor_to_target.rotate(s.donor_plane[end].normal)};
-        const Vec3 inwards = (inputs.planes[n + 1].origin - inputs.planes[n].origin) * (end == 0 ? 1.0 : -1.0);
-        if (glm::dot(plane.normal, inwards) < 0.0) plane.normal = -plane.normal;
-        planes.push_back(plane);
+        const std::size_t n = end == 0 ? 0 : inputs.planes.size() - 1;
+        planes.push_back({inputs.planes[n].origin, jaw_normal(inputs, n) * (end == 0 ? 1.0 : -1.0)});
     }
     return planes;
 }
@@ -253,7 +250,7 @@ FlapMeasures measure_flap(const FibulaInputs& inputs, const FibulaPlan& plan, co
     for (PlacedVessel& vessel : measures.vessels)
         if (const SiteReach* best = best_of(measures.reaches, vessel.name)) vessel.lines.push_back(best->points);
     measures.clearances = clearances(flap, cuts_of(inputs, plan), measures.vessels);
-    for (const Plane& plane : resection_planes(inputs, plan))
+    for (const Plane& plane : resection_planes(inputs))
         for (const Vec3& p : tumour)
             measures.tumour_margin =
                 std::min(measures.tumour_margin.value_or(infinity), glm::dot(plane.normal, p - plane.origin));

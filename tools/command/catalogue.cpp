@@ -41,38 +41,38 @@
     X(bench, machine, machine)            \
     X(generate, machine, machine)
 
-#define TACTUS_PLAN_VERBS(X)      \
-    X(plan_new, planning)         \
-    X(plan_show, planning)        \
-    X(plan_check, planning)       \
-    X(plan_move, planning)        \
-    X(plan_group, planning)       \
-    X(plan_add, planning)         \
-    X(plan_remove, planning)      \
-    X(plan_ungroup, planning)     \
-    X(plan_lock, planning)        \
-    X(plan_unlock, planning)      \
-    X(plan_hide, planning)        \
-    X(plan_unhide, planning)      \
-    X(plan_repaint, planning)     \
-    X(plan_undo, planning)        \
-    X(plan_redo, planning)        \
-    X(plan_alternative, planning) \
-    X(plan_snap, planning)        \
-    X(plan_settle, planning)      \
-    X(plan_assemble, planning)    \
-    X(plan_mirror, planning)      \
-    X(plan_gap, planning)         \
-    X(plan_export, planning)      \
-    X(plan_report, planning)      \
-    X(plan_fibula, planning)      \
-    X(plan_reconstruct, planning) \
-    X(plan_plate, planning)       \
-    X(plan_implant, planning)     \
-    X(plan_vessel, planning)      \
-    X(plan_site, planning)        \
-    X(plan_margin, planning)      \
-    X(plan_reach, planning)
+#define TACTUS_PLAN_VERBS(X)         \
+    X(plan_new, planning)            \
+    X(plan_show, planning)           \
+    X(plan_check, planning)          \
+    X(plan_move, planning)           \
+    X(plan_group, planning)          \
+    X(plan_add, planning)            \
+    X(plan_remove, planning)         \
+    X(plan_ungroup, planning)        \
+    X(plan_lock, planning)           \
+    X(plan_unlock, planning)         \
+    X(plan_hide, planning)           \
+    X(plan_unhide, planning)         \
+    X(plan_repaint, planning)        \
+    X(plan_undo, planning)           \
+    X(plan_redo, planning)           \
+    X(plan_alternative, planning)    \
+    X(plan_snap, planning)           \
+    X(plan_settle, planning)         \
+    X(plan_assemble, planning)       \
+    X(plan_mirror, planning)         \
+    X(plan_gap, planning)            \
+    X(plan_export, planning)         \
+    X(plan_report, planning)         \
+    X(plan_fibula, reconstruct)      \
+    X(plan_reconstruct, reconstruct) \
+    X(plan_plate, reconstruct)       \
+    X(plan_implant, reconstruct)     \
+    X(plan_vessel, reconstruct)      \
+    X(plan_site, reconstruct)        \
+    X(plan_margin, reconstruct)      \
+    X(plan_reach, reconstruct)
 
 namespace tactus::command {
 

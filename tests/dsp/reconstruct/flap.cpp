@@ -254,6 +254,11 @@ TEST_CASE("a tumour nearer to a cut of the jaw than the margin is warned of, on 
         REQUIRE(m.tumour_margin);
         CHECK(*m.tumour_margin == Approx(margin * mm).margin(1e-9));
         CHECK(has(m, FlapTrouble::tumour_margin) == (margin < 10.0));
+        // The cuts of the jaw stay where they are when segments are moved, or lie in the leg still.
+        FibulaPlan moved = plan;
+        for (FibulaSegment& segment : moved.segments) segment.donor_to_target = {};
+        CHECK(measure_flap(in, moved, flap, nullptr, tumour).tumour_margin == m.tumour_margin);
+        CHECK(std::abs(glm::dot(cuts_of(in, moved)[1].normal, cuts_of(in, plan)[1].normal)) == Approx(1.0));
     }
     FibulaInputs open = in;
     open.resection = Resection::none;

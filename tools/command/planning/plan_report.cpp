@@ -4,7 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
-#include "tools/picture/report/flap_report.hpp"
+#include "tools/picture/flap/flap_report.hpp"
 #include "tools/picture/report/plan_page.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 

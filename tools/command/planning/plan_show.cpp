@@ -2,9 +2,9 @@
 // tactus plan show: the content of a plan as text or JSON.
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/json.hpp"
-#include "tools/command/planning/flap_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
+#include "tools/command/reconstruct/flap_text.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
 #include "tools/study/planning/plan_words.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/flap_scene.hpp"
+#include "tools/picture/flap/flap_scene.hpp"
 
 #include "dsp/vessel/tube_surface.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks of a report as PDF 1.4 (ISO 32000-1): the standard font Helvetica, pictures as the data of their PNG files.
 #include "devices/display/png.hpp"
-#include "tools/picture/report/report_block.hpp"
+#include "tools/picture/flap/report_block.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/report_block.hpp"
+#include "tools/picture/flap/report_block.hpp"
 
 #include "tools/picture/report/html_report.hpp"
 

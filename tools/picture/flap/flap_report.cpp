@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/flap_report.hpp"
+#include "tools/picture/flap/flap_report.hpp"
 
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
-#include "tools/picture/report/flap_drawing.hpp"
-#include "tools/picture/report/flap_scene.hpp"
+#include "tools/picture/flap/flap_drawing.hpp"
+#include "tools/picture/flap/flap_scene.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/flap_words.hpp"
 

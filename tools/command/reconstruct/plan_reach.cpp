@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan reach: whether the vessels of a flap reach, what comes near to what, and which way is best.
 #include "assets/cases/plan_file.hpp"
-#include "tools/command/planning/flap_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/command/reconstruct/flap_text.hpp"
 #include "tools/study/planning/flap_study.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/command/planning/flap_text.hpp"
+#include "tools/command/reconstruct/flap_text.hpp"
 
 #include "dsp/rope/measure.hpp"
 #include "tools/counted.hpp"

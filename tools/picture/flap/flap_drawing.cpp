@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/flap_drawing.hpp"
+#include "tools/picture/flap/flap_drawing.hpp"
 
-#include "tools/picture/report/flap_scene.hpp"
+#include "tools/picture/flap/flap_scene.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -3,7 +3,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/command/planning/jaw_case.hpp"
+#include "tests/tools/command/reconstruct/jaw_case.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

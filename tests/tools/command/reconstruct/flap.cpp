@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verbs of a plan that change and measure a flap.
 #include "tests/support/catch.hpp"
-#include "tests/tools/command/planning/jaw_case.hpp"
+#include "tests/tools/command/reconstruct/jaw_case.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -154,9 +154,9 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
 
     // For 3D Slicer: the planes map to each other by the transforms that are exported.
     REQUIRE(made.folder.tactus("plan export " + made.plan + " -o " + (made.folder.path / "out").string()).code == 0);
-    for (const char* file : {"segment-1.stl", "segment-1.tfm", "fibula-cut-1-2.mrk.json", "jaw-plane-2.mrk.json",
+    for (const char* name : {"segment-1.stl", "segment-1.tfm", "fibula-cut-1-2.mrk.json", "jaw-plane-2.mrk.json",
                              "vessel-artery-on-bone.mrk.json", "vessel-artery-pedicle.mrk.json", "sites.mrk.json"})
-        CHECK(fs::exists(made.folder.path / "out" / file));
+        CHECK(fs::exists(made.folder.path / "out" / name));
     const json cut = json::parse(test::slurp(made.folder.path / "out" / "jaw-plane-2.mrk.json"))["markups"][0];
     CHECK(cut["type"] == "Plane");
     CHECK(cut["coordinateSystem"] == "LPS");
