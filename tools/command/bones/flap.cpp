@@ -37,6 +37,8 @@ geometry::TriangleSurface surface_of(const std::filesystem::path& path) {
 Leg leg_of(const std::string& word) { return word == "left" ? Leg::left : Leg::right; }
 
 int flap(const FlapChoice& choice) {
+    if (const auto inputs = choice.out / "INPUTS.json"; std::filesystem::exists(inputs))
+        throw Error(fmt::format("{}: exists already, and may have been changed; name another folder", inputs.string()));
     library::FlapOptions options;
     if (!choice.fibula.empty()) options.fibula = surface_of(choice.fibula);
     for (const std::filesystem::path& muscle : choice.between) options.between.push_back(surface_of(muscle));

@@ -128,6 +128,10 @@ TEST_CASE("flap makes a case that plan reconstruct takes, the same bits each tim
     const auto from_mouth = [](const Vec3& p) { return std::hypot(p.x, p.y - 5.0); };
     CHECK(from_mouth(mapped(vessel)) < from_mouth(mapped(centre)) - 5.0);
 
+    // A case that may have been changed is not written over.
+    const Outcome over = folder.tactus("flap -o " + flap.string());
+    CHECK(over.code == 2);
+    CHECK(over.err.find("INPUTS.json: exists already") != std::string::npos);
     const fs::path again = folder.path / "again";
     REQUIRE(folder.tactus("flap -o " + again.string()).code == 0);
     for (const char* name : {"jaw.stl", "fibula.stl", "artery.csv", "vein.csv", "INPUTS.json", "sites.mrk.json",
