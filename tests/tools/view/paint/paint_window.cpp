@@ -52,12 +52,12 @@ remove "fragment 2"
 until solved
 vessel 50 46 30
 until solved
-from posterior
+from back
 frames 10
 tool vessel
 click_bone 50 46 60
 until solved
-from anterior
+from front
 frames 10
 click_bone 62 46 60
 tool paint
