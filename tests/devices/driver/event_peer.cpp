@@ -24,6 +24,11 @@ int fail(int why) {
 
 }  // namespace
 
+FakeEvents::~FakeEvents() {
+    is_hung = false;
+    for (int i = 0; i < 2000 && open_files() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 void FakeEvents::hang() const {
     while (is_hung) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }

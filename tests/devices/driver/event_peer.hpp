@@ -25,6 +25,9 @@ public:
         std::int64_t until_ns = 0;  ///< on steady_ns
     };
 
+    FakeEvents() = default;
+    /// Waits for a driver's thread that was left alone and still has a file of it.
+    ~FakeEvents() override;
     int open(const std::string& path, int flags) noexcept override;
     void close(int file) noexcept override;
     int control(int file, unsigned long request, std::uintptr_t argument) noexcept override;

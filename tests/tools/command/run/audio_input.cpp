@@ -266,7 +266,15 @@ TEST_CASE("a card that cannot be heard offline, and a sensor that is not there, 
         refused("channel = 2\nfull", "chanel = 2\nfull"),
         ContainsSubstring("p.toml:3:10: no node that names sensor 'wrist' has a parameter 'chanel'; did you mean "
                           "'channel'?"));
-    CHECK_THAT(refused("type = \"audio_input\", rate = \"48 kHz\" }", "type = \"audio_input\", rate = \"24 kHz\" }"),
+    const std::string two = folder
+                                .write("two.toml", R"(wires = [ "tone.signal -> left.signal" ]
+[nodes]
+tone = { type = "sine", rate = "48 kHz" }
+left = { type = "audio_output", rate = "48 kHz", channel = 1 }
+mic = { type = "audio_input", rate = "24 kHz" }
+)")
+                                .string();
+    CHECK_THAT(folder.tactus("check " + two).err,
                ContainsSubstring("use channels of the sound card, so they need one rate"));
     CHECK_THAT(folder.tactus("check " + file + " --set sensors.wist.channel=1").err,
                ContainsSubstring("no sensor 'sensors.wist'"));
