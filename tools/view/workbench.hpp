@@ -213,7 +213,8 @@ private:
     std::filesystem::path restored_;  // file of restored edits, removed when the patch is saved
     std::int64_t dropped_version_ = -1;
     std::chrono::steady_clock::time_point looked_{};
-    std::filesystem::file_time_type written_at_{};
+    using WrittenAt = std::map<std::filesystem::path, std::filesystem::file_time_type>;
+    WrittenAt written_at_;  // of the patch and its sub-patches, without a run
 };
 
 }  // namespace tactus::view

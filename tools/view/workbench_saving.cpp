@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "graph/edit/patch_paths.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/unsaved.hpp"
 
@@ -166,11 +167,26 @@ void Workbench::look_at_file() {
     const auto now = std::chrono::steady_clock::now();
     if (now - looked_ < between) return;
     looked_ = now;
-    std::error_code none;
-    const auto written = fs::last_write_time(editor_->file(), none);
-    if (none || std::exchange(written_at_, written) == written) return;
+    std::vector<fs::path> files{editor_->file()};
+    if (plan_)
+        for (const fs::path& part : patch::part_files(plan_->patch)) files.push_back(part);
+    else  // a sub-patch that is wrong may be mended
+        for (const auto& [file, when] : written_at_) files.push_back(file);
+    WrittenAt now_written;
+    bool is_saved = written_at_.empty(), is_part_saved = false;
+    for (const fs::path& file : files) {
+        std::error_code none;
+        const auto known = written_at_.find(file);
+        const auto when = fs::last_write_time(file, none);
+        if (none && known != written_at_.end()) now_written.insert(*known);
+        if (none) continue;
+        now_written[file] = when;
+        if (known == written_at_.end() || known->second == when) continue;
+        (file == editor_->file() ? is_saved : is_part_saved) = true;
+    }
+    written_at_ = std::move(now_written);
     try {
-        if (editor_->is_changed_elsewhere()) take_over_file();
+        if (is_part_saved || (is_saved && editor_->is_changed_elsewhere())) take_over_file();
     } catch (const Error& error) {
         tell(error.what(), true);
     }
@@ -200,7 +216,8 @@ void Workbench::take_over_file() {
         // A sub-patch may have been saved instead.
         const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
         if (is_known) return;
-        tell("the file was saved by another program; its text is used now");
+        tell(is_new ? "the file was saved by another program; its text is used now"
+                    : "a sub-patch was saved by another program; it is used now");
         adopt_text();
     } catch (const Error& error) {
         tell(error.what(), true);

@@ -320,6 +320,46 @@ TEST_CASE(
     CHECK(slurp(choice.patch) == mine);
 }
 
+TEST_CASE("a bench without a run sees that a sub-patch was saved elsewhere, also one that was wrong meanwhile") {
+    const Folder folder;
+    const std::string part = R"([outputs]
+out = "tone.signal"
+[nodes.tone]
+type = "sine"
+rate = "outer"
+frequency = "200 Hz"
+)";
+    const std::string louder = part + "amplitude = 0.25\n", wrong = part + "no_such_thing = 1\n";
+    folder.write("part.toml", part);
+    folder.write("whole.toml", R"(wires = ["voice.out -> half.in"]
+[nodes.voice]
+type = "patch:part.toml"
+rate = "48 kHz"
+[nodes.half]
+type = "gain"
+rate = "48 kHz"
+factor = 0.5
+)");
+    RunChoice choice;
+    choice.patch = (folder.path / "whole.toml").string();
+    Workbench bench(choice);
+    REQUIRE(bench.plan());
+    const auto has_part = [&](const std::string& text) {
+        bench.tend();
+        return bench.plan() && bench.plan()->patch.parts.size() == 1 && bench.plan()->patch.parts[0].text == text;
+    };
+    REQUIRE(has_part(part));
+    folder.write("part.toml", louder);
+    REQUIRE(come_about([&] { return has_part(louder); }));
+    CHECK(bench.messages().back().text.find("a sub-patch was saved") != std::string::npos);
+    CHECK(bench.editor().is_saved());
+    folder.write("part.toml", wrong);
+    REQUIRE(come_about([&] { return bench.tend(), bench.is_broken(); }));
+    folder.write("part.toml", part);
+    REQUIRE(come_about([&] { return has_part(part); }));
+    CHECK_FALSE(bench.is_broken());
+}
+
 TEST_CASE("a bench without a run sees that the file was saved elsewhere, and keeps its own edits beside it") {
     const Folder folder;
     const RunChoice choice = choice_in(folder);

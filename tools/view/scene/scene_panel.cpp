@@ -343,7 +343,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             const SceneScreens::Tile& tile = screens_.tiles()[i];
             const Point at = corner + Point{tile.x / dense, tile.y / dense};
             const Point far = at + Point{tile.width / dense, tile.height / dense};
-            say_version(tile.texture, static_cast<std::uint64_t>(pictures_));
+            say_version(tile.texture, tile.version);
             paint.list()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(tile.texture)),
                                           vec(at), vec(far), ImVec2(0, 1), ImVec2(1, 0), 0xFFFFFFFF,
                                           static_cast<float>(6.0 * fonts.scale));

@@ -29,7 +29,7 @@ void SceneScreens::lay_out(const Sight& sight, int width, int height) {
     while (targets_.size() < tiles_.size()) targets_.push_back(std::make_unique<Target>());
     targets_.resize(tiles_.size());
     if (!sight.aspect_of(0)) {
-        tiles_[0] = {0, 0, width, height, tiles_[0].texture, tiles_[0].views, width, height};
+        tiles_[0] = {0, 0, width, height, tiles_[0].texture, tiles_[0].version, tiles_[0].views, width, height};
         return;
     }
     const auto aspect_of = [&](std::size_t screen) {
@@ -149,6 +149,7 @@ void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture
         renderer.draw(picture, tile.views);
         target.left.end();
         tile.texture = target.left.texture();
+        tile.version = target.left.version();
         if (!window_of(i)) continue;
         draw_legend(i, target.left, sight, legend, tile.views);
         if (target.has_two) draw_legend(i, target.right, sight, legend, tile.views);

@@ -22,6 +22,7 @@ public:
     struct Tile {
         int x = 0, y = 0, width = 0, height = 0;
         std::uint32_t texture = 0;
+        std::uint64_t version = 0;  ///< of what the texture holds
         std::vector<display::DrawnView> views;  ///< viewports in pixels of the picture
         int picture_width = 0, picture_height = 0;
     };

@@ -70,6 +70,8 @@ void TextureTarget::begin(int width, int height, int samples) {
 }
 
 void TextureTarget::end() {
+    static std::uint64_t pictures = 0;
+    version_ = ++pictures;
     if (resolved_ == 0) return glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);

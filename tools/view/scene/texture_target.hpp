@@ -26,6 +26,8 @@ public:
     void lay(const display::Image& image, int x, int y, display::Flip flip);
 
     std::uint32_t texture() const { return texture_; }  ///< first row at the bottom
+    /// Another number after each `end`, of all targets.
+    std::uint64_t version() const { return version_; }
     int width() const { return width_; }
     int height() const { return height_; }
 
@@ -34,6 +36,7 @@ private:
     void remove();
 
     int width_ = 0, height_ = 0, samples_ = 0;
+    std::uint64_t version_ = 0;
     std::uint32_t frame_ = 0, resolved_ = 0, texture_ = 0, buffers_[2] = {};
 };
 
