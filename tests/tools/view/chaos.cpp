@@ -119,7 +119,7 @@ struct Round {
 void play(const Display& display, Person& person, const Round& round, unsigned seed, double seconds) {
     const Folder folder;
     copy_library(folder.path);
-    const double starts_s = 5.0, freed_s = seconds < 10.0 ? 6.0 : 20.0;
+    const double starts_s = 5.0, freed_s = seconds < 10.0 ? 6.0 : 50.0;
     std::string script =
         watching_script(fmt::format("size {} {}\n", round.width, round.height), starts_s + seconds + freed_s);
     script.replace(script.rfind("close\n"), 6, "undo all\ntext after.toml\nclose\n");
@@ -137,9 +137,11 @@ void play(const Display& display, Person& person, const Round& round, unsigned s
     Monkey monkey(person, eyes, seed, round.width, round.height);
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < end && !is_over()) monkey.act();
+    // Slow pictures of large scenes are behind with what was done: an edge of a button takes one.
+    if (seconds >= 10.0) Person::wait(12.0);
     // Nothing is stuck: whatever is open can be left, and the list of commands comes.
     bool is_free = is_over();
-    for (int i = 0; i < 4 && !is_free; ++i) {
+    for (int i = 0; i < 5 && !is_free; ++i) {
         for (int n = 0; n < 3; ++n) person.tap("Escape");
         if (i > 1) {
             // A question without a way out is answered.
@@ -147,8 +149,7 @@ void play(const Display& display, Person& person, const Round& round, unsigned s
             person.tap("Return");
         }
         person.chord({"Control_L"}, "p");
-        // What was done before may take slow pictures to be drawn.
-        for (int n = 0; n < 20 && !is_free; ++n) {
+        for (int n = 0; n < 25 && !is_free; ++n) {
             Person::wait(0.2);
             is_free = is_over() || eyes.spots().contains("command");
         }

@@ -26,7 +26,11 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
           "[display][live]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
-    folder.write("script", watching_script("size 1000 700\n", 100.0));
+    folder.write("other.toml",
+                 "wires = [\"zebra.pose -> out.in\"]\n[devices.simulated]\ndriver = \"simulated\"\n"
+                 "[nodes.zebra]\ntype = \"device_input\"\nrate = \"1 kHz\"\n"
+                 "[nodes.out]\ntype = \"record\"\nrate = \"1 kHz\"\nfile = \"out.csv\"\n");
+    folder.write("script", watching_script("size 1000 700\n", 120.0));
     auto done = std::async(std::launch::async,
                            [&] { return on(display, folder, "view --view-scale 1 --view-script script", 230); });
     REQUIRE(person.sees_window("Tactus", 30.0));
@@ -65,6 +69,11 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     person.type("7.25 N");
     person.tap("Return");
     Person::wait(0.5);
+    // Who leaves is asked, and may stay.
+    person.chord({"Control_L"}, "q");
+    CHECK(shows("cancel closing"));
+    person.tap("Escape");
+    CHECK(sees([&] { return !eyes.spots().contains("cancel closing"); }));
     person.chord({"Control_L", "Shift_L"}, "s");
     REQUIRE(shows("file name"));
     Person::wait(1.2);
@@ -78,18 +87,31 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     INFO(text);
     CHECK(text.find("7.25 N") != std::string::npos);
     Person::wait(1.2);
+    // A wrong name is typed anew, and the arrows go through the files.
+    person.chord({"Control_L"}, "o");
+    REQUIRE(shows("file other.toml"));
+    person.type("nothing");
+    person.tap("Return");
+    Person::wait(1.2);
+    person.chord({"Control_L"}, "a");
+    person.type("ot");
+    person.tap("Down");
+    Person::wait(0.8);
+    keep(person, "keyboard-5-files");
+    person.tap("Return");
+    CHECK(shows("zebra"));
     // It leaves although the patch runs: the window asks, and a key answers.
     person.tap("F5");
     REQUIRE(shows("stop"));
     Person::wait(1.0);
     person.chord({"Control_L"}, "q");
     Person::wait(1.2);
-    keep(person, "keyboard-5-leaves");
+    keep(person, "keyboard-6-leaves");
     person.tap("Right");
     Person::wait(0.3);
     person.tap("Left");
     Person::wait(1.2);
-    keep(person, "keyboard-6-answer");
+    keep(person, "keyboard-7-answer");
     person.tap("Return");
     const bool left = done.wait_for(std::chrono::seconds(15)) == std::future_status::ready;
     CHECK(left);

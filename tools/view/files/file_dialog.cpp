@@ -79,6 +79,30 @@ void FileDialog::files() {
     }
 }
 
+bool FileDialog::name() {
+    if (ImGui::IsWindowAppearing() || std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0f);
+    // A field in which one types keeps its own text, which only its callback may change.
+    std::string typed = chooser_->name;
+    const auto step = [](ImGuiInputTextCallbackData* field) {
+        FileChooser& chooser = *static_cast<FileChooser*>(field->UserData);
+        chooser.name = field->Buf;
+        chooser.step(field->EventKey == ImGuiKey_DownArrow ? 1 : -1);
+        field->DeleteChars(0, field->BufTextLen);
+        field->InsertChars(0, chooser.name.c_str());
+        return 0;
+    };
+    const bool entered = ImGui::InputTextWithHint(
+        "##name", "name or path", &typed, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory,
+        step, &*chooser_);
+    chooser_->name = typed;
+    if (!ImGui::IsItemActive()) {
+        if (pressed(ImGuiKey_DownArrow)) chooser_->step(1);
+        if (pressed(ImGuiKey_UpArrow)) chooser_->step(-1);
+    }
+    return entered;
+}
+
 void FileDialog::draw(const Fonts& fonts) {
     if (std::exchange(wants_open_, false)) {
         ImGui::OpenPopup(title_.c_str());
@@ -111,13 +135,8 @@ void FileDialog::draw(const Fonts& fonts) {
     files();
     ImGui::EndChild();
     if (!chooser_) return leave();
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(-1.0f);
-    const bool entered =
-        ImGui::InputTextWithHint("##name", "name or path", &chooser_->name, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = name();
     mark_spot("file name");
-    if (pressed(ImGuiKey_DownArrow)) chooser_->step(1);
-    if (pressed(ImGuiKey_UpArrow)) chooser_->step(-1);
     ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
     ImGui::TextUnformatted(chooser_->problem.c_str());
     ImGui::PopStyleColor();
@@ -130,13 +149,16 @@ void FileDialog::draw(const Fonts& fonts) {
         chooser_.reset();
         return leave();
     }
-    if (entered || accepted)
+    if (entered || accepted) {
         if (const auto file = chooser_->accept()) {
             const Done done = done_;
             chooser_.reset();
             leave();
             return done(*file);
         }
+        // Who types goes on typing.
+        wants_focus_ = true;
+    }
     ImGui::EndPopup();
 }
 

@@ -25,11 +25,13 @@ public:
 private:
     void places();
     void files();
+    /// The field of the name. True: entered.
+    bool name();
 
     std::string title_;
     std::optional<FileChooser> chooser_;
     Done done_;
-    bool wants_open_ = false, was_opened_ = false;
+    bool wants_open_ = false, was_opened_ = false, wants_focus_ = false;
 };
 
 }  // namespace tactus::view
