@@ -128,7 +128,7 @@ private:
             torque_ = torque.run ? torque.torque : std::array<double, 2>{};
             joints.angle = angles();
         }
-        joints.motors = 2;
+        joints.motors = torque.motors;
         joints.buttons = mask_;
         joints.serial = 0xBEEF;
         gripper::FrameBytes out = gripper::encode(board::pack(joints, ++sequence_));
