@@ -148,7 +148,9 @@ TEST_CASE("segment gives the same labels for values in other units, also where i
     volume::Grid hu = scan;
     for (std::size_t v = 0; v < scan.count(); ++v) {
         float value = scan.values[v];
-        if (value > 150.0f) value += 15.0f * static_cast<float>(v % 72 + v / 72 % 40);  // more steps than labels have
+        // More steps than a label map has.
+        value = value > 150.0f ? value + 13.0f * static_cast<float>(v % 36 + v / 72 % 40)
+                               : -190.0f + static_cast<float>(v * 7919 % 330);
         if (!in_frame(v) || (value < 150.0f && v % 3 != 0)) value = -1000.0f;
         hu.values[v] = value;
         scan.values[v] = std::round(255.0f * std::clamp((value + 200.0f) / 2000.0f, 0.0f, 1.0f));
