@@ -23,7 +23,9 @@ constexpr const char* no_reconstruction =
 
 std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& pose) {
     return std::make_unique<BoneAsObstacle>(
-        contact::make_voxmap(bone::distance_of_mesh({.input = file, .is_coarse = true, .run = on_threads()})), pose);
+        contact::make_voxmap(
+            bone::distance_of_mesh({.input = file, .unit = {}, .is_coarse = true, .within = {}, .run = on_threads()})),
+        pose);
 }
 
 }  // namespace
