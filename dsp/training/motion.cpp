@@ -12,6 +12,9 @@ namespace {
 
 constexpr double least_stroke = 2e-3;  // m
 constexpr double no_force = 1e-3;      // N
+// A blade that grazes bone, or turns between two strokes, has no force for a few ticks; a force that was taken away stays
+// away for as long as a device needs to fade and return.
+constexpr double shortest_loss = 0.05;  // s
 constexpr std::size_t most_track = 100'000'000;
 
 double median_step(std::span<const AttemptSample> samples) {
@@ -123,6 +126,11 @@ std::optional<double> log_dimensionless_jerk(const Track& track, std::size_t fir
 MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCut& cut, double force_limit) {
     MotionMeasures m;
     double impulse = 0.0;
+    double lost = 0.0;  // s: of the stretch of contact without force that goes on
+    const auto end_stretch = [&m, &lost] {
+        if (lost >= shortest_loss) m.without_force += lost;
+        lost = 0.0;
+    };
     bool touched = false;
     for (std::size_t n = 0; n < samples.size(); ++n) {
         const double step = n + 1 < samples.size() ? samples[n + 1].time - samples[n].time
@@ -136,9 +144,11 @@ MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCu
         touched = true;
         m.end = samples[n].time;
         m.contact += step;
-        if (!(force > no_force)) m.without_force += step;
+        if (force > no_force) end_stretch();
+        else lost += step;
         impulse += force * step;
     }
+    end_stretch();
     if (!touched) return m;
     if (m.contact > 0.0) m.mean_force = impulse / m.contact;
     const Track track = low_pass(samples);

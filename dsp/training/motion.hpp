@@ -22,7 +22,8 @@ struct AttemptSample {
 struct MotionMeasures {
     double begin = 0.0, end = 0.0;  ///< s: first and last touch; equal when there was none
     double contact = 0.0;           ///< s: time of contact
-    double without_force = 0.0;  ///< s: of it, when the hand was given no force: after a fault, or before engagement
+    /// s: of it, when the hand was given no force for 0.05 s of contact or more: after a fault, or before engagement.
+    double without_force = 0.0;
     double mean_force = 0.0;  ///< N, over the time of contact
     double max_force = 0.0;  ///< N
     double over_limit = 0.0;  ///< N s: integral of the force beyond the limit

@@ -76,6 +76,12 @@ TEST_CASE("time in the bone without force on the hand is counted, and time outsi
     const training::MotionMeasures m = training::motion_of(samples, test::block_plan(), INFINITY);
     CHECK(std::abs(m.without_force - 2.0) < 2e-3);
     CHECK(std::abs(m.contact - 9.0) < 2e-3);
+
+    // A blade that grazes the bone has no force for some ticks: none was taken away.
+    auto grazing = sawing(10.0, 0.0, 5.0);
+    for (std::size_t n = 0; n < grazing.size(); ++n)
+        if (n % 100 < 20) grazing[n].force = {};
+    CHECK(training::motion_of(grazing, test::block_plan(), INFINITY).without_force == 0.0);
 }
 
 TEST_CASE("a trembling hand has more jerk and a longer path, and no more strokes") {
