@@ -6,6 +6,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/propose_paint.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
@@ -14,8 +15,10 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace tactus::cases {
 
@@ -82,8 +85,15 @@ CaseBones load_case(const std::filesystem::path& path) {
         made.bones.push_back(fragment_bone(fragment, folder, Paint::or_proposed).bone);
         fragment.file = file_of(fragment.file, folder).string();
     }
-    for (PlanStep& step : made.plan.steps)
+    for (PlanStep& step : made.plan.steps) {
         if (step.mirror) step.mirror->file = file_of(step.mirror->file, folder).string();
+        if (!step.reconstruction) continue;
+        reconstruct::Reconstruction all = *step.reconstruction;
+        all.donor.file = file_of(all.donor.file, folder).string();
+        for (auto* mesh : {&all.jaw, &all.tumour})
+            if (*mesh) (*mesh)->file = file_of((*mesh)->file, folder).string();
+        step.reconstruction = std::make_shared<reconstruct::Reconstruction>(std::move(all));
+    }
     return made;
 }
 

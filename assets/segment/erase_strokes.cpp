@@ -24,6 +24,20 @@ double distance_to(const Stroke& line, const Vec3& p) {
     return least;
 }
 
+/// The box round all points.
+struct Box {
+    Vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+    explicit Box(const Stroke& stroke) {
+        for (const Vec3& p : stroke.points) low = glm::min(low, p), high = glm::max(high, p);
+    }
+    /// m along an axis that parts them; 0 when none does.
+    double apart(const Box& other) const {
+        const Vec3 gap = glm::max(other.low - high, low - other.high);
+        return std::max({gap.x, gap.y, gap.z, 0.0});
+    }
+};
+
 /// The same line with points at most `apart` from each other.
 std::vector<Vec3> refined(const std::vector<Vec3>& points, double apart) {
     std::vector<Vec3> out{points.front()};
@@ -44,10 +58,16 @@ bool is_apart(const Vec3& last, double radius, const Vec3& point) { return glm::
 
 bool erase_strokes(std::vector<SeedLabel>& labels, const Stroke& eraser) {
     bool is_any = false;
+    const Box erased(eraser);
     for (SeedLabel& label : labels) {
         std::vector<Stroke> left;
         for (Stroke& stroke : label.strokes) {
             const double reach = eraser.radius + 0.5 * stroke.radius;
+            // Most strokes are far away. Points between two others are rounded by up to a micrometre.
+            if (Box(stroke).apart(erased) > reach + 2e-6) {
+                left.push_back(std::move(stroke));
+                continue;
+            }
             std::vector<Vec3> points = refined(stroke.points, 0.5 * stroke.radius);
             std::vector<Stroke> parts;
             bool is_open = false, is_hit = false;

@@ -28,12 +28,15 @@ Course read_course(std::string_view text, const std::string& file) {
         const Vec3 place(x[n], y[n], z[n]);
         const auto fail = [&](const char* what) { throw Error(fmt::format("{}:{}: {}", file, table.lines[n], what)); };
         if (!is_finite(place) || !(glm::length(place) < 1e5)) fail("no place: x_mm, y_mm and z_mm must be below 1e5");
-        if (!(radius[n] >= 0.1 && radius[n] <= 20.0)) fail("radius_mm must be 0.1 to 20");
+        // A narrowing may close it.
+        if (!(radius[n] >= 0.0 && radius[n] <= 20.0)) fail("radius_mm must be 0 to 20");
         if (!course.points.empty() && glm::length(course.points.back() - 1e-3 * place) < 1e-6) continue;
         course.points.push_back(1e-3 * place);
         course.radius.push_back(1e-3 * radius[n]);
     }
     if (course.points.size() < 2) throw Error(fmt::format("{}: branch 0 has fewer than two points", file));
+    if (!(course.median_radius() >= 0.1e-3))
+        throw Error(fmt::format("{}: the median radius_mm of branch 0 must be at least 0.1", file));
     return course;
 }
 

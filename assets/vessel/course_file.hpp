@@ -19,7 +19,8 @@ struct Course {
 };
 
 /// Reads the rows of branch 0 of a table as write_track writes it: columns branch, x_mm, y_mm, z_mm and radius_mm.
-/// Throws Error with the line for what is no place or no radius (0.1 to 20 mm), and for fewer than two rows.
+/// Throws Error with the line for what is no place or no radius (0 to 20 mm), and for fewer than two rows or a median radius
+/// below 0.1 mm.
 Course load_course(const std::filesystem::path& path);
 Course read_course(std::string_view text, const std::string& file);
 

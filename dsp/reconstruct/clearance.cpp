@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus::reconstruct {
 
@@ -85,6 +86,12 @@ double between(const Body& a, const Body& b) {
     }
     for (const Capsule& c : b.capsules)
         for (const Block& other : a.blocks) least = std::min(least, distance(c, other));
+    for (const Block& block : a.blocks)
+        for (const Block& other : b.blocks) {
+            const double bound = glm::length(block.half) + glm::length(other.half);
+            if (glm::length(block.centre - other.centre) - bound < least)
+                least = std::min(least, distance(block, other));
+        }
     return least;
 }
 
@@ -133,6 +140,23 @@ double distance(const Capsule& a, const Block& b) noexcept {
     return least_along(back * (a.a - b.centre), back * (a.b - b.centre),
                        [&](const Vec3& p) { return glm::length(glm::max(glm::abs(p) - b.half, Vec3(0.0))); }) -
            a.radius;
+}
+
+double distance(const Block& a, const Block& b) noexcept {
+    // Where two boxes come nearest to each other, or meet, there is an edge of one of them.
+    double least = infinity;
+    for (const auto& [of, to] : {std::pair{&a, &b}, std::pair{&b, &a}})
+        for (int axis = 0; axis < 3; ++axis)
+            for (int n = 0; n < 4; ++n) {
+                Vec3 middle(0.0), along(0.0);
+                middle[(axis + 1) % 3] = (n & 1 ? 1.0 : -1.0) * of->half[(axis + 1) % 3];
+                middle[(axis + 2) % 3] = (n & 2 ? 1.0 : -1.0) * of->half[(axis + 2) % 3];
+                along[axis] = of->half[axis];
+                const Capsule edge{of->centre + of->axes * (middle - along), of->centre + of->axes * (middle + along),
+                                   0.0};
+                least = std::min(least, distance(edge, *to));
+            }
+    return least;
 }
 
 double distance(const Capsule& a, const Disc& b) noexcept {

@@ -31,10 +31,11 @@ struct Disc {
 };
 
 /// m between surfaces; negative: they overlap. Exact for two capsules; with blocks and discs to 1e-6 of the capsule's
-/// length, and never below -radius.
+/// length, and never below -radius; of two blocks never below 0.
 double distance(const Capsule& a, const Capsule& b) noexcept;
 double distance(const Capsule& a, const Block& b) noexcept;
 double distance(const Capsule& a, const Disc& b) noexcept;
+double distance(const Block& a, const Block& b) noexcept;
 
 Capsule capsule_of(const Screw& screw);
 Capsule capsule_of(const DentalImplant& implant);

@@ -57,8 +57,8 @@ bool keeps_off(const std::vector<Vec3>& path, double radius, const rope::Obstacl
 /// The shortest of the ways that begin straight and round the four sides of what is in the way.
 rope::ShortestPath path_of(const Vec3& from, const Vec3& to, double radius, const rope::Obstacle* bone) {
     const double chord = glm::length(to - from);
-    if (!(chord > 1e-6) || is_free(from, to, radius, bone))
-        return {rope::resampled(std::array{from, to}, path_points), chord, 0.0, true};
+    if (!(chord > 1e-6)) return {std::vector<Vec3>(path_points, from), 0.0, 0.0, true};
+    if (is_free(from, to, radius, bone)) return {rope::resampled(std::array{from, to}, path_points), chord, 0.0, true};
     const Vec3 along = (to - from) / chord;
     const Vec3 u = glm::normalize(glm::cross(along, std::abs(along.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0))),
                v = glm::cross(along, u);

@@ -56,10 +56,13 @@ std::vector<Attachment> attachments_along(std::span<const Vec3> course, std::spa
         if (longest.last > longest.first) all.push_back(longest);
     }
     std::ranges::sort(all, {}, &Attachment::first);
-    // Two bodies share no part of a course: the later one begins after the earlier one.
-    for (std::size_t n = 1; n < all.size(); ++n) all[n].first = std::max(all[n].first, all[n - 1].last + 1);
-    std::erase_if(all, [](const Attachment& a) { return a.last <= a.first; });
-    return all;
+    // Two bodies share no part of a course: the later one begins after the earlier one, and goes where nothing is left.
+    std::vector<Attachment> apart;
+    for (Attachment a : all) {
+        if (!apart.empty()) a.first = std::max(a.first, apart.back().last + 1);
+        if (a.last > a.first) apart.push_back(a);
+    }
+    return apart;
 }
 
 Reach reach_of(double strain) noexcept {
@@ -101,7 +104,8 @@ AttachedVessel::Layout AttachedVessel::layout_of(std::span<const Vec3> course, s
     }
     // The points that are left after both ends of each body, for the pedicle and the spans.
     const std::size_t spans = attachments.size() - 1, ends = 2 * attachments.size();
-    std::size_t left = settings.most_points > ends ? settings.most_points - ends : 0;
+    // The pedicle has one more: the end that is sewn.
+    std::size_t left = settings.most_points > ends ? settings.most_points - ends - 1 : 0;
     const auto free_points = [&](double of, std::size_t most) {
         const auto segments = static_cast<std::size_t>(std::ceil(of / segment_length));
         return std::min(most, segments > 0 ? segments - 1 : 0);
@@ -140,6 +144,8 @@ AttachedVessel::Layout AttachedVessel::layout_of(std::span<const Vec3> course, s
             made.is_span.push_back(1);
         }
     }
+    if (made.points.size() < 3)
+        throw Error("its course begins on the only piece that it runs along: nothing of it is free");
     made.body_side = across(tangent(course, first.first));
     return made;
 }

@@ -44,7 +44,7 @@ struct AttachedVesselSettings {
 class AttachedVessel {
 public:
     /// `course` begins at the end that is sewn. `poses`: of the bodies at the start, from the frame of the course.
-    /// Throws Error when nothing is attached, and for a course of fewer than two points.
+    /// Throws Error when nothing is attached or free, and for a course of fewer than two points.
     AttachedVessel(std::span<const Vec3> course, std::span<const Attachment> attachments, std::span<const Pose> poses,
                    const AttachedVesselSettings& settings);
 

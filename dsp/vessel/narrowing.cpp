@@ -12,8 +12,8 @@ namespace tactus::vessel {
 
 double Narrowing::radius(double along) const {
     const double x = std::abs(2.0 * (along - at) / width);
-    return reference * (1.0 + slope * (along - at)) *
-           (1.0 - depth * std::exp(-std::numbers::ln2 * std::pow(x, steepness)));
+    return std::max(0.0, reference * (1.0 + slope * (along - at)) *
+                             (1.0 - depth * std::exp(-std::numbers::ln2 * std::pow(x, steepness))));
 }
 
 namespace {

@@ -74,28 +74,34 @@ struct Vessel {
     void prepare(const Setup& setup) {
         name_ = setup.name;
         std::vector<std::vector<Vec3>> surfaces(plan->bones.size());
+        const cases::PlanState state = cases::state_of(plan->plan);
         bool is_any = false;
         for (std::size_t n = 0; n < plan->bones.size(); ++n) {
             if (!plan->plan.fragments[n].name.starts_with(pieces.value)) continue;
+            // Pieces of other reconstructions of the plan are cut from the same bone.
+            if (!state.pieces.empty() && std::ranges::find(state.pieces, static_cast<int>(n)) == state.pieces.end())
+                continue;
             is_any = true;
             for (const contact::SurfacePoint& p : plan->bones[n].points) surfaces[n].push_back(p.position);
         }
         if (!is_any)
             setup.fail("no fragment of plan '" + plan.name + "' has a name that begins with '" + pieces.value + "'");
         const std::vector<Vec3> line = fine(course->points);
-        const fit::Arrangement start = cases::state_of(plan->plan).arrangement;
         poses_.assign(plan->bones.size(), {});
-        for (std::size_t n = 0; n < poses_.size(); ++n) poses_[n] = start.pose(static_cast<int>(n));
+        for (std::size_t n = 0; n < poses_.size(); ++n) poses_[n] = state.arrangement.pose(static_cast<int>(n));
         rope::AttachedVesselSettings settings;
         settings.material.stiffness = stiffness;
         settings.material.radius = course->median_radius();
         settings.pedicle = pedicle;
-        try {
-            vessel_.emplace(line, rope::attachments_along(line, surfaces, beside), poses_, settings);
-        } catch (const Error&) {
+        const std::vector<rope::Attachment> attached = rope::attachments_along(line, surfaces, beside);
+        if (attached.empty())
             setup.fail("the vessel '" + course.name + "' runs along none of the pieces: none is within " +
                        std::to_string(std::lround(beside * 1e3)) +
                        " mm beside it. Both must be in the frame of the scan of the leg; see also 'beside'");
+        try {
+            vessel_.emplace(line, attached, poses_, settings);
+        } catch (const Error& error) {
+            setup.fail("the vessel '" + course.name + "': " + error.message());
         }
         idle_ticks_ = std::max<std::int64_t>(
             1, std::llround(rate_of(setup.period) / std::min(idle_rate.value, rate_of(setup.period))));
@@ -105,6 +111,9 @@ struct Vessel {
         phase_ = static_cast<std::int64_t>(turn.value() % static_cast<std::uint64_t>(idle_ticks_));
         shape_ = {};
         shape_.is_vein = kind.is("vein") ? 1 : 0;
+        last_site_.reset();
+        if (!site.connected) last_site_ = Vec3(site_at.value);
+        site_ = last_site_.value_or(Vec3(0.0));
         publish(false);
         rope = shape_;
     }
@@ -118,9 +127,11 @@ struct Vessel {
             wrench = Wrench{};
             return;
         }
-        const Vec3 where = site.connected ? (is_valid(site.get()) ? site->position : last_site_) : Vec3(site_at.value);
-        last_site_ = where;
-        const bool is_wanted = !sewn.connected || sewn.get();
+        if (!site.connected) last_site_ = Vec3(site_at.value);
+        else if (is_valid(site.get())) last_site_ = site->position;
+        // A site that was never there is sewn to nothing.
+        const bool is_wanted = last_site_ && (!sewn.connected || sewn.get());
+        const Vec3 where = last_site_.value_or(Vec3(0.0));
         bones_.clear();
         for (std::size_t n = 0; n < scene->count && n < poses_.size(); ++n)
             if (const contact::Voxmap* map = scene->objects[n].body.map)
@@ -230,7 +241,8 @@ private:
     rope::RopeShape shape_;
     std::vector<Pose> poses_;  // of each fragment, from its file's frame
     std::string name_;
-    Vec3 site_{0.0}, last_site_{0.0};
+    Vec3 site_{0.0};
+    std::optional<Vec3> last_site_;
     std::int64_t idle_ticks_ = 1, phase_ = 0;
     double waited_ = 0.0, greatest_ = 0.0, greatest_felt_ = 0.0, residual_ = 0.0;
     std::uint64_t ticks_ = 0, unsolved_ = 0;

@@ -47,7 +47,10 @@ TEST_CASE("a course that is none is refused with its line") {
     CHECK(read("0,0,0,0,1.5,0,1,-1\n0,0,0,2,1.5,0,1,0\n").points.size() == 2);
     CHECK_THROWS_WITH(read("0,0,0,0,1.5,0,1,-1\n0,nan,0,2,1.5,0,1,0\n"), ContainsSubstring("a.csv:3"));
     CHECK_THROWS_WITH(read("0,0,0,0,1.5,0,1,-1\n0,1e9,0,2,1.5,0,1,0\n"), ContainsSubstring("a.csv:3: no place"));
-    CHECK_THROWS_WITH(read("0,0,0,0,0,0,1,-1\n0,0,0,2,1.5,0,1,0\n"), ContainsSubstring("a.csv:2: radius_mm"));
+    CHECK_THROWS_WITH(read("0,0,0,0,-1,0,1,-1\n0,0,0,2,1.5,0,1,0\n"), ContainsSubstring("a.csv:2: radius_mm"));
+    // Closed at one place is a course; of no radius at all is none.
+    CHECK(read("0,0,0,0,1.5,0,1,-1\n0,0,0,2,0,0,1,0\n0,0,0,4,1.5,0,1,0\n").points.size() == 3);
+    CHECK_THROWS_WITH(read("0,0,0,0,0,0,1,-1\n0,0,0,2,0,0,1,0\n"), ContainsSubstring("median radius_mm"));
     CHECK_THROWS_WITH(read("0,0,0,0,1.5,0,1,-1\n1,0,0,2,1.5,0,1,0\n"), ContainsSubstring("fewer than two points"));
     CHECK_THROWS_WITH(read("0,0,0,0,1.5,0,1,-1\n0,0,0,0,1.5,0,1,0\n"), ContainsSubstring("fewer than two points"));
     CHECK_THROWS_AS(vessel::read_course("x,y\n1,2\n", "a.csv"), Error);

@@ -184,6 +184,40 @@ TEST_CASE("an artery whose vein changes sides is twisted by the angle between th
     }
 }
 
+TEST_CASE("two plates that come near each other are warned of, and those that cross") {
+    const FibulaInputs in = small_inputs();
+    const FibulaPlan plan = plan_fibula(in);
+    Flap flap = small_flap();
+    const auto plate = [](const char* name, const Vec3& from, const Vec3& to) {
+        return Plate{name, 7 * mm, 2.5 * mm, {from, to}, {{0, 0, 1}, {0, 0, 1}}, {}};
+    };
+    const Vec3 a(0, 0, 200 * mm), b(40 * mm, 0, 200 * mm);
+    flap.plates = {plate("low", a, b), plate("high", a + Vec3(0, 7.4 * mm, 0), b + Vec3(0, 7.4 * mm, 0))};
+    FlapMeasures m = measure_flap(in, plan, flap, nullptr);
+    CHECK(find(m.clearances, "plate 'low'", Nearness::to_hardware).distance == Approx(0.4 * mm).margin(1e-7));
+    CHECK(has(m, FlapTrouble::near_hardware, "plate 'high'"));
+    // Crossed like a plus, where no corner lies in the other one.
+    flap.plates[1] = plate("high", {20 * mm, -20 * mm, 200 * mm}, {20 * mm, 20 * mm, 200 * mm});
+    m = measure_flap(in, plan, flap, nullptr);
+    CHECK(find(m.clearances, "plate 'low'", Nearness::to_hardware).distance == Approx(0.0).margin(1e-7));
+    flap.plates[1] = plate("high", {20 * mm, -20 * mm, 210 * mm}, {20 * mm, 20 * mm, 210 * mm});
+    m = measure_flap(in, plan, flap, nullptr);
+    CHECK(find(m.clearances, "plate 'low'", Nearness::to_hardware).distance == Approx(7.5 * mm).margin(1e-7));
+    CHECK_FALSE(has(m, FlapTrouble::near_hardware));
+}
+
+TEST_CASE("a site where the vessel leaves the bone is reached without a way") {
+    const FibulaInputs in = small_inputs();
+    const FibulaPlan plan = plan_fibula(in);
+    Flap flap = small_flap();
+    flap.sites = {{"here", VesselKind::artery,
+                   placed(flap.vessels[0], parts_of(flap.vessels[0], in, plan), plan).lines[0].front()}};
+    const FlapMeasures m = measure_flap(in, plan, flap, nullptr);
+    REQUIRE(m.reaches.size() == 1);
+    CHECK(m.reaches[0].path < 1e-6);
+    CHECK(m.reaches[0].reach == Reach::slack);
+}
+
 TEST_CASE("plates, screws and implants that come near cuts, vessels and each other are named with the distance") {
     const FibulaInputs in = small_inputs();
     const FibulaPlan plan = plan_fibula(in);

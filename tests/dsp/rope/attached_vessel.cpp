@@ -79,6 +79,30 @@ TEST_CASE("a vessel is attached where it runs beside a piece, and free from its 
     CHECK_THROWS_AS(AttachedVessel(flap.line, {}, flap.poses, plain()), Error);
 }
 
+TEST_CASE("pieces that share a part of a course get parts that follow each other") {
+    // The whole bone, and two pieces cut from it.
+    const Flap flap;
+    auto surfaces = flap.surfaces;
+    surfaces[0] = cylinder(10.0 * mm, 120.0 * mm);
+    surfaces.push_back(cylinder(5.0 * mm, 50.0 * mm));
+    const auto attached = rope::attachments_along(flap.line, surfaces, 12.0 * mm);
+    REQUIRE(attached.size() >= 2);
+    for (std::size_t n = 1; n < attached.size(); ++n) CHECK(attached[n].first > attached[n - 1].last);
+    CHECK_NOTHROW(AttachedVessel(flap.line, attached, std::vector<Pose>(4), plain()));
+}
+
+TEST_CASE("a long pedicle and all spans have no more points than asked") {
+    const Flap flap;
+    AttachedVesselSettings settings = plain();
+    settings.most_points = 30;
+    const std::vector<Attachment> apart{{2, 100, 120}, {1, 150, 164}};
+    const AttachedVessel vessel(flap.line, apart, flap.poses, settings);
+    CHECK(vessel.rope().points().size() == 30);
+    // Of a course that begins and ends on one piece, nothing is free.
+    const std::vector<Vec3> on_bone(flap.line.begin() + 110, flap.line.begin() + 120);
+    CHECK_THROWS_AS(AttachedVessel(on_bone, std::vector<Attachment>{{2, 0, 9}}, flap.poses, plain()), Error);
+}
+
 TEST_CASE("a pedicle held at its length in the leg bears the tension of the leg, and no more is felt by the pieces") {
     const Flap flap;
     AttachedVessel vessel(flap.line, flap.attached, flap.poses, plain());

@@ -219,6 +219,20 @@ TEST_CASE("poses that are none give no force that is none") {
     CHECK(rig.node.finite());
 }
 
+TEST_CASE("a vessel whose site was never there is not sewn, and pulls at nothing") {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    Rig rig;
+    rig.node.feed("site", Pose{Vec3(nan), upright}).connect("site");
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    rig.node.prepare();
+    rig.node.run(1500);
+    CHECK(glm::length(rig.node.last<Wrench>("wrench").force) < 0.1);
+    CHECK_FALSE(rig.node.last<bool>("reaches"));
+    rig.node.feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), upright});
+    rig.node.run(1500);
+    CHECK(glm::length(rig.node.last<Wrench>("wrench").force) > 0.5);
+}
+
 TEST_CASE("a course that runs along none of the pieces is refused with what to do") {
     NodeHarness node("vessel", {.period = flicks_per_second / 1000});
     node.asset("plan", flap()).asset("course", course());

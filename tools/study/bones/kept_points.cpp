@@ -92,7 +92,11 @@ std::vector<contact::SurfacePoint> points_of_mesh(const std::filesystem::path& p
 
 }  // namespace
 
-std::filesystem::path file_of_points(const ResultKey& key) { return file_of_result(key).replace_extension("points"); }
+std::filesystem::path file_of_points(const ResultKey& key) {
+    std::filesystem::path file = file_of_result(key);
+    // An empty path would become ".points".
+    return file.empty() ? file : file.replace_extension("points");
+}
 
 std::vector<contact::SurfacePoint> points_of_key(const ResultKey& key, std::string& note,
                                                  const std::function<std::vector<contact::SurfacePoint>()>& make) {

@@ -2,6 +2,7 @@
 #include "tools/study/planning/flap_study.hpp"
 
 #include "assets/bone/mesh_part.hpp"
+#include "assets/cases/mesh_unit.hpp"
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/flap_obstacle.hpp"
@@ -23,8 +24,8 @@ constexpr const char* no_reconstruction =
 
 std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& pose) {
     return std::make_unique<BoneAsObstacle>(
-        contact::make_voxmap(
-            bone::distance_of_mesh({.input = file, .unit = {}, .is_coarse = true, .within = {}, .run = on_threads()})),
+        contact::make_voxmap(bone::distance_of_mesh(
+            {.input = file, .unit = cases::unit_of_file(file), .is_coarse = true, .within = {}, .run = on_threads()})),
         pose);
 }
 
