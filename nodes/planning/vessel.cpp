@@ -105,6 +105,7 @@ struct Vessel {
         phase_ = static_cast<std::int64_t>(turn.value() % static_cast<std::uint64_t>(idle_ticks_));
         shape_ = {};
         shape_.is_vein = kind.is("vein") ? 1 : 0;
+        site_ = last_site_ = site_at.value;
         publish(false);
         rope = shape_;
     }
