@@ -35,7 +35,7 @@ struct Settings {
     double range = 0.0;  ///< rad from stop to stop; 0: as the driver says
     double radius = 0.14, max_torque = 2.0;
     Motion motion = Motion::slide;
-    bool is_reversed = false;
+    bool is_reversed = false, states_torque = false;
 };
 
 std::string text_of(EventSystem& system, int file, unsigned long request) {
@@ -117,7 +117,11 @@ public:
         system_.control(file_, EVIOCGID, reinterpret_cast<std::uintptr_t>(&id));
         opened.setup = fmt::format("{:04x}:{:04x}{}", id.vendor, id.product, settings_.is_reversed ? " reversed" : "");
         opened.versions = {"event device " + path, range,
-                           fmt::format("axis X from {} to {}", axis_.minimum, axis_.maximum)};
+                           fmt::format("axis X from {} to {}", axis_.minimum, axis_.maximum),
+                           fmt::format("full torque {:.3g} N m, {}", settings_.max_torque,
+                                       settings_.states_torque ? "by option"
+                                                               : "assumed: give the option 'max_torque'; a stronger "
+                                                                 "wheel pushes harder than it is told")};
         opened.axes = 1;
         return opened;
     }
@@ -288,6 +292,7 @@ std::unique_ptr<driver::Backend> make_wheel_of(EventSystem& system, Options& opt
     settings.serial = options.text("serial", "");
     if (options.has("range")) settings.range = options.quantity("range", "900 deg", "10 deg", "10000 deg");
     settings.radius = options.quantity("radius", "140 mm", "10 mm", "500 mm");
+    settings.states_torque = options.has("max_torque");
     settings.max_torque = options.quantity("max_torque", "2 N m", "0.1 N m", "30 N m");
     settings.motion = options.choice("moves", motions, "slide") == 0 ? Motion::slide : Motion::rim;
     settings.is_reversed = options.flag("reversed", false);

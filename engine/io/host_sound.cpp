@@ -26,10 +26,10 @@ std::unique_ptr<SoundCard> EngineHost::make_card(Flicks period, const SoundPlace
         use.is_played = !names->second.outputs.empty();
     }
     if (!input_names.empty())
-        // A third of a second, and what waits on purpose.
+        // Over a second, many of the largest callbacks, and what waits on purpose.
         inputs = std::make_shared<audio::InputRing>(
             static_cast<int>(input_names.size()),
-            16384 + static_cast<std::size_t>(4.0 * audio_.margin_s * rate_of(period)));
+            65536 + static_cast<std::size_t>(4.0 * audio_.margin_s * rate_of(period)));
     auto sink = audio::make_portaudio_sink(place.card.empty() ? chosen : place.card, audio_.margin_s, inputs,
                                            std::move(input_names));
     return std::make_unique<SoundCard>(std::move(sink), std::move(use), std::move(inputs));
@@ -75,7 +75,6 @@ SoundChannel& EngineHost::shared_channel(const StreamFormat& format, const Sound
         throw Error(place.where,
                     fmt::format("{} plays {} channels in this run; channel {} takes effect at the next start",
                                 card.name(), card.channels(), place.channel));
-    card.note_output();
     return card.channel(place.channel - 1);
 }
 

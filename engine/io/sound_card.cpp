@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
+#include <utility>
 
 namespace tactus::io {
 
@@ -20,12 +21,14 @@ SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, CardUse use, std::shared_p
 void SoundCard::hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept {
     const std::int64_t now = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
     input_->read(channel, first, into, count, now);
-    if (is_played_ || first < silent_until_) return;
+    if (first == heard_) return;
+    heard_ = first;
+    // Nodes write after all that is heard in a call. An edit may bring the first one, or take the last one away.
+    if (std::exchange(is_played_, false)) return;
     static constexpr float silence[256] = {};
-    silent_until_ = first + static_cast<std::int64_t>(count);
-    for (std::int64_t at = first; at < silent_until_; at += std::ssize(silence))
-        write(0, at, silence, static_cast<std::size_t>(std::min(silent_until_ - at, std::ssize(silence))),
-              sizeof(float));
+    const std::int64_t end = first + static_cast<std::int64_t>(count);
+    for (std::int64_t at = first; at < end; at += std::ssize(silence))
+        put(0, at, silence, static_cast<std::size_t>(std::min(end - at, std::ssize(silence))), sizeof(float));
 }
 
 void SoundCard::open(const std::vector<std::string>& names) {
@@ -41,6 +44,12 @@ SoundChannel& SoundCard::channel(int index) {
 
 bool SoundCard::write(int channel, std::int64_t first, const void* values, std::size_t count,
                       std::ptrdiff_t stride) noexcept {
+    is_played_ = true;
+    return put(channel, first, values, count, stride);
+}
+
+bool SoundCard::put(int channel, std::int64_t first, const void* values, std::size_t count,
+                    std::ptrdiff_t stride) noexcept {
     const auto* from = static_cast<const std::byte*>(values);
     bool fits = true;
     while (count > 0) {

@@ -42,7 +42,7 @@ struct CardUse {
     std::string wanted = {};  ///< the text by which the card was chosen
     bool is_shared = false;  ///< nodes share it, each with a channel of its own
     int max_frames = 256;  ///< most samples per write
-    bool is_played = true;  ///< false: nodes only hear it; silence is played, so that the clock follows it
+    bool is_played = true;  ///< false: at first, nodes only hear it
 };
 
 class SoundCard {
@@ -53,12 +53,11 @@ public:
     /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
     bool write(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
 
-    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1; wait-free.
+    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1; wait-free. While no
+    /// node writes, silence is played, so that the clock follows the card.
     void hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept;
 
     // Control thread.
-    /// A node plays on it from now on.
-    void note_output() noexcept { is_played_ = true; }
     int inputs() const { return input_ ? input_->channels() : 0; }
     const CardInput* input() const { return input_ ? &*input_ : nullptr; }
     /// Opens the card with one channel per name. Programs that connect sound show the names that are not empty. Throws
@@ -88,6 +87,7 @@ public:
     static constexpr std::int64_t longest_silence_ns = 500'000'000;
 
 private:
+    bool put(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
     bool write_frames(std::int64_t first, const float* frames, std::size_t count) noexcept;
     bool flush() noexcept;
 
@@ -95,8 +95,9 @@ private:
     CardUse use_;
     std::vector<std::unique_ptr<SoundChannel>> listed_;
     std::optional<CardInput> input_;
-    std::atomic<bool> is_played_;
-    std::int64_t silent_until_ = 0;  // thread of the group
+    // Thread of the group:
+    bool is_played_;  ///< a node wrote since the call before was heard
+    std::int64_t heard_ = -1;  ///< first activation of the call that is heard
     ChannelGather gather_;  // thread of the group
     control::CardFollower follower_;
     std::atomic<std::int64_t> shift_{0};  // index of the activation that is frame 0 of the ring

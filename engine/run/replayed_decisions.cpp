@@ -114,7 +114,7 @@ void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frame
     for (std::int64_t at = tick; at < tick + frames; ++at) {
         // The first that reaches so far: each one reaches further than the one before.
         const TimingRecord* const record = find(TimingKind::heard, heard.id, at);
-        if (!record) continue;
+        if (!record || record->count == 0) continue;
         const std::int64_t end = record->tick + record->count, first = end - record->value;
         const auto samples = take::unpack_sound(record->sample);
         for (; at < std::min(end, tick + frames); ++at)

@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "engine/take/sound_record.hpp"
 
 #include <fmt/format.h>
 
@@ -104,7 +105,10 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     log.seconds = header.seconds;
     TimingRecord record;
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
-        if (record.kind > TimingKind::heard || record.tick < 0 || record.count < 0 || !has_flags(record.sample))
+        const bool has_samples = record.kind != TimingKind::heard ||
+                                 (record.value >= 1 && record.value <= std::min(record.count, sound_record_samples));
+        if (record.kind > TimingKind::heard || record.tick < 0 || record.count < 0 || !has_flags(record.sample) ||
+            !has_samples)
             fail("a record of the timing log is damaged");
         ++log.records;
         if (record.kind == TimingKind::whole) {

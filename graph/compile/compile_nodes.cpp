@@ -137,7 +137,8 @@ private:
         if (text == made.texts.end() || text->second->value.empty()) return;
         const std::string wanted = kind.prefix + text->second->value;
         const auto actuator = std::ranges::find(list_, wanted, &patch::PatchActuator::name);
-        if (actuator == list_.end()) {
+        // A name has no point: "sensors.skin" is no actuator.
+        if (actuator == list_.end() || text->second->value.find('.') != std::string::npos) {
             std::vector<std::string> names;
             const std::string prefix = kind.prefix;
             for (const patch::PatchActuator& known : list_)

@@ -113,7 +113,7 @@ struct Vessel {
         shape_.is_vein = kind.is("vein") ? 1 : 0;
         last_site_.reset();
         if (!site.connected) last_site_ = Vec3(site_at.value);
-        site_ = last_site_.value_or(Vec3(0.0));
+        site_ = last_site_.value_or(Vec3(site_at.value));
         publish(false);
         rope = shape_;
     }

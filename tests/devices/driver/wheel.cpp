@@ -114,6 +114,14 @@ TEST_CASE("the torque of a wheel is what the force does when its rim turns") {
     }
 }
 
+TEST_CASE("a wheel whose torque nobody has stated says that it is assumed") {
+    Rig assumed, stated;
+    assumed.open();
+    stated.open({{"max_torque", "8 N m", {}}});
+    CHECK_THAT(assumed.opened.versions.back(), Catch::Matchers::ContainsSubstring("2 N m, assumed"));
+    CHECK(stated.opened.versions.back() == "full torque 8 N m, by option");
+}
+
 TEST_CASE("a reversed wheel pushes the other way, and what was confirmed of it does not count for the other") {
     Rig straight, reversed;
     straight.open();

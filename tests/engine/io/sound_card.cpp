@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 
 #include <array>
+#include <memory>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -79,6 +80,34 @@ TEST_CASE("what finds no room is counted, and the clock still knows which frame 
     // Frame 1000 comes next, at 20.8 ms of a clock that has come to 1 ms: it is much too late.
     CHECK(bench.card->follower().excess_s() == Approx(0.001 - (1000 + 240 + 64) / 48000.0).margin(1e-6));
     CHECK(clock.slope == Approx(1.0 - control::TrimmedClock::furthest));
+}
+
+TEST_CASE(
+    "a card that is heard gets silence whenever no node plays on it, also when edits bring one and take it away") {
+    auto owned = std::make_unique<PlayedSink>();
+    PlayedSink& sink = *owned;
+    io::CardUse use{period, 0.005};
+    use.is_played = false;
+    io::SoundCard card(std::move(owned), use, std::make_shared<audio::InputRing>(2, 4096));
+    card.open({""});
+    std::vector<float> heard(2);
+    const auto call = [&](std::int64_t first, bool plays) {
+        for (int channel = 0; channel < 2; ++channel) card.hear(channel, first, heard.data(), 2);
+        const float values[] = {static_cast<float>(first), static_cast<float>(first + 1)};
+        if (plays) card.channel(0).write(first, values, 2, sizeof(float));
+    };
+    call(0, false);
+    call(2, false);
+    CHECK(sink.statistics().frames_written == 4);
+    call(4, true);  // its first block comes too late
+    call(6, true);
+    call(8, true);
+    CHECK(sink.statistics().frames_written == 10);
+    call(10, false);
+    call(12, false);
+    call(14, false);
+    CHECK(sink.ask(16, 1) == std::vector<float>{0, 0, 0, 0, 0, 0, 6, 7, 8, 9, 0, 0, 0, 0, 0, 0});
+    CHECK(card.statistics().frames_dropped == 0);
 }
 
 TEST_CASE("a card that asks for nothing is lost after half a second, once, and found when it asks again") {

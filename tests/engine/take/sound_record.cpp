@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <unistd.h>
 
@@ -43,4 +44,20 @@ TEST_CASE("a record of the log keeps every bit of its samples, through a file, t
     CHECK(take::unpack_sound(few)[2] == samples[3]);
     CHECK(take::unpack_sound(few)[3] == 0.0F);
     CHECK_FALSE(few.valid);
+}
+
+TEST_CASE("a log whose record of what was heard has no samples, or more than it holds, is damaged") {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("tactus_heard_" + std::to_string(::getpid()));
+    for (const auto& [count, value] : {std::pair{0, 0}, {10, 0}, {10, 11}, {100, 41}}) {
+        take::TimingLogWriter writer(file, 1, 1.0);
+        take::TimingRecord record;
+        record.kind = take::TimingKind::heard;
+        record.count = count;
+        record.value = value;
+        writer.write(record);
+        writer.finish();
+        CHECK_THROWS_WITH(take::TimingLog::load(file), Catch::Matchers::ContainsSubstring("damaged"));
+    }
+    std::filesystem::remove(file);
 }
