@@ -191,6 +191,9 @@ void ScenePanel::steer(int width, int height) {
              ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f))
         camera.pan(by.x / height, -by.y / height);
     if (io.MouseWheel != 0.0f) camera.zoom(std::pow(1.15, static_cast<double>(io.MouseWheel)));
+    // Who moves the view before all of the scene has come has aimed it.
+    if (camera.distance != before.distance || camera.target != before.target)
+        is_aimed_ = is_aimed_ || !model_->bounds().empty();
     steer_by_keys();
     needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
 }
