@@ -123,7 +123,7 @@ void Desk::draw() {
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
-    plan_.case_run().tend(take_ ? nullptr : bench_.observer());
+    plan_.tend(take_ ? nullptr : bench_.observer());
     arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     for (std::size_t c = 0; c < columns_.size(); ++c) {

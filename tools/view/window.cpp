@@ -217,15 +217,20 @@ std::vector<std::uint8_t> Window::pixels() const {
 bool Window::draw() {
     // The system may lose what a window showed, and its size may be news to the driver later than to GLFW.
     constexpr double all_every_s = 2.0, size_settles_s = 0.3;
+    constexpr int size_settles_frames = 3;  // where a frame takes longer than that
     ImDrawData& all = *ImGui::GetDrawData();
     const double now = glfwGetTime();
-    if (width_ != drawn_width_ || height_ != drawn_height_) resized_s_ = now;
+    if (width_ != drawn_width_ || height_ != drawn_height_) {
+        resized_s_ = now;
+        unsettled_ = size_settles_frames;
+    }
     drawn_width_ = width_;
     drawn_height_ = height_;
     const bool is_uncovered = std::exchange(listener_.is_uncovered, false);
     const bool is_dense = all.FramebufferScale.x != 1.0f || all.FramebufferScale.y != 1.0f;
-    const bool draws_all =
-        is_uncovered || is_dense || now - drawn_all_s_ > all_every_s || now - resized_s_ < size_settles_s;
+    const bool is_settling = now - resized_s_ < size_settles_s || unsettled_ > 0;
+    unsettled_ = std::max(unsettled_ - 1, 0);
+    const bool draws_all = is_uncovered || is_dense || now - drawn_all_s_ > all_every_s || is_settling;
     if (draws_all) damage_->forget();
     const auto& boxes = damage_->find(all, width_, height_, ImGui::GetIO().Fonts->TexID);
     if (boxes.empty()) return false;

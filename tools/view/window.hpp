@@ -91,6 +91,7 @@ private:
     std::optional<Damage> damage_;
     enum class Keeps { unknown, yes, no } keeps_pixels_ = Keeps::unknown;  // of a frame that was shown
     int drawn_width_ = 0, drawn_height_ = 0;
+    int unsettled_ = 0;  // frames to draw as a whole after a new size
     double drawn_all_s_ = -1e9, resized_s_ = -1e9;
 };
 

@@ -33,9 +33,10 @@ TEST_CASE("who leaves the window lets go of the hand and its buttons", "[display
     const Folder folder;
     folder.write("script", R"(size 800 600
 scope hand.trigger
+frames 12
 until 7
 export 0 held.csv
-until 18
+wait 10
 export 0 left.csv
 stop
 until over

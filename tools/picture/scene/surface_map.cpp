@@ -53,7 +53,8 @@ SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, 
     SurfaceMap map;
     map.kind = kind;
     for (std::size_t i = 0; i < count; ++i) {
-        if (!bodies[i]) continue;
+        // Of fragments with one content the first is drawn.
+        if (!bodies[i] || map.distance.contains(bodies[i]->content_hash)) continue;
         const int mine = static_cast<int>(i);
         const std::vector<contact::SurfacePoint> points = vertices_of(*bodies[i]);
         std::vector<float>& nearest = map.distance[bodies[i]->content_hash];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/plan/plan_map.hpp"
 
-#include "dsp/core/error.hpp"
-
+#include <algorithm>
 #include <chrono>
+#include <exception>
 #include <utility>
 
 namespace tactus::view {
@@ -21,21 +21,24 @@ void PlanMap::set_range(double range) {
 }
 
 void PlanMap::tend() {
+    // Nobody could take the colours away.
+    if (!run_.is_there()) show({});
     if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         try {
             auto map = std::make_shared<const picture::SurfaceMap>(making_.get());
             // What was asked for may have changed meanwhile.
             if (kind_ == map->kind) scene_.use_map(std::move(map), range_);
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
-            show({});
+            if (made_ == kind_) show({});
         }
     }
     if (!kind_ || making_.valid() || !run_.plan()) return;
-    if (made_ == kind_ && of_ == run_.written()) return;
     std::vector<std::shared_ptr<const observe::SeenBody>> bodies = scene_.plan_bodies();
-    if (bodies.empty()) return;
+    const auto seen = bodies.size() - static_cast<std::size_t>(std::ranges::count(bodies, nullptr));
+    if (seen == 0 || (made_ == kind_ && of_ == run_.written() && seen == seen_)) return;
     made_ = kind_;
+    seen_ = seen;
     of_ = run_.written();
     making_ = std::async(std::launch::async, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
                                               bodies = std::move(bodies)] {

@@ -7,6 +7,7 @@
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
+#include <cstddef>
 #include <future>
 #include <memory>
 #include <optional>
@@ -36,6 +37,7 @@ private:
     std::optional<Kind> kind_, made_;  ///< made: what `map_` or `making_` is of
     double range_ = 1e-3;
     std::filesystem::file_time_type of_{};
+    std::size_t seen_ = 0;  ///< bodies that were drawn when it was made
     std::future<picture::SurfaceMap> making_;
 };
 

@@ -165,7 +165,6 @@ void PlanPanel::draw(const Fonts&) {
     fit_line();
     fragment_buttons();
     studies();
-    map_.tend();
     maps();
     ImGui::Separator();
     step_list();

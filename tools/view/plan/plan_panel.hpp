@@ -14,6 +14,11 @@ public:
     PlanPanel(Workbench& bench, ScenePanel& scene) : case_(bench), scene_(scene), map_(bench, case_, scene) {}
 
     CaseRun& case_run() { return case_; }
+    /// Once per picture, also while it is not drawn: the scene keeps the colours of a map.
+    void tend(const std::shared_ptr<observe::Observer>& observer) {
+        case_.tend(observer);
+        map_.tend();
+    }
     void draw(const Fonts& fonts);
 
 private:

@@ -19,7 +19,9 @@ namespace {
 
 constexpr std::int64_t forgotten_ns = 2'000'000'000;  // a device that is not read any more
 constexpr std::int64_t longest_hold_ns = 1'000'000'000;  // of what is held, without a picture
-constexpr int first_pictures = 6;
+constexpr int first_pictures = 6, fewest_pictures = 2;
+// A driver that has heard nothing for 10 s takes the window for lost: where pictures take long, fewer must do.
+constexpr std::int64_t longest_wait_ns = 2'000'000'000;
 constexpr double radians_per_pixel = 0.006;
 constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3;
 
@@ -42,8 +44,11 @@ void SceneHand::begin_picture() {
     interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
     picture_ns_ = now;
     // Only ticks count: between the device and the first of them the window may still read the scene.
-    if (const std::int64_t ticked = std::exchange(ticked_ns_, felt_.at_ns); ticked != felt_.at_ns)
-        pictures_ = std::min(pictures_ + 1, first_pictures);
+    if (const std::int64_t ticked = std::exchange(ticked_ns_, felt_.at_ns); ticked != felt_.at_ns) {
+        if (pictures_ == 0) first_ns_ = now;
+        const bool is_long = pictures_ + 1 >= fewest_pictures && now - first_ns_ > longest_wait_ns;
+        pictures_ = is_long ? first_pictures : std::min(pictures_ + 1, first_pictures);
+    }
     beat();
 }
 
@@ -74,6 +79,7 @@ void SceneHand::beat() {
         cursor_.begin(felt_.pose);
         latched_ = keys_ = 0;
         pictures_ = 0;
+        ticked_ns_ = felt_.at_ns;
     }
     if (pictures_ < first_pictures) return pulse_.forget();
     cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));

@@ -62,7 +62,7 @@ private:
     std::string frame_port_, scale_port_;
     haptic::FeltHand felt_;
     HandCursor cursor_;
-    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0, ticked_ns_ = 0;
+    std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0, ticked_ns_ = 0, first_ns_ = 0;
     int pictures_ = 0;  // of this run; the first ones make meshes and take long
     bool is_there_ = false, is_on_ = true, is_hovered_ = false;
     unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit

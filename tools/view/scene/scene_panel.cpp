@@ -34,11 +34,16 @@ constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
 // second, one sample per pixel is smooth enough.
 constexpr std::size_t many_triangles = 20'000, very_many_triangles = 300'000;
 
-/// Waits until what was drawn is there.
-void finish() {
-    constexpr GLuint64 longest_ns = 1'000'000'000;
+/// Waits until what was drawn is there, and says meanwhile that the window is alive: what is held stays held in a
+/// picture that takes longer than the longest hold.
+void finish(SceneHand& hand) {
+    constexpr GLuint64 turn_ns = 100'000'000;
+    constexpr int most_turns = 10;
     const GLsync drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, longest_ns);
+    for (int turn = 0; turn < most_turns; ++turn) {
+        if (glClientWaitSync(drawn, GL_SYNC_FLUSH_COMMANDS_BIT, turn_ns) != GL_TIMEOUT_EXPIRED) break;
+        hand.beat();
+    }
     glDeleteSync(drawn);
 }
 
@@ -186,6 +191,9 @@ void ScenePanel::steer(int width, int height) {
              ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f))
         camera.pan(by.x / height, -by.y / height);
     if (io.MouseWheel != 0.0f) camera.zoom(std::pow(1.15, static_cast<double>(io.MouseWheel)));
+    // Who moves the view before all of the scene has come has aimed it.
+    if (camera.distance != before.distance || camera.target != before.target)
+        is_aimed_ = is_aimed_ || !model_->bounds().empty();
     steer_by_keys();
     needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
 }
@@ -243,7 +251,7 @@ void ScenePanel::render(int width, int height) {
     if (picture.is_quick) grain_.drew(renderer_->drawn_triangles());
     hand_.beat();
     // Without a graphics card the processor draws, and the wait for it would come later, as a whole.
-    if (renderer_->is_software()) finish();
+    if (renderer_->is_software()) finish(hand_);
     hand_.beat();
     screens_.show();
 }
