@@ -73,12 +73,14 @@ void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
 void reconstruct(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     if (!step.reconstruction) refuse(step, "has no reconstruction");
     fit::Arrangement& a = state.arrangement;
-    if (state.pieces != step.fragments)
+    // A change of the same reconstruction leaves alone what is shown.
+    if (state.pieces != step.fragments) {
         for (const int piece : step.fragments) a.hide(piece, false);
-    for (const PlanStep& other : plan.steps)
-        if (other.kind == StepKind::reconstruct && other.fragments != step.fragments)
-            for (const int piece : other.fragments)
-                if (std::ranges::find(step.fragments, piece) == step.fragments.end()) a.hide(piece, true);
+        for (const PlanStep& other : plan.steps)
+            if (other.kind == StepKind::reconstruct && other.fragments != step.fragments)
+                for (const int piece : other.fragments)
+                    if (std::ranges::find(step.fragments, piece) == step.fragments.end()) a.hide(piece, true);
+    }
     state.reconstruction = step.reconstruction;
     state.pieces = step.fragments;
 }

@@ -116,8 +116,8 @@ struct PlanState {
 PlanState state_of(const CasePlan& plan, int head);
 PlanState state_of(const CasePlan& plan);
 
-/// Applies a step to `state`. A step `reconstruct` hides the pieces of all other reconstructions of the plan, which
-/// belong to other alternatives. Throws Error when the step is not valid there.
+/// Applies a step to `state`. The first step `reconstruct` of pieces hides those of all other reconstructions of the plan,
+/// which belong to other alternatives. Throws Error when the step is not valid there.
 void apply(const CasePlan& plan, const PlanStep& step, PlanState& state);
 
 /// Calls visit(number, from, to) for every step of the tree, with the states before and after it; a step comes after

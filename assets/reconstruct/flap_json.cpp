@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/reconstruct/flap_json.hpp"
 
+#include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -81,6 +82,7 @@ std::string Members::text(std::string_view key) const {
     if (!value.is_string() ||
         std::ranges::any_of(value.as_text(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
         fail(fmt::format("has a '{}' that is not a one-line text", key));
+    if (table::as_utf8(value.as_text()) != value.as_text()) fail(fmt::format("has a '{}' that is not UTF-8", key));
     return value.as_text();
 }
 

@@ -306,6 +306,10 @@ TEST_CASE("each alternative of a reconstruction shows its own pieces") {
     // A change of the same pieces, such as a plate that moved, shows nothing that was hidden.
     cases::add_step(plan, reconstructing({0, 1}, 0.03));
     CHECK((hidden(0) && !hidden(1) && hidden(2) && hidden(3)));
+    // Nor does it hide what was shown beside them.
+    cases::add_step(plan, meaning(cases::StepKind::show, {2}));
+    cases::add_step(plan, reconstructing({0, 1}, 0.04));
+    CHECK((hidden(0) && !hidden(1) && !hidden(2) && hidden(3)));
 }
 
 TEST_CASE("a reconstruction that cannot be is refused with its place") {
@@ -323,4 +327,8 @@ TEST_CASE("a reconstruction that cannot be is refused with its place") {
     refused("\"name\": \"v\"", "\"name\": \"a\"", "two vessels of the name 'a'");
     refused("\"reconstruction\": {", "\"rebuilt\": {", "has no reconstruction");
     refused("\"margin_m\": 0.01", "\"margin_m\": 1e9", "beyond 100 m");
+    // A name that no file could hold, before it is written.
+    reconstruct::Flap flap;
+    flap.sites = {{"\xff artery", reconstruct::VesselKind::artery, Vec3(0.0)}};
+    CHECK_THROWS_WITH(reconstruct::check(flap, "the plan"), Catch::Matchers::ContainsSubstring("not UTF-8"));
 }
