@@ -115,13 +115,17 @@ struct Vessel {
         const int place = held_place();
         follow(place);
         const bool is_held = holds(place);
-        if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
-            wrench = Wrench{};
-            return;
-        }
         const Vec3 where = site.connected ? (is_valid(site.get()) ? site->position : last_site_) : Vec3(site_at.value);
         last_site_ = where;
         const bool is_wanted = !sewn.connected || sewn.get();
+        if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
+            wrench = Wrench{};
+            if (ticks_ > 0) return;
+            // Its first turn is to come: what it says is of its site already.
+            site_ = where;
+            tell(is_wanted);
+            return;
+        }
         bones_.clear();
         for (std::size_t n = 0; n < scene->count && n < poses_.size(); ++n)
             if (const contact::Voxmap* map = scene->objects[n].body.map)
@@ -203,7 +207,7 @@ private:
         return pull;
     }
 
-    void publish(bool is_wanted) noexcept {
+    void tell(bool is_wanted) noexcept {
         const bool gives_force = !shape_.is_vein;
         tension = gives_force ? vessel_->tension() : 0.0;
         span_tension = gives_force ? vessel_->span_tension() : 0.0;
@@ -218,6 +222,10 @@ private:
         is_kinked = bend.get() < kink;
         is_twisted = std::abs(vessel_->twist()) > twist_limit;
         greatest_ = std::max(greatest_, std::max(tension.get(), span_tension.get()));
+    }
+
+    void publish(bool is_wanted) noexcept {
+        tell(is_wanted);
         vessel_->show(shape_);
         ++shape_.version;
         Hash hash;
