@@ -38,7 +38,8 @@ void set(Patch& patch, const std::string& assignment) {
     if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
     if (is_actuator || is_sensor) {
         std::vector<std::string> names;
-        for (const PatchActuator& a : patch.actuators) names.push_back(a.name);
+        for (const PatchActuator& a : patch.actuators)
+            if (a.name.starts_with("sensors.") == is_sensor) names.push_back(a.name);
         PatchActuator* actuator = find_named(patch.actuators, owner);
         if (!actuator)
             throw Error(where, fmt::format("no {} '{}'{}", is_sensor ? "sensor" : "actuator", owner,

@@ -123,15 +123,19 @@ struct Vessel {
         const int place = held_place();
         follow(place);
         const bool is_held = holds(place);
-        if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
-            wrench = Wrench{};
-            return;
-        }
         if (!site.connected) last_site_ = Vec3(site_at.value);
         else if (is_valid(site.get())) last_site_ = site->position;
         // A site that was never there is sewn to nothing.
         const bool is_wanted = last_site_ && (!sewn.connected || sewn.get());
-        const Vec3 where = last_site_.value_or(Vec3(0.0));
+        const Vec3 where = last_site_.value_or(Vec3(site_at.value));
+        if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
+            wrench = Wrench{};
+            if (ticks_ > 0) return;
+            // Its first turn is to come: what it says is of its site already.
+            site_ = where;
+            tell(is_wanted);
+            return;
+        }
         bones_.clear();
         for (std::size_t n = 0; n < scene->count && n < poses_.size(); ++n)
             if (const contact::Voxmap* map = scene->objects[n].body.map)
@@ -213,7 +217,7 @@ private:
         return pull;
     }
 
-    void publish(bool is_wanted) noexcept {
+    void tell(bool is_wanted) noexcept {
         const bool gives_force = !shape_.is_vein;
         tension = gives_force ? vessel_->tension() : 0.0;
         span_tension = gives_force ? vessel_->span_tension() : 0.0;
@@ -228,6 +232,10 @@ private:
         is_kinked = bend.get() < kink;
         is_twisted = std::abs(vessel_->twist()) > twist_limit;
         greatest_ = std::max(greatest_, std::max(tension.get(), span_tension.get()));
+    }
+
+    void publish(bool is_wanted) noexcept {
+        tell(is_wanted);
         vessel_->show(shape_);
         ++shape_.version;
         Hash hash;

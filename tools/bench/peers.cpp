@@ -120,7 +120,10 @@ int bench_exchange(const PeersChoice& choice) {
     parameters.sched_priority = 60;
     ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
     std::int64_t next = hosted::steady_ns(), ticks = 0, lost = 0, stale = 0, counter = -1;
-    while (!device->acquire(1e-3).valid) hosted::sleep_until(next += 1'000'000);
+    for (const std::int64_t latest = next + 10'000'000'000; !device->acquire(1e-3).valid;) {
+        if (next > latest) throw Error("the driver gave no valid sample within 10 s");
+        hosted::sleep_until(next += 1'000'000);
+    }
     for (const std::int64_t end = next + std::llround(1e9 * choice.exchange); next < end; ++ticks) {
         const DeviceSample sample = device->acquire(1e-3);
         lost += !sample.valid;

@@ -199,6 +199,18 @@ TEST_CASE("a vessel of which the hand holds no piece is solved 200 times a secon
     }
 }
 
+TEST_CASE("a vessel that has not been solved yet tells the way to its site, not to the origin") {
+    Rig rig(1000, -1.0);
+    rig.node.set("idle_rate", "1 Hz").connect("sewn").connect("site");
+    rig.node.feed("sewn", false).feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), upright});
+    rig.at({});
+    rig.node.prepare();
+    rig.node.run(1);
+    const double first = rig.node.last<double>("strain");
+    rig.node.run(1500);
+    CHECK(rig.node.last<double>("strain") == Approx(first).margin(0.02));
+}
+
 TEST_CASE("poses that are none give no force that is none") {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     Rig rig;
