@@ -27,13 +27,16 @@ constexpr double degree = std::numbers::pi / 180.0;
 constexpr double usual_range = 900.0 * degree;  // of wheels whose driver does not say
 constexpr int most_reads = 8;  // a round; more is read in the next one
 constexpr std::int64_t longest_refusal_ns = 200'000'000;
+// A wheel whose torque nobody states is taken for the strongest one sold: none pushes harder than it is told.
+constexpr double strongest_torque = 30.0;  // N m
+constexpr double usual_torque = 2.0;       // N m: what such a wheel is asked for at most
 
 enum class Motion { slide, rim };
 
 struct Settings {
     std::string file, serial;
     double range = 0.0;  ///< rad from stop to stop; 0: as the driver says
-    double radius = 0.14, max_torque = 2.0;
+    double radius = 0.14, max_torque = strongest_torque;
     Motion motion = Motion::slide;
     bool is_reversed = false, states_torque = false;
 };
@@ -116,12 +119,12 @@ public:
         input_id id{};
         system_.control(file_, EVIOCGID, reinterpret_cast<std::uintptr_t>(&id));
         opened.setup = fmt::format("{:04x}:{:04x}{}", id.vendor, id.product, settings_.is_reversed ? " reversed" : "");
-        opened.versions = {"event device " + path, range,
-                           fmt::format("axis X from {} to {}", axis_.minimum, axis_.maximum),
-                           fmt::format("full torque {:.3g} N m, {}", settings_.max_torque,
-                                       settings_.states_torque ? "by option"
-                                                               : "assumed: give the option 'max_torque'; a stronger "
-                                                                 "wheel pushes harder than it is told")};
+        opened.versions = {
+            "event device " + path, range, fmt::format("axis X from {} to {}", axis_.minimum, axis_.maximum),
+            fmt::format("full torque {:.3g} N m, {}", settings_.max_torque,
+                        settings_.states_torque ? "by option"
+                                                : "the strongest sold: give the option 'max_torque'; "
+                                                  "without it a weaker wheel gives less than it is told")};
         opened.axes = 1;
         return opened;
     }
@@ -156,7 +159,7 @@ private:
     DeviceInfo info() const {
         DeviceInfo info;
         info.name = "wheel";
-        info.max_force = settings_.max_torque / settings_.radius;
+        info.max_force = (settings_.states_torque ? settings_.max_torque : usual_torque) / settings_.radius;
         info.max_stiffness = 300.0;
         info.senses_rotation = settings_.motion == Motion::rim;
         info.angular_resolution = axis_.maximum > axis_.minimum ? range() / steps() : 1e-3;
@@ -293,7 +296,7 @@ std::unique_ptr<driver::Backend> make_wheel_of(EventSystem& system, Options& opt
     if (options.has("range")) settings.range = options.quantity("range", "900 deg", "10 deg", "10000 deg");
     settings.radius = options.quantity("radius", "140 mm", "10 mm", "500 mm");
     settings.states_torque = options.has("max_torque");
-    settings.max_torque = options.quantity("max_torque", "2 N m", "0.1 N m", "30 N m");
+    settings.max_torque = options.quantity("max_torque", "30 N m", "0.1 N m", "30 N m");
     settings.motion = options.choice("moves", motions, "slide") == 0 ? Motion::slide : Motion::rim;
     settings.is_reversed = options.flag("reversed", false);
     return std::make_unique<Wheel>(system, std::move(settings));

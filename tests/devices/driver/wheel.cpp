@@ -76,7 +76,7 @@ TEST_CASE("centring is switched off, the gain is full, and nothing of it is left
     CHECK(rig.events.autocenter == 0);
     CHECK(rig.events.gain == 0xFFFF);
     REQUIRE(rig.push({1.0, 0.0, 0.0}));
-    CHECK(rig.level() == -std::lround(32767.0 * 0.14 / 2.0));
+    CHECK(rig.level() == -std::lround(32767.0 * 0.14 / 30.0));
     CHECK(rig.events.uploaded() == 1);
     rig.wheel->close();
     CHECK(rig.events.uploaded() == 0);
@@ -114,11 +114,13 @@ TEST_CASE("the torque of a wheel is what the force does when its rim turns") {
     }
 }
 
-TEST_CASE("a wheel whose torque nobody has stated says that it is assumed") {
+TEST_CASE("a wheel whose torque nobody has stated pushes no harder than the strongest one would, and says so") {
     Rig assumed, stated;
     assumed.open();
     stated.open({{"max_torque", "8 N m", {}}});
-    CHECK_THAT(assumed.opened.versions.back(), Catch::Matchers::ContainsSubstring("2 N m, assumed"));
+    CHECK_THAT(assumed.opened.versions.back(), Catch::Matchers::ContainsSubstring("30 N m, the strongest sold"));
+    REQUIRE(assumed.push({10.0, 0.0, 0.0}));
+    CHECK(std::abs(assumed.level()) == std::lround(32767.0 * 10.0 * 0.14 / 30.0));
     CHECK(stated.opened.versions.back() == "full torque 8 N m, by option");
 }
 
