@@ -13,6 +13,7 @@ namespace tactus::fit {
 
 namespace {
 
+constexpr double most_noise = 0.5;  // of the finest robust scale
 constexpr double least_scale = 3.0;  // standard deviations of the scans' noise
 // Share of the weight: where less is off the other bone, it is noise and the rim of the paint (2 to 8 % without chips).
 constexpr double least_chipped = 0.1;
@@ -88,6 +89,8 @@ void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexce
 void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& pose) noexcept {
     energy.look(pose);
     energy.law.noise = energy.noise();
+    // No scan that is worth a fit is that noisy: half of the points are chipped.
+    if (energy.law.noise > most_noise * settings.finest) energy.law.noise = 0.0;
     energy.law.chipped = energy.share_beyond(intact_scale(energy, settings));
 }
 

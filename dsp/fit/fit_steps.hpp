@@ -40,8 +40,8 @@ Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, i
 inline constexpr int polish_steps = 36, first_intact_step = 13;
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept;
 
-/// Measures, at a pose that is polished, the noise of the scans and how much is chipped, for the steps of
-/// the last ones. The choice of what is left out of an intact face would follow its noise.
+/// Measures, at a pose that is polished, the noise of the scans and how much is chipped, for the last steps. Where
+/// next to nothing is, the choice of what to leave out would follow the noise.
 void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& pose) noexcept;
 
 /// Whether the steps of what is not chipped went farther than they can correct. The steps before leave a bias below
