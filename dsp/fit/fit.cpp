@@ -114,13 +114,14 @@ std::string_view name_of(FitVerdict verdict) {
     return names[static_cast<std::size_t>(verdict)];
 }
 
-FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
+FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
+                 double far) noexcept {
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
     if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
         quality.share < settings.least_share || quality.rms > settings.most_rms * settings.sigma)
         return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
-    if (margin < settings.least_margin) return FitVerdict::ambiguous;
+    if (margin < settings.least_margin || far > settings.most_far) return FitVerdict::ambiguous;
     if (quality.penetration > settings.most_penetration) return FitVerdict::blocked;
     return FitVerdict::fit;
 }
@@ -197,7 +198,10 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     energy.look(best.pose);
     find_free(fit, energy(best.pose, contact::ContactParts::all).stiffness, radius, settings.least_hold);
     fit.pose = between_bodies(moving, fixed, best.pose);
-    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings);
+    FitPrecisionSum sum(best.pose.position, best.pose.apply(moving.far));
+    sum.add(moving, fixed, {}, energy.closed(best.pose));
+    fit.precision = sum.precision();
+    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings, fit.precision.far);
     return fit;
 }
 
@@ -225,7 +229,8 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
         if (n != best && pose_distance(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
             fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
     }
-    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face));
+    fit.verdict =
+        judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face), fit.precision.far);
     return fit;
 }
 

@@ -9,6 +9,7 @@
 
 #include "dsp/fit/acceptance.hpp"
 #include "dsp/fit/fit_energy.hpp"
+#include "dsp/fit/fit_precision.hpp"
 
 #include <array>
 #include <cstdint>
@@ -23,7 +24,7 @@ enum class FitMode : std::uint8_t { thesis, extended, global };
 enum class FitVerdict : std::uint8_t {
     fit,  ///< one pose, constrained in all directions
     sliding,  ///< it can move along `free` and still fit: flat, round or straight surfaces
-    ambiguous,  ///< another pose fits equally well
+    ambiguous,  ///< another pose fits equally well, or the faces are too small to hold the far end of the fragment
     no_match,  ///< the surfaces do not belong together
     blocked  ///< the surfaces fit, but the bones would overlap
 };
@@ -51,6 +52,7 @@ struct FitSettings {
     double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
     double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
     double least_margin = Acceptance::least_margin;  ///< to the second best pose, as share of the best score
+    double most_far = Acceptance::most_far;  ///< m, at the far end: a face that holds it less well is ambiguous
     double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double most_penetration = 0.5e-3;  ///< m
 };
@@ -66,13 +68,16 @@ struct Fit {
     FitQuality quality;
     double margin = 0.0;  ///< (best − second best score) / best, in [0, 1]; poses within 1 mm count as one
     FitVerdict verdict = FitVerdict::no_match;
+    FitPrecision precision;
     std::vector<FreeDirection> free;
     std::array<double, 6> hold{};  ///< mean square slope along the directions, ascending
     int iterations = 0;  ///< steps of the solver, over all starts
 };
 
-/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`) and blocked that applies, else fit.
-FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept;
+/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`; `far` of FitPrecision, m) and blocked that
+/// applies, else fit.
+FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
+                 double far = 0.0) noexcept;
 
 /// `start`: pose of the moving body in the fixed body's frame, both frames those of the files. Deterministic.
 Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,

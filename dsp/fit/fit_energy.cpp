@@ -282,6 +282,27 @@ contact::ContactSum FitEnergy::look_at_half(FitHalf half, const Pose& pose) noex
     return sum;
 }
 
+double FitEnergy::noise() noexcept {
+    constexpr double of_median = 1.4826;  // normal distribution: standard deviation, in median absolute deviations
+    std::size_t count = 0;
+    for (const Side& side : sides_)
+        for (std::size_t i = 0; i < side.weight.size() && side.seen_stride == law.stride; i += law.stride)
+            if (side.weight[i] > 0.0) depths_[count++] = side.seen[i].value;
+    const double middle = median_of(depths_, count, 0.5);
+    for (std::size_t n = 0; n < count; ++n) depths_[n] = std::abs(depths_[n] - middle);
+    return of_median * median_of(depths_, count, 0.5);
+}
+
+double FitEnergy::share_beyond(double distance) const noexcept {
+    double all = 0.0, beyond = 0.0;
+    for (const Side& side : sides_)
+        for (std::size_t i = 0; i < side.weight.size() && side.seen_stride == law.stride; i += law.stride) {
+            all += side.weight[i];
+            if (side.seen[i].value > distance) beyond += side.weight[i];
+        }
+    return all > 0.0 ? beyond / all : 0.0;
+}
+
 FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     FitQuality q;
     double squares = 0.0, covered = 0.0, signed_sum = 0.0, area = 0.0;

@@ -52,6 +52,8 @@ struct FitLaw {
     double contact = 0.0;  ///< N/m for each moving point that is inside of the fixed bone
     std::size_t stride = 1;  ///< uses every n-th painted point
     double kerf = 0.0;  ///< m, mean width of the bone that was lost all along, see FitEnergy
+    double noise = 0.0;  ///< m, standard deviation of the distances that scans cause, see FitEnergy::noise
+    double chipped = 1.0;  ///< share of the weight that chips may have taken, see FitEnergy::share_beyond
 };
 
 /// How well two surfaces fit at a pose.
@@ -92,6 +94,14 @@ public:
     /// The same for one half, with its weights updated.
     contact::ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
+    /// The pose at which the faces would lie on each other without the kerf.
+    Pose closed(const Pose& pose) const noexcept { return closed(pose, opening(pose)); }
+
+    /// m, how far the distances of both sides scatter at the last look, as a standard deviation: by their median, so that
+    /// neither chips nor paint beyond the rim count.
+    double noise() noexcept;
+    /// Share of the weight of both sides at the last look that lies farther than `distance` (m) off the other bone.
+    double share_beyond(double distance) const noexcept;
 
     /// `sigma`, m: distance at which a point counts 0.6. Ignores the law but for `stride` and `kerf`.
     FitQuality quality(const Pose& pose, double sigma) noexcept;

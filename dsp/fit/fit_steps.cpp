@@ -13,7 +13,15 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr int intact_steps = 24;
+constexpr double most_noise = 0.5;  // of the finest robust scale
+constexpr double least_scale = 3.0;  // standard deviations of the scans' noise
+// Share of the weight: where less is off the other bone, it is noise and the rim of the paint (2 to 8 % without chips).
+constexpr double least_chipped = 0.1;
+
+/// m, of the kernel of what is not chipped.
+double intact_scale(const FitEnergy& energy, const FitSettings& settings) noexcept {
+    return std::max(settings.intact, least_scale * energy.law.noise);
+}
 
 /// One step of the solver from its pose, with the weights of that pose. Returns the length of the step, m.
 double step_once(FitEnergy& energy, coupling::QuasiStaticCoupling& solver, int& iterations) noexcept {
@@ -65,14 +73,30 @@ void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) no
 }
 
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept {
-    if (step > polish_steps - intact_steps) {
+    const bool is_last = step >= first_intact_step;
+    if (is_last && energy.law.chipped >= least_chipped) {
         energy.law.kernel = FitKernel::intact;
-        energy.law.scale = settings.intact;
+        energy.law.scale = intact_scale(energy, settings);
         return;
     }
     const double progress = std::min(1.0, static_cast<double>(step) / 5.0);
-    energy.law.scale = settings.finest * std::pow(std::min(1.0, settings.polish / settings.finest), progress);
+    const double polish = is_last ? std::max(settings.polish, least_scale * energy.law.noise) : settings.polish;
+    energy.law.kernel = FitKernel::robust;
+    energy.law.scale = settings.finest * std::pow(std::min(1.0, polish / settings.finest), progress);
     energy.law.power = settings.power + progress * std::max(0.0, settings.polish_power - settings.power);
+}
+
+void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& pose) noexcept {
+    energy.look(pose);
+    energy.law.noise = energy.noise();
+    // No scan that is worth a fit is that noisy: half of the points are chipped.
+    if (energy.law.noise > most_noise * settings.finest) energy.law.noise = 0.0;
+    energy.law.chipped = energy.share_beyond(intact_scale(energy, settings));
+}
+
+bool is_astray(const FitEnergy& energy, const FitSettings& settings, const Pose& before, const Pose& after) noexcept {
+    return energy.law.kernel == FitKernel::intact && pose_distance(before, after, energy.moving().gyration) >
+                                                         std::max(settings.finest, intact_scale(energy, settings));
 }
 
 Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept {
@@ -85,11 +109,13 @@ Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, i
         const int before = iterations;
         if (step_once(energy, solver, iterations) < 1e-7 || iterations == before) break;
     }
+    Pose polished;
     for (int n = 1; n <= polish_steps; ++n) {
+        if (n == first_intact_step) measure_noise(energy, settings, polished = solver.state().proxy);
         set_polish(energy, settings, n);
         step_once(energy, solver, iterations);
     }
-    return solver.state().proxy;
+    return is_astray(energy, settings, polished, solver.state().proxy) ? polished : solver.state().proxy;
 }
 
 Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept {

@@ -34,10 +34,19 @@ void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) no
 /// At the finest scale until the steps are done; then narrower, down to the resolution of the scans; then without chips.
 Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept;
 
-/// Factor on `finest` in step `step` of `polish_steps`: the bias that gaps of lost bone cause at a wide scale falls
-/// with its square. The last 24 steps are those of what is not chipped.
-inline constexpr int polish_steps = 36;
+/// The scale of step `step` of `polish_steps`: the bias that gaps of lost bone cause at a wide scale falls with its
+/// square. The last steps, from `first_intact_step`, are those of what is not chipped, or, where next to nothing is, of all
+/// points. Their scale is not narrower than the noise of the scans, see measure_noise: it would take noise for chips.
+inline constexpr int polish_steps = 36, first_intact_step = 13;
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept;
+
+/// Measures, at a pose that is polished, the noise of the scans and how much is chipped, for the last steps. Where
+/// next to nothing is, the choice of what to leave out would follow the noise.
+void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& pose) noexcept;
+
+/// Whether the steps of what is not chipped went farther than they can correct. The steps before leave a bias below
+/// their scale; what goes farther has no hold in the points that are left. Such steps are taken back.
+bool is_astray(const FitEnergy& energy, const FitSettings& settings, const Pose& before, const Pose& after) noexcept;
 
 /// The shortest rotation from direction `from` to `to`.
 Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept;

@@ -77,6 +77,9 @@ void take_paint(FitSurface& made, std::span<const contact::SurfacePoint> points,
         made.mean_normal += made.share[i] * made.normal[i];
     }
     for (Vec3& p : made.position) p -= made.centre;
+    for (const contact::SurfacePoint& p : points)
+        if (const Vec3 arm = p.position - made.centre; glm::dot(arm, arm) > glm::dot(made.far, made.far))
+            made.far = arm;
     made.plane_normal = plane_through(made);
     for (std::size_t i = 0; i < made.position.size(); ++i)
         made.gyration += made.share[i] * glm::dot(made.position[i], made.position[i]);

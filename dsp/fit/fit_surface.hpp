@@ -33,6 +33,7 @@ struct FitSurface {
     /// Unit normal of the plane through the paint, out of the bone: a kerf opens along it. The mean normal of rough paint
     /// depends on its rim only, where it leans with the relief. That normal where the paint is not flat.
     Vec3 plane_normal{0.0};
+    Vec3 far{0.0};  ///< the point of the whole body that is farthest from the centre
     double gyration = 0.0;  ///< root mean square distance of painted points from their middle, m
     std::vector<Vec3> outline, outline_normal;  ///< unpainted points around the paint
     contact::Voxmap field;  ///< signed distance of the whole bone around the paint

@@ -33,6 +33,7 @@ struct FragmentMatch {
     FitVerdict verdict = FitVerdict::no_match;
     FitQuality quality;  ///< of the leading pair of faces
     double margin = 0.0;  ///< to the second best pose, as a share of the best score
+    FitPrecision precision;  ///< of all faces that were fitted together
     int faces = 0;  ///< number of face pairs that were fitted together
 };
 

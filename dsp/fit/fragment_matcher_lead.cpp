@@ -110,22 +110,45 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
         at_scale(stage < 8 ? 3.0 - 0.25 * stage : 1.0);
         if (step() == 0 && stage > 8) break;
     }
+    const auto centres_of = [&](std::size_t k, const Pose& handle) {
+        return centres(joined_[k], together.body(handle), poses);
+    };
+    Pose polished;
     for (int n = 1; n <= polish_steps; ++n) {
+        if (n == first_intact_step) {
+            polished = solver.state().proxy;
+            for (std::size_t k = 0; k < joined_.size(); ++k) measure_noise(energies_[k], fit, centres_of(k, polished));
+        }
         for (std::size_t k = 0; k < joined_.size(); ++k) set_polish(energies_[k], fit, n);
         step();
     }
-    at = together.body(solver.state().proxy);
+    Pose there = solver.state().proxy;
+    for (std::size_t k = 0; k < joined_.size(); ++k)
+        if (is_astray(energies_[k], fit, centres_of(k, polished), centres_of(k, solver.state().proxy)))
+            there = polished;
+    at = together.body(there);
     match_.pose = at;
     at_scale(1.0);
     match_.quality = energies_[0].quality(centres(best.pair, at, poses), fit.sigma);
     match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
     free_.free.clear();
-    together.look(solver.state().proxy);
-    find_free(free_, together(solver.state().proxy, contact::ContactParts::all).stiffness,
-              faces_[best.pair.moving].surface.gyration, fit.least_hold);
+    together.look(there);
+    find_free(free_, together(there, contact::ContactParts::all).stiffness, faces_[best.pair.moving].surface.gyration,
+              fit.least_hold);
+    const FitSurface& leading = faces_[best.pair.moving].surface;
+    FitPrecisionSum sum(at.apply(leading.centre), at.apply(leading.centre + leading.far));
+    for (std::size_t k = 0; k < joined_.size(); ++k) {
+        const Face &m = faces_[joined_[k].moving], &f = faces_[joined_[k].fixed];
+        const Pose& other = poses[static_cast<std::size_t>(f.fragment)];
+        sum.add(m.surface, f.surface, {other.apply(f.surface.centre), other.orientation},
+                energies_[k].closed(centres_of(k, there)));
+    }
+    match_.precision = sum.precision();
+    // The healthy side holds the far end too.
     FitSettings required = fit;
     required.least_overlap = least_overlap(match_.moving, match_.partner);
-    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, required);
+    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, required,
+                           pulls_.empty() ? match_.precision.far : 0.0);
 }
 
 double FragmentMatcher::least_overlap(int moving, int partner) const noexcept {

@@ -42,6 +42,24 @@ public:
     void set(const Set& each) {
         for (FitEnergy& e : energies_) each(e);
     }
+    void measure_noise(const FitSettings& settings) {
+        for (std::size_t n = 0; n < pairs_.size(); ++n) fit::measure_noise(energies_[n], settings, centres(n));
+    }
+    /// Leaves nothing out any more of each pair that went astray since `before`. Returns whether there is one.
+    bool hold_astray(const FitSettings& settings, const std::vector<Pose>& before) {
+        const std::vector<Pose> now = poses();
+        std::vector<Pose> was(pairs_.size());
+        restore(before);
+        for (std::size_t n = 0; n < pairs_.size(); ++n) was[n] = centres(n);
+        restore(now);
+        bool is_new = false;
+        for (std::size_t n = 0; n < pairs_.size(); ++n) {
+            if (!is_astray(energies_[n], settings, was[n], centres(n))) continue;
+            energies_[n].law.chipped = 0.0;
+            is_new = true;
+        }
+        return is_new;
+    }
     void look() {
         for (std::size_t n = 0; n < pairs_.size(); ++n) energies_[n].look(centres(n));
     }
@@ -181,9 +199,21 @@ int refine_jointly(const FragmentMatcher& matcher, std::span<const FacePair> pai
         ++steps;
         if (step(system) < 1e-7 && n > 8) break;
     }
-    for (int n = 1; n <= polish_steps; ++n, ++steps) {
+    for (int n = 1; n < first_intact_step; ++n, ++steps) {
         system.set([&](FitEnergy& e) { set_polish(e, fit, n); });
         step(system);
+    }
+    system.measure_noise(fit);
+    const std::vector<Pose> polished = system.poses();
+    const auto leave_out_chips = [&] {
+        system.set([&](FitEnergy& e) { set_polish(e, fit, polish_steps); });
+        for (int n = first_intact_step; n <= polish_steps; ++n, ++steps) step(system);
+    };
+    leave_out_chips();
+    // Pairs without hold keep all their points; the chips of the others are still left out.
+    while (system.hold_astray(fit, polished)) {
+        system.restore(polished);
+        leave_out_chips();
     }
     return steps;
 }

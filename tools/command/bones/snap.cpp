@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
 
 namespace tactus::command {
 
@@ -71,6 +72,8 @@ Json json_of(const fit::Fit& fit) {
     return {{"pose", pose_json<Json>(fit.pose)},
             {"score", fit.quality.score},
             {"margin", fit.margin},
+            {"held_at_far_end_mm", fit.precision.far * 1e3},
+            {"held_deg", fit.precision.turn * 180.0 / std::numbers::pi},
             {"overlap_mm2", fit.quality.overlap * 1e6},
             {"rms_mm", fit.quality.rms * 1e3},
             {"gap_mm", fit.quality.gap * 1e3},

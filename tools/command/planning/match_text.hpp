@@ -5,6 +5,7 @@
 #include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
+#include <numbers>
 #include <string>
 
 namespace tactus::command {
@@ -27,6 +28,8 @@ Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found, cons
             {"faces", match.faces},
             {"score", number(match.quality.score)},
             {"margin", number(match.margin)},
+            {"held_at_far_end_mm", number(match.precision.far * 1e3)},
+            {"held_deg", number(match.precision.turn * 180.0 / std::numbers::pi)},
             {"rms_mm", number(match.quality.rms * 1e3)},
             {"gap_mm", number(match.quality.gap * 1e3)},
             {"penetration_mm", number(match.quality.penetration * 1e3)},

@@ -168,6 +168,13 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
         case fit::FitVerdict::sliding:
             return "the faces are too smooth to hold it in one place; paint more of the fracture, or place it by hand";
         case fit::FitVerdict::ambiguous:
+            if (match.margin >= settings.least_margin && match.precision.far > settings.most_far)
+                return fmt::format(
+                    "the {} of {:.0f} mm² {} it to ±{:.1f} mm and ±{:.1f}° at its far end only, and ±{:.1f} mm is "
+                    "needed; paint more of the fracture, or place it by hand",
+                    match.faces == 1 ? "face" : "faces, the best", match.quality.overlap * 1e6,
+                    match.faces == 1 ? "holds" : "hold", match.precision.far * 1e3,
+                    match.precision.turn * 180.0 / std::numbers::pi, settings.most_far * 1e3);
             return fmt::format("another pose fits as well: the margin is below {:.2f}; {}", settings.least_margin,
                                only == fit::Arrangement::none
                                    ? "name its partner at 'tactus plan snap', or paint more of the fracture"

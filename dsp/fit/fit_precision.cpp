@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/fit_precision.hpp"
+
+#include "dsp/geometry/symmetric_eigen.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tactus::fit {
+
+namespace {
+
+constexpr double correlated = 3e-3;  // m
+constexpr double most_off = 0.4e-3;  // m: what is farther off the other face is chipped
+constexpr double least_against = 0.7;  // cosine of opposed normals
+constexpr double lever = 0.01;  // m, makes rotations comparable to translations
+constexpr std::size_t most_points = 500;  // of a face: the pairs are counted
+
+struct Point {
+    Vec3 place;
+    double off, share;
+};
+
+using Slope = std::array<double, 6>;
+
+}  // namespace
+
+void FitPrecisionSum::add(const FitSurface& moving, const FitSurface& fixed, const Pose& there,
+                          const Pose& into) noexcept {
+    const Mat3 rotation = glm::mat3_cast(into.orientation);
+    std::array<Point, most_points> points;
+    const std::size_t stride = moving.position.size() / most_points + 1;
+    std::size_t count = 0;
+    double all = 0.0, mean = 0.0, squares = 0.0;
+    double slopes[36] = {};
+    for (std::size_t i = 0; i < moving.position.size(); i += stride) {
+        const Vec3 place = into.position + rotation * moving.position[i];
+        const volume::Sample here = fixed.field.sample(place);
+        if (!here.inside || std::abs(here.value) > most_off || !fixed.is_painted_near(place)) continue;
+        if (!(-glm::dot(rotation * moving.normal[i], here.gradient) > least_against)) continue;
+        points[count++] = {place, here.value, moving.share[i]};
+        all += moving.share[i];
+        mean += moving.share[i] * here.value;
+        const Vec3 n = there.rotate(here.gradient), turn = glm::cross(there.apply(place) - origin_, n) / lever;
+        const Slope j{n.x, n.y, n.z, turn.x, turn.y, turn.z};
+        for (std::size_t a = 0; a < 6; ++a)
+            for (std::size_t b = 0; b < 6; ++b) slopes[6 * a + b] += moving.share[i] * j[a] * j[b];
+    }
+    if (count == 0) return;
+    mean /= all;
+    for (std::size_t i = 0; i < count; ++i) {
+        Point& p = points[i];
+        p.off -= mean;
+        p.share /= all;
+        squares += p.share * p.share * p.off * p.off;
+    }
+    double pairs = 0.0;
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec3 apart = points[i].place - points[j].place;
+            const double distance2 = glm::dot(apart, apart);
+            if (distance2 < correlated * correlated)
+                pairs += points[i].share * points[j].share * points[i].off * points[j].off *
+                         (1.0 - std::sqrt(distance2) / correlated);
+        }
+    // At least that of independent points; no scan is exact to a hundredth of a micrometre.
+    const double variance = std::max({squares + 2.0 * pairs, squares, 1e-16});
+    for (std::size_t n = 0; n < 36; ++n) information_[n] += slopes[n] / (all * variance);
+}
+
+FitPrecision FitPrecisionSum::precision() const noexcept {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    std::array<double, 36> information;
+    std::copy(std::begin(information_), std::end(information_), information.begin());
+    const geometry::SymmetricEigen<6> eigen = geometry::symmetric_eigen<6>(information);
+    const Vec3 arm = far_ - origin_;
+    double turn = 0.0, far = 0.0;
+    for (std::size_t n = 0; n < 6; ++n) {
+        if (!(eigen.value[n] > 1e-9 * eigen.value[5])) return {infinite, infinite};
+        const Slope& v = eigen.vector[n];
+        const Vec3 rotation = Vec3(v[3], v[4], v[5]) / lever;
+        const Vec3 motion = Vec3(v[0], v[1], v[2]) + glm::cross(rotation, arm);
+        turn += glm::dot(rotation, rotation) / eigen.value[n];
+        far += glm::dot(motion, motion) / eigen.value[n];
+    }
+    return {2.0 * std::sqrt(turn), 2.0 * std::sqrt(far)};
+}
+
+}  // namespace tactus::fit

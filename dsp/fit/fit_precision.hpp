@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well the faces of a fit hold the moving fragment, from the covariance of their least squares.
+#pragma once
+
+#include "dsp/fit/fit_surface.hpp"
+
+namespace tactus::fit {
+
+/// Two standard deviations of a fit's pose.
+struct FitPrecision {
+    double turn = 0.0;  ///< rad
+    double far = 0.0;  ///< m, at the point of the moving fragment that is farthest from its face
+};
+
+/// Sums the faces of one moving fragment. The distances of a face scatter with the noise of its scan, which is correlated
+/// over neighbouring points: the variance of their mean is summed over all pairs of points nearer than 3 mm, by Bartlett's
+/// weights (Conley, J. Econometrics 92, 1999), and a face counts as many independent points as have that variance. Does
+/// not allocate.
+class FitPrecisionSum {
+public:
+    /// `origin`, `far`: any point and the farthest point of the moving fragment, in the frame of all poses.
+    FitPrecisionSum(const Vec3& origin, const Vec3& far) noexcept : origin_(origin), far_(far) {}
+
+    /// `there`: pose of the fixed face's centre; `into`: of the moving one's in its frame, where a kerf is closed.
+    void add(const FitSurface& moving, const FitSurface& fixed, const Pose& there, const Pose& into) noexcept;
+    /// Infinite where the faces leave a motion free.
+    FitPrecision precision() const noexcept;
+
+private:
+    Vec3 origin_, far_;
+    double information_[36] = {};  ///< of twists about the origin: translation in m, rotation in units of 1 / lever
+};
+
+}  // namespace tactus::fit

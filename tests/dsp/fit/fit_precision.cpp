@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/fit_precision.hpp"
+
+#include "dsp/fit/fragment_matcher.hpp"
+#include "tests/dsp/fit/broken_bar.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+constexpr double far_end = 110.0 * mm, degree = 0.017453292519943295;
+
+/// Noise of a scan as it is left by smoothing: white noise, averaged with its neighbours.
+void add_noise(volume::Grid& grid, double height, std::uint64_t seed) {
+    const Random random{seed};
+    std::vector<float> white(grid.count()), field(grid.count());
+    for (std::size_t n = 0; n < white.size(); ++n) white[n] = static_cast<float>(random.normal(n));
+    const std::size_t steps[3] = {1, static_cast<std::size_t>(grid.size[0]),
+                                  static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1])};
+    for (const std::size_t step : steps) {
+        for (std::size_t n = step; n + step < white.size(); ++n)
+            field[n] = 0.25F * white[n - step] + 0.5F * white[n] + 0.25F * white[n + step];
+        white.swap(field);
+    }
+    double squares = 0.0;
+    for (const float v : white) squares += static_cast<double>(v) * static_cast<double>(v);
+    const double scale = height / std::sqrt(squares / static_cast<double>(white.size()));
+    for (std::size_t n = 0; n < white.size(); ++n) grid.values[n] += static_cast<float>(scale * white[n]);
+}
+
+/// One side of a break through a shaft as thick as a fibula, scanned in voxels of 0.6 mm, with paint over the rim. Of the
+/// rest of the shaft only its end is there.
+Half shaft_half(double side, std::uint64_t seed, double radius, double noise) {
+    const Relief relief = rough_relief(seed, 0.45 * mm);
+    const auto round = [radius](const Vec3& p) {
+        return std::hypot(p.y, p.z) - radius * (1.0 + 0.15 * std::cos(3.0 * std::atan2(p.z, p.y)));
+    };
+    const auto height = [&](const Vec3& p) { return p.x - relief(p.y, p.z) - 0.4 * p.y; };
+    Half made;
+    volume::Grid& grid = made.distance;
+    grid.spacing = Vec3(0.6 * mm);
+    const double wide = 1.15 * radius + 3.0 * mm;
+    const Vec3 low(side < 0.0 ? -14.0 * mm : -8.0 * mm, -wide, -wide), high(low.x + 22.0 * mm, wide, wide);
+    for (int axis = 0; axis < 3; ++axis)
+        grid.size[static_cast<std::size_t>(axis)] = static_cast<int>((high[axis] - low[axis]) / (0.6 * mm)) + 1;
+    // The voxels of both scans lie differently.
+    grid.origin = low + side * Vec3(0.13, 0.21, 0.08) * mm;
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const Vec3 p = grid.position(i, j, k);
+                grid.values.push_back(
+                    static_cast<float>(std::max({round(p), -side * height(p) / 1.2, side * p.x - 11.0 * mm})));
+            }
+    add_noise(grid, noise, 97 * seed + (side < 0.0 ? 1 : 2));
+    made.points = contact::sample_surface(grid, {.spacing = 0.5 * mm});
+    for (contact::SurfacePoint& p : made.points)
+        if (std::abs(height(p.position)) < 0.7 * mm) p.label = contact::surface_label::fracture;
+    contact::SurfacePoint end = made.points.front();
+    end.position = {side * far_end, 0.0, 0.0};
+    end.label = contact::surface_label::none;
+    made.points.push_back(end);
+    return made;
+}
+
+struct Held {
+    fit::FragmentMatch match;
+    double far = 0.0, turn = 0.0;  ///< errors: m at the far end, degrees
+};
+
+/// What the matcher makes of two halves that lie where they belong.
+Held hold(std::uint64_t seed, double radius, double noise) {
+    const Half left = shaft_half(-1.0, seed, radius, noise), right = shaft_half(1.0, seed, radius, noise);
+    const std::vector<fit::FragmentSurface> surfaces{{left.points, &left.distance}, {right.points, &right.distance}};
+    fit::FragmentMatcher matcher(surfaces);
+    const std::vector<Pose> poses(2);
+    const std::vector<char> stands{1, 1};
+    Held held;
+    held.match = matcher.near(0, poses, stands);
+    const Vec3 end(-far_end, 0.0, 0.0);
+    held.far = glm::length(held.match.pose.apply(end) - end);
+    held.turn = glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, held.match.pose.orientation)) / degree;
+    return held;
+}
+
+}  // namespace
+
+TEST_CASE("dsp: a small noisy face stays at its pose, and is no fit where it cannot hold the far end") {
+    double squares = 0.0, said = 0.0;
+    constexpr int count = 8;
+    for (std::uint64_t seed = 1; seed <= count; ++seed) {
+        const Held held = hold(seed, 5.0 * mm, 0.05 * mm);
+        INFO(seed << ": " << fit::name_of(held.match.verdict) << ", " << held.far / mm << " mm and " << held.turn
+                  << " deg off, said " << held.match.precision.far / mm << " mm");
+        const bool is_fit = held.match.verdict == fit::FitVerdict::fit;
+        CHECK((!is_fit || held.far < 0.5 * mm));
+        CHECK(held.far < 1.2 * mm);
+        squares += held.far * held.far;
+        said += held.match.precision.far * held.match.precision.far / 4.0;
+    }
+    // What is said is what it is, within the accuracy of eight samples.
+    const double error = std::sqrt(squares / count), deviation = std::sqrt(said / count);
+    INFO(error / mm << " mm, said " << deviation / mm);
+    CHECK(error < 1.5 * deviation);
+    CHECK(deviation < 1.5 * error);
+}
+
+TEST_CASE("dsp: a face without noise is a fit, however long the shaft") {
+    const Held held = hold(1, 5.0 * mm, 0.001 * mm);
+    INFO(fit::name_of(held.match.verdict)
+         << ", " << held.far / mm << " mm off, said " << held.match.precision.far / mm << " mm");
+    CHECK(held.match.verdict == fit::FitVerdict::fit);
+    CHECK(held.far < 0.3 * mm);
+}
