@@ -170,7 +170,7 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
         case fit::FitVerdict::ambiguous:
             if (match.margin >= settings.least_margin && match.precision.far > settings.most_far)
                 return fmt::format(
-                    "the {} of {:.0f} mm² {} it to ±{:.1f} mm and ±{:.1f}° at its far end only, and ±{:.1f} mm is "
+                    "the {} of {:.0f} mm² {} it to ±{:.2f} mm and ±{:.1f}° at its far end only, and ±{:.2f} mm is "
                     "needed; paint more of the fracture, or place it by hand",
                     match.faces == 1 ? "face" : "faces, the best", match.quality.overlap * 1e6,
                     match.faces == 1 ? "holds" : "hold", match.precision.far * 1e3,

@@ -5,6 +5,7 @@
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -23,17 +24,12 @@ using namespace tactus;
 using nlohmann::json;
 using tactus::test::Folder;
 using tactus::test::Outcome;
+using tactus::test::pose_in;
 using tactus::test::slurp;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-Pose pose_in(const json& j) {
-    const json &p = j["position_m"], &q = j["quaternion_wxyz"];
-    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()),
-            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
-}
 
 /// The last place of each piece on the way to step `head`.
 std::map<std::string, Pose> places(const json& plan, int head) {

@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/jaw_case.hpp"
+#include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -26,19 +27,13 @@ using nlohmann::json;
 using tactus::test::case_folder;
 using tactus::test::Folder;
 using tactus::test::Outcome;
+using tactus::test::pose_in;
 using tactus::test::slurp;
 using tactus::test::truth;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// As the file has it: m.
-Pose pose_in(const json& j) {
-    const json &p = j["position_m"], &q = j["quaternion_wxyz"];
-    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()),
-            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
-}
 
 /// What the hand does and when: 'TIME s: place | buttons', one line each.
 struct HandLine {
