@@ -240,7 +240,7 @@ public:
         events_.effects = {FF_CONSTANT, FF_GAIN, FF_AUTOCENTER};
     }
     std::unique_ptr<driver::Backend> backend() override {
-        Options options = options_of({});
+        Options options = options_of({{"max_torque", "2 N m", {}}});
         return evdev::make_wheel_of(events_, options);
     }
     void place(const Vec3& position, const Quat&) override {

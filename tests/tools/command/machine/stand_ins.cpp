@@ -183,9 +183,9 @@ TEST_CASE("the library's scenes run with a wheel and with a gamepad, and their t
         ::setenv("FAKE_EVENT_FOLDER", devices.path.c_str(), 1);
         ::setenv("FAKE_EVENT_DEVICE", kind, 1);
         runs_everywhere_with(driver, std::string(driver) == "wheel", library.string());
-        // At most 0.5 N of 2 N m at 140 mm, until somebody has confirmed it.
+        // At most 0.5 N of 30 N m at 140 mm, until somebody has confirmed it.
         if (fs::exists(devices.path / "strength") && std::string(driver) == "wheel")
-            CHECK(std::stoi(slurp(devices.path / "strength")) <= std::lround(32767.0 * 0.5 * 0.14 / 2.0));
+            CHECK(std::stoi(slurp(devices.path / "strength")) <= std::lround(32767.0 * 0.5 * 0.14 / 30.0));
         ::unsetenv("FAKE_EVENT_FOLDER");
         ::unsetenv("FAKE_EVENT_DEVICE");
     }
