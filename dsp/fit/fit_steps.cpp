@@ -14,7 +14,7 @@ namespace tactus::fit {
 namespace {
 
 constexpr double most_noise = 0.5;  // of the finest robust scale
-constexpr double least_scale = 3.0;  // standard deviations of the scans' noise
+constexpr double least_scale = 2.0;  // standard deviations of the scans' noise
 // Share of the weight: where less is off the other bone, it is noise and the rim of the paint (2 to 8 % without chips).
 constexpr double least_chipped = 0.1;
 
