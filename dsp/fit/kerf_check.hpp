@@ -32,14 +32,18 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
 /// The kerf that the contour says, beside the one that was told (0: none was).
 struct KerfEstimate {
     double told = 0.0, kerf = 0.0, spread = 0.0;  ///< m, mean width, as FitSettings::kerf has it
-    /// With the kerf that the contour says, the halves would lie more than half a millimetre elsewhere. Where no kerf
-    /// was told: and by more than `spread`.
+    /// With the kerf that the contour says, the halves would lie more than half a millimetre elsewhere. A contour whose
+    /// opening is not known to a millimetre contradicts nobody; where no kerf was told, it must say more than half of
+    /// `spread`.
     bool is_contradicted = false;
+    /// No kerf was told, and the contour does not exclude that half a millimetre is lost: what it says and half of
+    /// `spread` are together more. Never where there is no contour.
+    bool is_open = false;
     /// Rough faces are between `told` and told / (mean cosine of their slopes) apart along the opening: that leaves
     /// more than half a millimetre.
     bool is_too_wide = false;
 
-    bool is_doubtful() const noexcept { return is_contradicted || is_too_wide; }
+    bool is_doubtful() const noexcept { return is_contradicted || is_open || is_too_wide; }
 };
 
 /// Of two halves that were fitted with this kerf (m).

@@ -33,6 +33,7 @@ Verb saw_verb();
 Verb fits_verb();
 Verb assembly_verb();
 Verb shafts_verb();
+Verb proposals_verb();
 Verb segment_verb();
 Verb vessel_verb();
 Verb rope_verb();

@@ -83,6 +83,30 @@ TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and non
     CHECK(seen.kerf == Approx(1.4 * mm).margin(0.4 * mm));
 }
 
+TEST_CASE("dsp: a kerf that nobody told is seen beside a break that is nearly square, and none where none is") {
+    const Oblique lost(1.4 * mm, 0.02 * mm, 0.025), whole(0.0, 0.02 * mm, 0.025);
+    const double cosine = glm::length(0.5 * (lost.fixed.mean_normal - lost.moving.mean_normal));
+    const Pose closed{-1.4 * mm / cosine * fit::opening_direction(lost.moving, lost.fixed, {}), {1.0, 0.0, 0.0, 0.0}};
+    CAPTURE(lost.opening(closed).excess / mm, lost.opening(closed).spread / mm, whole.opening({}).excess / mm,
+            whole.opening({}).spread / mm);
+    CHECK(lost.check(0.0, closed).is_contradicted);
+    CHECK_FALSE(whole.check(0.0).is_doubtful());
+}
+
+TEST_CASE("dsp: a contour that hardly knows the opening does not exclude a kerf, and contradicts no told one") {
+    const Oblique square(0.0, 0.1 * mm, 0.004);
+    const fit::ContourOpening seen = square.opening({});
+    CAPTURE(seen.excess / mm, seen.spread / mm);
+    REQUIRE(seen.spread > 1.0 * mm);
+    CHECK(square.check(0.0).is_open);
+    // A step of 0.02 mm would be an opening of millimetres.
+    const Pose aside{Vec3(0.0, 0.02 * mm, 0.0), {1.0, 0.0, 0.0, 0.0}};
+    const double told = 0.2 * mm;
+    CAPTURE(square.opening(aside).excess / mm);
+    REQUIRE(std::abs(square.opening(aside).excess) > 0.5 * mm);
+    CHECK_FALSE(square.check(told, aside).is_contradicted);
+}
+
 TEST_CASE("dsp: a kerf opens along the plane of the break, wherever the relief leans at its rim") {
     // Over a rectangle, the mean normal knows the relief at the rim only, where this one is highest and lowest.
     const Relief leaning = [](double y, double z) { return 0.35 * y + 1.2 * mm * std::sin(z / (2.546 * mm)); };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of a broken bone `plan assemble` puts together rightly, over cases with known truth.
 #include "assets/file/json.hpp"
-#include "tools/bench/fits/assembly_cases.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/fits/assembly_cases.hpp"
 #include "tools/bench/fits/result_lines.hpp"
 
 #include <fmt/format.h>

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::bench {
@@ -89,6 +90,13 @@ double face_error(const Piece& piece, const Pose& pose, const Pose& truth, const
         area += p.area;
     }
     return area > 0.0 ? std::sqrt(sum / area) : glm::length(pose.apply(near) - truth.apply(near));
+}
+
+Vec3 farthest_from(const Piece& piece, const Vec3& place) {
+    Vec3 far = place;
+    for (const contact::SurfacePoint& p : piece.points)
+        if (glm::length(p.position - place) > glm::length(far - place)) far = p.position;
+    return far;
 }
 
 Pose shaken(const Pose& pose, const Vec3& about, double offset, double angle, const Random& random) {
@@ -201,9 +209,17 @@ private:
             fit::FitSettings& s = matcher_->settings.fit;
             s.least_score = s.least_margin = s.least_share = s.least_overlap = 0.0;
             s.most_rms = 2.0;
+            s.most_far = std::numeric_limits<double>::infinity();
             const fit::FragmentMatch loose = look(i, poses, is_global);
-            matcher_->settings.fit = usual;
-            const fit::FragmentMatch strict = look(i, poses, is_global);
+            s = usual;
+            s.most_far = std::numeric_limits<double>::infinity();
+            const fit::FragmentMatch unheld = look(i, poses, is_global);
+            s = usual;
+            // The limit changes nothing where it refuses nothing.
+            const bool is_refused = unheld.verdict == fit::FitVerdict::fit && unheld.precision.far > usual.most_far;
+            const fit::FragmentMatch strict = is_refused ? look(i, poses, is_global) : unheld;
+            trial.unheld = unheld.verdict;
+            trial.held = unheld.precision.far;
             trial.loose = loose.verdict;
             trial.verdict = strict.verdict;
             trial.score = loose.quality.score;
@@ -214,6 +230,8 @@ private:
             if (is_true) {
                 trial.error = face_error(piece(i), loose.pose, place, middle);
                 trial.verdict_error = face_error(piece(i), strict.pose, place, middle);
+                const Vec3 end = farthest_from(piece(i), middle);
+                trial.far_error = glm::length(unheld.pose.apply(end) - place.apply(end));
             }
             trials_.push_back(trial);
         }

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <vector>
 
 namespace tactus::bench {
 
@@ -53,7 +53,34 @@ Json row_of(int group, const PairTrial& t) {
             {"overlap_mm2", t.overlap * 1e6},
             {"rms_mm", t.rms * 1e3},
             {"error_mm", t.error * 1e3},
-            {"verdict_error_mm", t.verdict_error * 1e3}};
+            {"verdict_error_mm", t.verdict_error * 1e3},
+            {"unheld", fit::name_of(t.unheld)},
+            {"held_mm", std::min(t.held * 1e3, 1e3)},
+            {"far_error_mm", t.far_error * 1e3}};
+}
+
+/// Fits of neighbours that the other thresholds let pass, by how well their faces hold the far end.
+struct HeldTally {
+    double limit = 0.0;  ///< mm
+    int right = 0, wrong = 0;  ///< that the limit keeps; wrong: far end more than the goal of long bones off
+    int lost = 0, refused = 0;  ///< right and wrong ones that it refuses
+};
+
+std::vector<HeldTally> held_of(const std::vector<Json>& rows, bool to_set) {
+    constexpr double wrong_mm = 0.5;
+    std::vector<HeldTally> tallies{{0.5}, {0.65}, {0.8}, {1.0}};
+    for (const Json& row : rows) {
+        if (is_to_set(row["group"].get<int>()) != to_set || row["kind"] != "true" || row["unheld"] != "fit") continue;
+        const bool is_wrong = row["far_error_mm"].get<double>() > wrong_mm;
+        for (HeldTally& t : tallies) {
+            const bool is_kept = row["held_mm"].get<double>() <= t.limit;
+            t.right += is_kept && !is_wrong;
+            t.wrong += is_kept && is_wrong;
+            t.lost += !is_kept && !is_wrong;
+            t.refused += !is_kept && is_wrong;
+        }
+    }
+    return tallies;
 }
 
 FitsTally tally_of(const std::vector<Json>& rows, bool to_set) {
@@ -86,7 +113,14 @@ FitsTally tally_of(const std::vector<Json>& rows, bool to_set) {
     return tally;
 }
 
-Json json_of(const FitsTally& t, bool to_set) {
+Json json_of(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set) {
+    Json limits = Json::array();
+    for (const HeldTally& h : held)
+        limits.push_back({{"limit_mm", h.limit},
+                          {"right_kept", h.right},
+                          {"wrong_kept", h.wrong},
+                          {"right_lost", h.lost},
+                          {"wrong_refused", h.refused}});
     return {{"half", to_set ? "set" : "judge"},
             {"bones", t.groups},
             {"mismatches", t.mismatches},
@@ -98,15 +132,21 @@ Json json_of(const FitsTally& t, bool to_set) {
             {"weakest_true_score", t.weakest_score},
             {"weakest_true_share", t.weakest_share},
             {"weakest_true_margin", t.weakest_margin},
-            {"strongest_false_score", t.strongest_score}};
+            {"strongest_false_score", t.strongest_score},
+            {"held", limits}};
 }
 
-void print(const FitsTally& t, bool to_set) {
+void print(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set) {
     fmt::print(
         "{}: {} broken bones; {} mismatches, {} of them near misses: {} false fits; {} neighbours, {} found without "
         "thresholds, {} kept ({:.1f} %); weakest true fit: score {:.2f}, share {:.2f}, margin {:.2f}\n",
         to_set ? "to set" : "to judge", t.groups, t.mismatches, t.near_misses, t.false_fits, t.trials, t.found, t.kept,
         t.found > 0 ? 100.0 * t.kept / t.found : 0.0, t.weakest_score, t.weakest_share, t.weakest_margin);
+    for (const HeldTally& h : held)
+        fmt::print(
+            "    far end held within {:.2f} mm: {} right fits kept, {} lost; {} wrong ones (0.5 mm off) kept, {} "
+            "refused\n",
+            h.limit, h.right, h.lost, h.wrong, h.refused);
 }
 
 }  // namespace
@@ -123,8 +163,9 @@ int bench_fits(const FitsChoice& choice) {
     for (const bool to_set : {true, false}) {
         const FitsTally tally = tally_of(lines.rows(), to_set);
         if (tally.groups == 0) continue;
-        halves.push_back(json_of(tally, to_set));
-        if (!choice.json) print(tally, to_set);
+        const std::vector<HeldTally> held = held_of(lines.rows(), to_set);
+        halves.push_back(json_of(tally, held, to_set));
+        if (!choice.json) print(tally, held, to_set);
     }
     if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"halves", halves}, {"rows", lines.rows()}}.dump(2));
     return done;

@@ -31,6 +31,7 @@ constexpr double goal_angle = 0.25, goal_error = 0.5e-3;  // degrees, m
 struct ShaftsChoice {
     int first = 0, count = 20;
     double chips = 0.2, kerf = 0.0, roughness = 0.8;  // share, mm, mm
+    double size = 1.0;  // of the bone
     std::optional<double> told_kerf;  // mm
     bool told = false, json = false;
     std::filesystem::path bone;
@@ -40,9 +41,21 @@ struct Shaft {
     int number = 0;
     std::string verdict;
     double area = 0.0, angle = 0.0, error = 0.0;  ///< m², degrees, m on the axis, 150 mm from the face
+    double end_error = 0.0;  ///< m, where the fragment is farthest from the face
+    fit::FitPrecision precision;
     double open = 0.0;  ///< m, how far apart the faces stay that a blade has parted
     std::optional<fit::KerfEstimate> kerf;
 };
+
+bone::Bone resized(bone::Bone bone, double size) {
+    for (volume::Grid* grid : {&bone.distance, &bone.density}) {
+        grid->origin *= size;
+        grid->spacing *= size;
+    }
+    for (auto& distance : bone.distance.values) distance = static_cast<float>(distance * size);
+    bone.points.clear();
+    return bone;
+}
 
 /// The middle of a fragment's paint and its area.
 std::pair<Vec3, double> middle_of_paint(const study::CaseFragment& fragment) {
@@ -73,7 +86,8 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
                                                                      : choice.told    ? settings.kerf
                                                                                       : 0.0});
     const study::CaseFragment& moving = matching.fragment(1);
-    const auto [face, area] = middle_of_paint(moving);
+    const std::pair<Vec3, double> paint = middle_of_paint(moving);
+    const Vec3& face = paint.first;
     const Pose truth = place[0].inverse() * place[1];
     const Random random{settings.seed + 999};
     const auto way = [&](std::uint64_t n) {
@@ -88,11 +102,20 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         found = matching.near(arrangement, 1, study::Partners::all);
     }
     const Pose& pose = found.match.pose;
-    Shaft shaft{number,    std::string(fit::name_of(found.match.verdict)), area, 0.0, 0.0, found.match.quality.gap,
-                found.kerf};
+    Shaft shaft;
+    shaft.number = number;
+    shaft.verdict = fit::name_of(found.match.verdict);
+    shaft.area = paint.second;
+    shaft.precision = found.match.precision;
+    shaft.open = found.match.quality.gap;
+    shaft.kerf = found.kerf;
     shaft.angle = glm::length(rotation_between(truth.orientation, pose.orientation)) / degree;
     const Vec3 end = face + far_from_face * glm::normalize(study::middle_of(moving.bone.points) - face);
     shaft.error = glm::length(pose.apply(end) - truth.apply(end));
+    const Vec3 last = std::ranges::max_element(moving.bone.points, {}, [&face](const contact::SurfacePoint& p) {
+                          return glm::length(p.position - face);
+                      })->position;
+    shaft.end_error = glm::length(pose.apply(last) - truth.apply(last));
     return shaft;
 }
 
@@ -103,7 +126,8 @@ double part_of(std::vector<double> values, double share) {
 }
 
 int bench_shafts(const ShaftsChoice& choice) {
-    const bone::Bone bone = choice.bone.empty() ? library::make_fibula() : cases::bone_from_file(choice.bone);
+    const bone::Bone bone =
+        resized(choice.bone.empty() ? library::make_fibula() : cases::bone_from_file(choice.bone), choice.size);
     std::vector<double> angles, errors;
     int fits = 0, good = 0;
     Json rows = Json::array();
@@ -120,6 +144,9 @@ int bench_shafts(const ShaftsChoice& choice) {
                         {"face_mm2", shaft.area * 1e6},
                         {"angle_deg", shaft.angle},
                         {"error_mm", shaft.error * 1e3},
+                        {"end_error_mm", shaft.end_error * 1e3},
+                        {"held_mm", std::min(shaft.precision.far * 1e3, 1e3)},
+                        {"held_deg", std::min(shaft.precision.turn / degree, 180.0)},
                         {"gap_mm", shaft.open * 1e3}});
         if (shaft.kerf) {
             rows.back()["kerf_seen_mm"] = shaft.kerf->kerf * 1e3;
@@ -170,6 +197,9 @@ Verb shafts_verb() {
             verb.flag("--told", choice->told, "the fit knows the kerf");
             verb.add("--told-kerf", choice->told_kerf, "mm of kerf that the fit is told, right or wrong")
                 .range(0.0, 4.0);
+            verb.add("--size", choice->size, "of the bone, as a share: small bones have small faces")
+                .shows_default()
+                .range(0.2, 2.0);
             verb.add("--bone", choice->bone, "file of the long bone (default: the library's fibula)");
             verb.flag("--json", choice->json, "as JSON");
             return [choice] { return bench_shafts(*choice); };
