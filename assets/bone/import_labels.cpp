@@ -30,7 +30,7 @@ std::vector<volume::Segment> choose_segments(const std::string& wanted, const st
         all.push_back(known != named.end() ? *known : volume::Segment{label, "", {}});
         // Names must be unique: a second label of the same name gets its number.
         if (all.back().name.empty() || std::count(names.begin(), names.end(), all.back().name) > 0)
-            all.back().name = fmt::format("label {}", label);
+            all.back().name = fmt::format("label_{}", label);
         names.push_back(all.back().name);
     }
     if (wanted == "all") return all;

@@ -251,7 +251,7 @@ Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, c
         bone.density = assumed_density(bone.distance);
         bone.provenance["calibration"] = assumed_density_law();
     }
-    bone.name = segment.name.empty() ? fmt::format("label {}", segment.label) : segment.name;
+    bone.name = segment.name.empty() ? fmt::format("label_{}", segment.label) : segment.name;
     bone.colour = segment.colour.value_or(label_colour(segment.label));
     bone.provenance["frame"] = "LPS";
     bone.provenance["label"] = std::to_string(segment.label);

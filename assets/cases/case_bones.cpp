@@ -81,11 +81,11 @@ CaseBones load_case(const std::filesystem::path& path) {
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", path.string(), error.message()));
     }
-    for (PlanFragment& fragment : made.plan.fragments) {
+    for (const PlanFragment& fragment : fragments_of(made.plan))
         made.bones.push_back(fragment_bone(fragment, folder, Paint::or_proposed).bone);
-        fragment.file = file_of(fragment.file, folder).string();
-    }
+    for (PlanFragment& fragment : made.plan.fragments) fragment.file = file_of(fragment.file, folder).string();
     for (PlanStep& step : made.plan.steps) {
+        if (step.painted) step.painted->file = file_of(step.painted->file, folder).string();
         if (step.mirror) step.mirror->file = file_of(step.mirror->file, folder).string();
         if (!step.reconstruction) continue;
         reconstruct::Reconstruction all = *step.reconstruction;

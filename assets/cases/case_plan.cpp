@@ -17,8 +17,8 @@ namespace tactus::cases {
 
 namespace {
 
-constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",    "lock",
-                                      "unlock", "hide",  "show", "mirror", "reconstruct"};
+constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",     "lock",
+                                      "unlock", "hide",  "show", "mirror", "reconstruct", "repaint"};
 
 [[noreturn]] void refuse(const PlanStep& step, const std::string& why) {
     throw Error(fmt::format("step '{}': {}", name_of(step.kind), why));
@@ -85,6 +85,12 @@ void reconstruct(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     state.pieces = step.fragments;
 }
 
+void repaint(const PlanStep& step, PlanState& state) {
+    if (!step.painted) refuse(step, "has no file");
+    if (step.fragments.size() != 1) refuse(step, "names more than one fragment");
+    state.files[static_cast<std::size_t>(step.fragments[0])] = *step.painted;
+}
+
 void forget_groups_that_are_gone(PlanState& state) {
     for (std::size_t n = 0; n < state.group_names.size(); ++n)
         if (!state.arrangement.exists(static_cast<int>(n))) state.group_names[n].clear();
@@ -117,7 +123,7 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
             if (state.find_group(step.group) != fit::Arrangement::none)
                 refuse(step, fmt::format("the group '{}' exists already", step.group));
             const int made = a.join(step.fragments);
-            if (made == fit::Arrangement::none) refuse(step, "these move together already");
+            if (made == fit::Arrangement::none) refuse(step, "needs two fragments that do not move together already");
             state.group_names[static_cast<std::size_t>(made)] = step.group;
             break;
         }
@@ -149,6 +155,7 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
             state.mirror = step.mirror;
             break;
         case StepKind::reconstruct: reconstruct(plan, step, state); break;
+        case StepKind::repaint: repaint(step, state); break;
     }
     forget_groups_that_are_gone(state);
 }
@@ -157,12 +164,15 @@ namespace {
 
 PlanState as_scanned(const CasePlan& plan) {
     const fit::Arrangement arrangement(plan.fragments.size());
+    std::vector<HashedFile> files;
+    for (const PlanFragment& fragment : plan.fragments) files.push_back({fragment.file, fragment.hash});
     return {arrangement,
             std::vector<std::string>(arrangement.most_groups()),
             std::vector<std::optional<PlanFit>>(plan.fragments.size()),
             std::nullopt,
             {},
-            {}};
+            {},
+            std::move(files)};
 }
 
 }  // namespace
@@ -223,9 +233,20 @@ void add_step(CasePlan& plan, PlanState& state, PlanStep step) {
     plan.place() = fit::after_step(static_cast<int>(plan.steps.size()) - 1);
 }
 
+std::vector<PlanFragment> fragments_of(const CasePlan& plan, const PlanState& state) {
+    std::vector<PlanFragment> all = plan.fragments;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        all[n].file = state.files[n].file;
+        all[n].hash = state.files[n].hash;
+    }
+    return all;
+}
+
+std::vector<PlanFragment> fragments_of(const CasePlan& plan) { return fragments_of(plan, state_of(plan)); }
+
 std::string free_group_name(const PlanState& state) {
     for (int n = 1;; ++n)
-        if (std::string name = fmt::format("group {}", n); state.find_group(name) == fit::Arrangement::none)
+        if (std::string name = fmt::format("group_{}", n); state.find_group(name) == fit::Arrangement::none)
             return name;
 }
 
@@ -290,9 +311,9 @@ std::vector<std::string> changed_files(const CasePlan& plan, const std::filesyst
             problems.push_back(fmt::format("{}: its file {} has changed since the plan was made", what,
                                            file_of(file, folder).string()));
     };
-    for (const PlanFragment& fragment : plan.fragments)
-        look("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
     const PlanState state = state_of(plan);
+    for (const PlanFragment& fragment : fragments_of(plan, state))
+        look("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
     if (state.mirror) look("mirror target", state.mirror->file, state.mirror->hash);
     if (const auto& all = state.reconstruction) {
         look("donor", all->donor.file, all->donor.hash);

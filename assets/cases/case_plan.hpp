@@ -58,9 +58,16 @@ enum class StepKind : std::uint8_t {
     hide,
     show,
     mirror,
-    reconstruct
+    reconstruct,
+    repaint
 };
 std::string_view name_of(StepKind kind);
+
+/// A file with the hash of its bytes.
+struct HashedFile {
+    std::string file;  ///< as in PlanFragment
+    std::uint64_t hash = 0;
+};
 
 /// A step. Fragments are referred to by their index in the plan.
 struct PlanStep {
@@ -76,6 +83,7 @@ struct PlanStep {
     std::optional<MirrorTarget> mirror;
     /// The whole reconstruction of a jaw; `fragments` are its pieces.
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};
+    std::optional<HashedFile> painted{};  ///< for `repaint`: the file of the one fragment from here on
 };
 
 /// A named path through the steps.
@@ -105,6 +113,7 @@ struct PlanState {
     std::optional<MirrorTarget> mirror;
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the last one; null: none
     std::vector<int> pieces{};  ///< the fragments of the reconstruction
+    std::vector<HashedFile> files{};  ///< per fragment: the plan's, or that of the last `repaint`
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;
@@ -129,8 +138,12 @@ void add_step(CasePlan& plan, PlanStep step);
 /// The same with the state at the head, which it updates: avoids replaying all earlier steps for each new one.
 void add_step(CasePlan& plan, PlanState& state, PlanStep step);
 
-/// "group 1", or the next free number.
+/// "group_1", or the next free number.
 std::string free_group_name(const PlanState& state);
+
+/// The fragments with their files in this state, or at the head of the current alternative.
+std::vector<PlanFragment> fragments_of(const CasePlan& plan, const PlanState& state);
+std::vector<PlanFragment> fragments_of(const CasePlan& plan);
 
 /// Index of a fragment. Throws Error with similar names.
 int find_fragment(const CasePlan& plan, std::string_view name);
@@ -146,7 +159,8 @@ void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem
 /// Path of a fragment's file; `folder` is the plan's folder.
 std::filesystem::path file_of(const std::string& file, const std::filesystem::path& folder);
 
-/// Problems of the fragments' files, one sentence each: missing, or changed since the plan was made.
+/// Problems of the files at the head of the current alternative, one sentence each: missing, or changed since the plan
+/// was made.
 std::vector<std::string> changed_files(const CasePlan& plan, const std::filesystem::path& folder);
 
 }  // namespace tactus::cases

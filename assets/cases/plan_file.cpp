@@ -67,6 +67,7 @@ Json json_of(const CasePlan& plan, const PlanStep& step) {
     if (step.fit) json["fit"] = json_of(*step.fit);
     if (step.mirror) json["mirror"] = json_of(*step.mirror);
     if (step.reconstruction) json["reconstruction"] = reconstruct::json_of(*step.reconstruction);
+    if (step.painted) json["painted"] = {{"file", step.painted->file}, {"hash", hex(step.painted->hash)}};
     return json;
 }
 
@@ -168,7 +169,7 @@ MirrorTarget read_mirror(const Item& item) {
 
 StepKind read_kind(const Item& item) {
     const std::string name = item.text("kind");
-    for (int n = 0; n <= static_cast<int>(StepKind::reconstruct); ++n)
+    for (int n = 0; n <= static_cast<int>(StepKind::repaint); ++n)
         if (name == name_of(static_cast<StepKind>(n))) return static_cast<StepKind>(n);
     item.fail(fmt::format("has the unknown kind '{}'", name));
 }
@@ -200,6 +201,10 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
     if (item.has("reconstruction"))
         step.reconstruction = std::make_shared<reconstruct::Reconstruction>(
             reconstruct::reconstruction_of(item.at("reconstruction"), item.place("reconstruction")));
+    if (item.has("painted")) {
+        const Item painted = item.item("painted");
+        step.painted = HashedFile{painted.text("file"), painted.hash("hash")};
+    }
     return step;
 }
 

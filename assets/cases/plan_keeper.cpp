@@ -29,6 +29,10 @@ bool is_continued(const std::string& text, const CasePlan& plan) {
             p.alternatives = {{"main", {}}};
             p.current = 0;
             for (PlanFragment& f : p.fragments) f.file.clear();
+            for (PlanStep& step : p.steps) {
+                if (step.mirror) step.mirror->file.clear();
+                if (step.painted) step.painted->file.clear();
+            }
         };
         bare(old);
         bare(begun);

@@ -84,7 +84,7 @@ std::string segment_lines(const Grid& layout, std::span<const Segment> segments)
         "Segmentation_MasterRepresentation:=Binary labelmap\nSegmentation_ReferenceImageExtentOffset:=0 0 0\n";
     for (std::size_t n = 0; n < segments.size(); ++n) {
         const Segment& s = segments[n];
-        const std::string name = s.name.empty() ? fmt::format("label {}", s.label) : s.name;
+        const std::string name = s.name.empty() ? fmt::format("label_{}", s.label) : s.name;
         if (name.find_first_of("\n\r") != std::string::npos)
             throw Error(fmt::format("the name of label {} has a line break", s.label));
         text += fmt::format(

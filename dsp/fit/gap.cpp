@@ -1,29 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/gap.hpp"
 
+#include "dsp/core/weighted_quantile.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace tactus::fit {
-
-namespace {
-
-/// Weighted quantile: the value below which `share` of the weights lie.
-double weighted_quantile(const std::vector<double>& values, const std::vector<double>& weights, double share) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return values[n]; });
-    const double wanted = share * std::accumulate(weights.begin(), weights.end(), 0.0);
-    double sum = 0.0;
-    for (const std::size_t n : order)
-        if ((sum += weights[n]) >= wanted) return values[n];
-    return values[order.back()];
-}
-
-}  // namespace
 
 SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose& pose, const contact::Voxmap& other,
                        const Pose& other_pose, const GapSettings& settings) {

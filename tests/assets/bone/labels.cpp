@@ -156,7 +156,7 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
         CHECK(after.p95 < 0.7 * before.p95);
         CHECK_THAT(seen.provenance.at("surface"), ContainsSubstring("grey values"));
         CHECK_THAT(seen.provenance.at("calibration"), ContainsSubstring("without a density phantom"));
-        CHECK(seen.name == "label 3");
+        CHECK(seen.name == "label_3");
         // The same CT taken by its threshold.
         const bone::Bone direct = bone::bone_from_hu(hu, {640.0f, 1, true}).bone;
         CHECK(mesh::volume_of(mesh::surface_of(seen.distance)) ==
@@ -261,8 +261,8 @@ TEST_CASE("a label map's file becomes one file of bones in its frame, and labels
     file::write_whole_file(options.input, nrrd_of(labels));
     const std::vector<bone::ImportedBone> both = bone::import_labels(options);
     REQUIRE(both.size() == 2);
-    CHECK(both[0].bone.name == "label 1");
-    CHECK(both[1].bone.name == "label 5");
+    CHECK(both[0].bone.name == "label_1");
+    CHECK(both[1].bone.name == "label_5");
     CHECK(both[0].bone.colour != both[1].bone.colour);
     CHECK(both[0].summary.bone_volume_mm3 == Approx(count_of(labels, 1.0f) * 0.125).epsilon(0.02));
     CHECK(both[1].summary.bone_volume_mm3 == Approx(count_of(labels, 5.0f) * 0.125).epsilon(0.02));

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/case_bones.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
+#include "dsp/contact/sample_surface.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
@@ -55,6 +57,34 @@ TEST_CASE("a plan that is written to another folder names the meshes of its reco
     cases::save_case_plan(plan, home / "case.plan.json");
 
     const cases::CaseBones loaded = cases::load_case(home / "case.plan.json");
+    cases::save_case_plan(loaded.plan, away / "case.plan.json");
+    CHECK(cases::changed_files(cases::load_case_plan(away / "case.plan.json"), away).empty());
+}
+
+TEST_CASE("a case is loaded with the bone that a step repainted, and written elsewhere it names its file") {
+    const TemporaryFolder folder;
+    const fs::path home = folder.path / "case", away = folder.path / "run";
+    fs::create_directories(home);
+    fs::create_directories(away);
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{box(), {}}}, home / "b.stl");
+    cases::CasePlan plan;
+    cases::add_fragment(plan, "b", home / "b.stl", home, Vec3(1.0));
+    bone::Bone painted = cases::bone_from_file(home / "b.stl");
+    painted.points = contact::sample_surface(painted.distance, {});
+    painted.points.front().label = contact::surface_label::fracture;
+    bone::save_bone(painted, home / "painted.vdb");
+    cases::CasePlan taken;
+    cases::add_fragment(taken, "b", home / "painted.vdb", home, Vec3(1.0));
+    cases::PlanStep step;
+    step.kind = cases::StepKind::repaint;
+    step.by = "command";
+    step.fragments = {0};
+    step.painted = cases::HashedFile{taken.fragments[0].file, taken.fragments[0].hash};
+    cases::add_step(plan, step);
+    cases::save_case_plan(plan, home / "case.plan.json");
+    const cases::CaseBones loaded = cases::load_case(home / "case.plan.json");
+    CHECK(loaded.bones[0].points.size() == painted.points.size());
+    CHECK(loaded.bones[0].points.front().label == contact::surface_label::fracture);
     cases::save_case_plan(loaded.plan, away / "case.plan.json");
     CHECK(cases::changed_files(cases::load_case_plan(away / "case.plan.json"), away).empty());
 }

@@ -102,6 +102,36 @@ TEST_CASE("a plan that is read again has the same bits in every pose, and can be
     CHECK(after.find_group("chin") != fit::Arrangement::none);
 }
 
+TEST_CASE("a repainted fragment has its file from that step on, in the file of the plan too") {
+    cases::CasePlan plan = four();
+    const auto file_of_b = [](const cases::CasePlan& p) { return cases::fragments_of(p)[1].file; };
+    const auto painted = [](std::vector<int> fragments) {
+        cases::PlanStep step = meaning(cases::StepKind::repaint, std::move(fragments));
+        step.painted = cases::HashedFile{"b2.vdb", 0x1234567890abcdef};
+        return step;
+    };
+    cases::add_step(plan, painted({1}));
+    put(plan, 1, any_pose(1));
+    CHECK(file_of_b(plan) == "b2.vdb");
+    CHECK(cases::fragments_of(plan)[1].hash == 0x1234567890abcdef);
+    CHECK(cases::fragments_of(plan)[1].name == "b");
+    CHECK(cases::fragments_of(plan)[2].file == "c");
+    const cases::CasePlan again = cases::read_plan_text(cases::plan_text(plan), "p");
+    CHECK(file_of_b(again) == "b2.vdb");
+    CHECK(cases::plan_text(again) == cases::plan_text(plan));
+    for (int n = 0; n < 2; ++n) plan.place() = fit::undone(plan.before(), plan.place());
+    CHECK(file_of_b(plan) == "b");
+    plan.place() = fit::redone(plan.before(), plan.place());
+    CHECK(file_of_b(plan) == "b2.vdb");
+    // One fragment, and a file.
+    CHECK_THROWS_WITH(cases::add_step(plan, painted({1, 2})), Catch::Matchers::ContainsSubstring("more than one"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::repaint, {1})),
+                      Catch::Matchers::ContainsSubstring("has no file"));
+    CHECK_THROWS_WITH(
+        cases::read_plan_text(replaced(cases::plan_text(again), "1234567890abcdef", "1234567890abcdeX"), "p"),
+        Catch::Matchers::ContainsSubstring("steps[0].painted has a 'hash' that is not a hash"));
+}
+
 TEST_CASE("undoing takes poses back to the bit, and no step is ever lost") {
     cases::CasePlan plan = four();
     std::vector<Pose> way{Pose{}};

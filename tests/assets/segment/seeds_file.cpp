@@ -99,7 +99,7 @@ TEST_CASE("assets: a written label map is read with its names and colours and pl
     CHECK(read.segments[0].name == "ischium left");
     REQUIRE(read.segments[0].colour);
     CHECK(read.segments[0].colour->y == Approx(0.4));
-    CHECK(read.segments[1].name == "label 2");
+    CHECK(read.segments[1].name == "label_2");
     CHECK_FALSE(read.segments[1].colour);
     const volume::Grid grid = volume::lps_grid(read);
     CHECK(grid.size == layout.size);

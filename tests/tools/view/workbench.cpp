@@ -40,6 +40,22 @@ bool come_about(const std::function<bool()>& what) {
     return false;
 }
 
+/// A run of a patch with two sources of events and a counter, and what is added.
+RunChoice events_in(const Folder& folder, const std::string& wires, const std::string& more_nodes) {
+    RunChoice choice = choice_in(folder);
+    choice.patch = folder
+                       .write("events.toml", "title = \"Events\"\n" + wires + R"(
+[nodes]
+slow = { type = "clock", rate = "1 kHz" }
+fast = { type = "clock", rate = "1 kHz" }
+a = { type = "button_events", rate = "1 kHz" }
+b = { type = "button_events", rate = "1 kHz" }
+count = { type = "event_counter", rate = "1 kHz" }
+)" + more_nodes)
+                       .string();
+    return choice;
+}
+
 }  // namespace
 
 TEST_CASE("an edit at the bench that does not compile is refused with the compiler's words") {
@@ -58,19 +74,8 @@ TEST_CASE("an edit at the bench that does not compile is refused with the compil
 
 TEST_CASE("a second wire to an input of events is added, and removing one leaves the other") {
     const Folder folder;
-    RunChoice choice = choice_in(folder);
-    choice.patch = folder
-                       .write("events.toml", R"(title = "Events"
-wires = ["slow.out -> a.in", "fast.out -> b.in", "a.events -> count.in"]
-[nodes]
-slow = { type = "clock", rate = "1 kHz" }
-fast = { type = "clock", rate = "1 kHz" }
-a = { type = "button_events", rate = "1 kHz" }
-b = { type = "button_events", rate = "1 kHz" }
-count = { type = "event_counter", rate = "1 kHz" }
-)")
-                       .string();
-    Workbench bench(choice);
+    Workbench bench(
+        events_in(folder, R"(wires = ["slow.out -> a.in", "fast.out -> b.in", "a.events -> count.in"])", ""));
     REQUIRE(bench.plan());
     CHECK(bench.plan()->wires.size() == 3);
     REQUIRE(bench.connect("b.events", "count.in"));
@@ -85,30 +90,19 @@ count = { type = "event_counter", rate = "1 kHz" }
 
 TEST_CASE("a wire led to another input by hand keeps how it is delivered, and takes no other wire along") {
     const Folder folder;
-    RunChoice choice = choice_in(folder);
-    choice.patch = folder
-                       .write("events.toml", R"(title = "Events"
-wires = [
+    Workbench bench(events_in(folder, R"(wires = [
   "slow.out -> a.in",
   "fast.out -> b.in",
   "a.events -> count.in",
   "b.events -> count.in",
   "a.events -> other.in",
   "level.value -> loud.factor as linear",
-]
-[nodes]
-slow = { type = "clock", rate = "1 kHz" }
-fast = { type = "clock", rate = "1 kHz" }
-a = { type = "button_events", rate = "1 kHz" }
-b = { type = "button_events", rate = "1 kHz" }
-count = { type = "event_counter", rate = "1 kHz" }
-other = { type = "event_counter", rate = "1 kHz" }
+])",
+                              R"(other = { type = "event_counter", rate = "1 kHz" }
 level = { type = "constant", rate = "1 kHz" }
 tone = { type = "sine", rate = "48 kHz" }
 loud = { type = "gain", rate = "48 kHz" }
-)")
-                       .string();
-    Workbench bench(choice);
+)"));
     REQUIRE_FALSE(bench.is_broken());
     const auto has = [&](const std::string& wire) {
         std::string text = bench.editor().text();

@@ -64,7 +64,7 @@ Verb plan_group_verb() {
             [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb, "group");
                 add_fragments(verb, *choice, "which ones");
-                verb.add("--name", choice->group, "name of the group (default: group and a number)");
+                verb.add("--name", choice->group, "name of the group (default: group_1 and on)");
                 return [choice] { return arrange(*choice); };
             }};
 }
@@ -91,7 +91,7 @@ Verb plan_lock_verb() {
     return {"lock", "lock fragments and their groups, so that they cannot be moved", add_simple<lock_kind>};
 }
 Verb plan_unlock_verb() { return {"unlock", "unlock fragments", add_simple<unlock_kind>}; }
-Verb plan_hide_verb() { return {"hide", "hide fragments in pictures and fits", add_simple<hide_kind>}; }
+Verb plan_hide_verb() { return {"hide", "leave fragments out of pictures, fits and files", add_simple<hide_kind>}; }
 Verb plan_unhide_verb() { return {"unhide", "show hidden fragments again", add_simple<unhide_kind>}; }
 
 }  // namespace tactus::command

@@ -32,9 +32,11 @@ int check(const PlanChoice& choice) {
                         "'tactus plan snap'",
                         parts.size()));
     // Without its files nothing shows where a fragment ends.
+    std::vector<std::string> notes;
     if (has_files)
-        for (const study::PlanOverlap& overlap : study::plan_overlaps(plan, folder))
+        for (const study::PlanOverlap& overlap : study::plan_overlaps(plan, folder, notes))
             problems.push_back(study::overlap_words(plan, overlap));
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
     if (choice.json)
         fmt::print("{}\n", Json{{"ok", problems.empty()}, {"assemblies", parts}, {"problems", problems}}.dump(2));
     else {

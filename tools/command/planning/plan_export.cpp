@@ -23,12 +23,15 @@ struct ExportChoice : PlanChoice {
 int export_plan(const ExportChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     Json written = Json::array();
-    for (const study::ExportedFragment& one :
-         study::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format)) {
+    const study::ExportedPlan exported = study::export_plan(plan, choice.plan.parent_path(), choice.out, choice.format);
+    for (const study::ExportedFragment& one : exported.written) {
         written.push_back({{"fragment", one.name}, {"files", one.files}, {"pose", pose_json<Json>(one.pose)}});
         if (!choice.json) fmt::print("{}\n", fmt::join(one.files, ", "));
     }
     if (choice.json) fmt::print("{}\n", written.dump(2));
+    if (!exported.left_out.empty())
+        fmt::print(stderr, "note: hidden, so not written: {}; show them with 'tactus plan unhide'\n",
+                   fmt::join(exported.left_out, ", "));
     return done;
 }
 
@@ -43,7 +46,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_export_verb() {
-    return {"export", "write placed fragments, transforms and landmarks for other programs", add};
+    return {"export", "write the shown fragments as placed, transforms and landmarks for other programs", add};
 }
 
 }  // namespace tactus::command

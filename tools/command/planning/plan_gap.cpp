@@ -18,10 +18,10 @@ Json json_of(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gap
     Json pairs = Json::array();
     for (const study::PlanGap& g : gaps) {
         // Without surfaces that face each other there is no gap.
-        const bool is_facing = g.gap.facing_area > 0.0;
+        const bool is_facing = g.gap.facing > 0.0;
         pairs.push_back({{"fragments", {name(g.first), name(g.second)}},
-                         {"facing_mm2", g.gap.facing_area * 1e6},
-                         {"contact_mm2", g.gap.contact_area * 1e6},
+                         {"facing_mm2", g.gap.facing * 1e6},
+                         {"contact_mm2", g.gap.contact * 1e6},
                          {"gap_median_mm", is_facing ? Json(g.gap.median * 1e3) : Json(nullptr)},
                          {"gap_p95_mm", is_facing ? Json(g.gap.p95 * 1e3) : Json(nullptr)},
                          {"deepest_mm", g.gap.deepest * 1e3},
@@ -34,7 +34,7 @@ void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps)
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     if (gaps.empty()) fmt::print("no two shown fragments face each other within 3 mm\n");
     for (const study::PlanGap& g : gaps)
-        if (!(g.gap.facing_area > 0.0))
+        if (!(g.gap.facing > 0.0))
             fmt::print("{} and {}: do not face each other within 3 mm; {:.1f} mm³ overlap{}\n", name(g.first),
                        name(g.second), g.overlap * 1e9,
                        g.gap.deepest > 0.0 ? fmt::format(", {:.2f} mm deep", g.gap.deepest * 1e3) : "");
@@ -42,13 +42,14 @@ void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps)
             fmt::print(
                 "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
                 "{:.1f} mm³ overlap, {:.2f} mm deep\n",
-                name(g.first), name(g.second), g.gap.facing_area * 1e6, g.gap.contact_area * 1e6,
+                name(g.first), name(g.second), g.gap.facing * 1e6, g.gap.contact * 1e6,
                 study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9, g.gap.deepest * 1e3);
 }
 
 int gap(const PlanChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
-    if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' needs two fragments, or none");
+    if (!choice.names.empty() && (choice.names.size() != 2 || choice.names[0] == choice.names[1]))
+        throw Error("'plan gap' needs two different fragments, or none");
     const std::filesystem::path folder = choice.plan.parent_path();
     std::optional<std::pair<int, int>> pair;
     if (!choice.names.empty())

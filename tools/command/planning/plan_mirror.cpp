@@ -2,12 +2,14 @@
 // tactus plan mirror: registers the mirrored healthy side as a target.
 #include "tools/study/planning/plan_mirror.hpp"
 #include "assets/file/json.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/study/bones/intact_side.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace tactus::command {
@@ -80,7 +82,12 @@ int mirror(const MirrorChoice& choice) {
     cases::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<int> numbers;
-    for (const std::string& name : choice.names) numbers.push_back(cases::find_fragment(plan, name));
+    for (const std::string& name : choice.names) {
+        numbers.push_back(cases::find_fragment(plan, name));
+        if (std::ranges::count(numbers, numbers.back()) > 1)
+            throw Error(
+                fmt::format("'{}' is named twice; the first is the main fragment, the others are brought to it", name));
+    }
     study::MirrorStudy laid(plan, folder, numbers[0], choice.healthy);
     cases::PlanStep step;
     step.kind = cases::StepKind::mirror;

@@ -18,6 +18,18 @@ struct NewChoice : PlanChoice {
     std::string title;
 };
 
+/// Throws Error when the last fragment is the same bone as an earlier one.
+void check_is_new(const cases::CasePlan& plan) {
+    const cases::PlanFragment& last = plan.fragments.back();
+    const auto bone_in = [](const std::string& file) {
+        return bone::file_of_bone(file) == file ? std::string() : file.substr(file.rfind('#') + 1);
+    };
+    for (const cases::PlanFragment& other : plan.fragments)
+        if (&other != &last && other.hash == last.hash && bone_in(other.file) == bone_in(last.file))
+            throw Error(fmt::format("{}: is the same bone as fragment '{}'; name each fragment's file once", last.file,
+                                    other.name));
+}
+
 /// "NAME=FILE" or "FILE"; the default name is the stem of the file, or the name of the bone in it.
 void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path& folder) {
     const auto equals = text.find('=');
@@ -42,6 +54,7 @@ void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path&
     for (auto& [own, path] : found) {
         cases::add_fragment(plan, is_named ? name : own, path, folder,
                             bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
+        check_is_new(plan);
         // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
         study::load_fragment(plan.fragments.back(), folder);
     }

@@ -19,11 +19,12 @@ struct RepaintChoice : PlanChoice {
 int repaint_fragment(const RepaintChoice& choice) {
     study::OpenPlan open(choice.plan);
     const std::string& name = choice.fragment;
-    const study::Repainted made = study::repaint(
-        open.plan, choice.plan.parent_path(), cases::find_fragment(open.plan, name), choice.file, choice.is_same_bone);
-    cases::save_case_plan(open.plan, choice.plan);
+    study::Repainted made = study::repaint(open.plan, choice.plan.parent_path(), cases::find_fragment(open.plan, name),
+                                           choice.file, choice.is_same_bone);
+    study::do_step(open.plan, std::move(made.step), choice.plan);
     if (!choice.json)
-        fmt::print("{}: {}, {}; poses and steps stay\n", name, choice.file.string(),
+        fmt::print("{}: {}, {}; poses stay, 'tactus plan undo' takes the file before back\n", name,
+                   choice.file.string(),
                    made.faces > 0 ? counted(made.faces, "painted face")
                                   : "no painted fracture, so that it is proposed where a fit needs it");
     return show_change(choice);
@@ -42,8 +43,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_repaint_verb() {
-    return {"repaint", "take a file with corrected paint for a fragment; poses and steps stay", add};
-}
+Verb plan_repaint_verb() { return {"repaint", "take a file with corrected paint for a fragment; poses stay", add}; }
 
 }  // namespace tactus::command

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// tactus plan report: the plan as one HTML page, a reconstruction of a jaw as PDF too.
+// tactus plan report: the plan as one HTML page, and as PDF.
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
-#include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/flap/flap_report.hpp"
+#include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_page.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
@@ -32,13 +32,10 @@ int report(const ReportChoice& choice) {
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
     std::vector<std::optional<double>> residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
-    const std::vector<picture::ReportBlock> flap = picture::flap_blocks(plan, folder);
-    if (!choice.pdf.empty() && flap.empty())
-        throw Error(
-            "--pdf: the plan has no reconstruction of a jaw at this step; the page as HTML has all of the plan");
-    file::write_whole_file(
-        out, picture::plan_page(plan, std::move(fragments), std::move(residuals), picture::html_of(flap, "flap")));
-    if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, picture::pdf_of(plan.title, flap));
+    const std::vector<picture::ReportBlock> blocks =
+        picture::plan_blocks(plan, std::move(fragments), std::move(residuals), picture::flap_blocks(plan, folder));
+    file::write_whole_file(out, picture::html::page(plan.title, picture::html_of(blocks, "plan")));
+    if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, picture::pdf_of(plan.title, blocks));
     file::Json written{{"report", out.string()}};
     if (!choice.pdf.empty()) written["pdf"] = choice.pdf.string();
     if (choice.json) fmt::print("{}\n", written.dump(2));
@@ -51,7 +48,7 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ReportChoice>();
     add_plan_options(verb, *choice);
     verb.add("-o,--out", choice->out, "HTML file (default: beside the plan)");
-    verb.add("--pdf", choice->pdf, "of a reconstruction: write its part as PDF too");
+    verb.add("--pdf", choice->pdf, "write the report as a PDF file too");
     return [choice] { return report(*choice); };
 }
 
@@ -59,7 +56,7 @@ Action add(VerbOptions& verb) {
 
 Verb plan_report_verb() {
     return {"report",
-            "write an HTML page with pictures, gaps, fits and the order of steps; of a reconstruction a PDF too", add};
+            "write an HTML page, or a PDF file too, with warnings, fits, pictures, gaps and the order of steps", add};
 }
 
 }  // namespace tactus::command

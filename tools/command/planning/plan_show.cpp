@@ -62,7 +62,7 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
         const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
         Json fragment{{"name", f.name},
-                      {"file", f.file},
+                      {"file", state.files[static_cast<std::size_t>(n)].file},
                       {"pose", pose_json<Json>(state.arrangement.pose(n))},
                       {"groups", groups_of(state, n)},
                       {"locked", state.arrangement.is_locked(n)},

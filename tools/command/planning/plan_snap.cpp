@@ -22,6 +22,7 @@ int snap_fragment(const SnapChoice& choice) {
     const std::filesystem::path folder = choice.plan.parent_path();
     const int moving = cases::find_fragment(plan, choice.names[0]);
     const int only = choice.names.size() > 1 ? cases::find_fragment(plan, choice.names[1]) : fit::Arrangement::none;
+    if (only == moving) throw Error(fmt::format("'{}' cannot be fitted to itself; name another one", choice.names[0]));
     const cases::PlanState state = cases::state_of(plan);
     const fit::Arrangement& a = state.arrangement;
     if (only != fit::Arrangement::none && a.move_together(moving, only))

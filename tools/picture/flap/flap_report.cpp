@@ -54,7 +54,8 @@ LabelledPicture jaw_picture(const cases::CasePlan& plan, const Measured& m, cons
         const cases::PlanFragment& fragment = plan.fragments[static_cast<std::size_t>(piece)];
         const bool is_segment = study::is_segment(fragment.name), is_resected = fragment.name.starts_with("resected");
         if (is_before ? is_segment : m.state.arrangement.is_hidden(piece)) continue;
-        const geometry::TriangleSurface surface = reconstruct::read_surface(cases::file_of(fragment.file, folder));
+        const geometry::TriangleSurface surface =
+            reconstruct::read_surface(cases::file_of(m.state.files[static_cast<std::size_t>(piece)].file, folder));
         const Pose pose = is_before ? Pose{} : m.state.arrangement.pose(piece);
         const Vec3 colour = is_resected ? resected_colour : is_segment ? fragment.colour : Vec3(0.90, 0.86, 0.76);
         meshes.push_back(picture_mesh(surface, pose, {&colour, 1}));

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
-#include "tools/picture/flap/report_block.hpp"
+#include "tools/picture/blocks/report_block.hpp"
 
 #include <filesystem>
 #include <vector>

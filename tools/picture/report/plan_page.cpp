@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
 #include "dsp/fit/gap.hpp"
+#include "dsp/fit/mutual_gap.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 #include "tools/counted.hpp"
@@ -16,13 +17,15 @@
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <iterator>
 
 namespace tactus::picture {
 
@@ -88,81 +91,89 @@ std::vector<PictureLabel> labels_of(const Case& c, const cases::PlanState& state
     return labels;
 }
 
-std::string pictures(const Case& c) {
+void add_pictures(const Case& c, std::vector<ReportBlock>& out) {
     const cases::PlanState before = cases::state_of(c.plan, -1);
     const std::vector<display::PictureMesh> scanned = scene_of(c, before), planned = scene_of(c, c.state);
     const std::vector<PictureLabel> there = labels_of(c, before), here = labels_of(c, c.state);
-    return "<h2>Pictures</h2>\n<p class=\"small\">R, L, A, P, S, I: towards the right, left, front, back, head and "
-           "feet of the patient. The scale holds at the middle of the scene.</p>\n<div class=\"two\">\n" +
-           plan_picture(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front", there) +
-           plan_picture(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front", here) +
-           plan_picture(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind", here) +
-           plan_picture(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above", here) + "</div>\n";
+    out.emplace_back(Heading{"Pictures"});
+    if (planned.empty()) {
+        out.emplace_back(Paragraph{"All fragments are hidden."});
+        return;
+    }
+    out.emplace_back(
+        Paragraph{"R, L, A, P, S, I: towards the right, left, front, back, head and feet of the patient. The scale "
+                  "holds at the middle of the scene."});
+    out.emplace_back(
+        PictureGrid{{labelled_picture(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front", there),
+                     labelled_picture(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front", here),
+                     labelled_picture(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind", here),
+                     labelled_picture(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above", here)}});
 }
 
 /// Legend of the colour maps.
-std::string gap_legend() {
-    std::string stops;
-    for (int n = -2; n <= 4; ++n) {
-        const Vec3 c = 255.0 * gap_colour(0.25e-3 * n);
-        stops += fmt::format(",rgb({:.0f},{:.0f},{:.0f})", c.x, c.y, c.z);
+Drawing gap_legend() {
+    constexpr double left = 190.0, width = 180.0;
+    constexpr int steps = 90;
+    display::Figure figure(560.0, 26.0);
+    for (int n = 0; n < steps; ++n) {
+        const Vec3 c = 255.0 * gap_colour((n + 0.5) / steps * 1.5e-3 - 0.5e-3);
+        figure.rectangle(
+            left + n * width / steps, 6.0, width / steps + 0.5, 14.0,
+            {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y), static_cast<std::uint8_t>(c.z), 1.0});
     }
-    return fmt::format(
-        "<p class=\"small\">overlap of 0.5 mm or more <span style=\"display:inline-block;width:12rem;height:.8rem;"
-        "background:linear-gradient(90deg{})\"></span> gap of 1 mm or more; white: contact; grey: no neighbour"
-        "</p>\n",
-        stops);
+    figure.text({left - 8.0, 17.0}, "overlap of 0.5 mm or more", 12.0, {}, display::TextAnchor::end);
+    figure.text({left + width + 8.0, 17.0}, "gap of 1 mm or more", 12.0);
+    return {std::move(figure), "White: contact; grey: no neighbour within 3 mm"};
 }
 
 /// Pose of each fragment, as in the exported files.
-std::string places(const Case& c) {
-    std::string out =
-        "<h2>Poses</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
-        "fragment</th><th>t, mm</th><th>R</th></tr>\n";
+ReportTable places(const Case& c) {
+    ReportTable table{{"fragment", "t, mm", "R"}, {}};
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
         const auto [t, q] = study::numbers_of(c.pose(n));
-        out += fmt::format("<tr><td>{}</td><td>{:.3f} {:.3f} {:.3f}</td><td>{:.6f} {:.6f} {:.6f} {:.6f}</td></tr>\n",
-                           html::escaped(c.name(n)), t[0], t[1], t[2], q[0], q[1], q[2], q[3]);
+        table.rows.push_back({c.name(n), fmt::format("{:.3f} {:.3f} {:.3f}", t[0], t[1], t[2]),
+                              fmt::format("{:.6f} {:.6f} {:.6f} {:.6f}", q[0], q[1], q[2], q[3])});
     }
-    return out + "</table>\n";
+    return table;
 }
 
-std::string fragments_table(const Case& c) {
-    std::string out =
-        "<h2>Fragments</h2>\n<table><tr><th>fragment</th><th class=\"n\">moved, mm</th><th class=\"n\">turned, °</th>"
-        "<th>fitted to</th><th>verdict</th><th class=\"n\">score</th><th class=\"n\">margin</th><th class=\"n\">rms, mm"
-        "</th><th class=\"n\">fitted area, mm²</th><th class=\"n\">from the healthy side, mm</th><th>marks</th></tr>\n";
+/// Groups, lock and hidden state of a fragment in words.
+std::string marks_of(const Case& c, int number) {
+    const fit::Arrangement& a = c.state.arrangement;
+    std::vector<std::string> marks;
+    for (int g = a.group_of(number); g != fit::Arrangement::none; g = a.parent_of(g))
+        marks.push_back("in " + c.state.group_names[static_cast<std::size_t>(g)]);
+    if (a.is_locked(number)) marks.emplace_back("locked");
+    if (a.is_hidden(number)) marks.emplace_back("hidden");
+    return fmt::format("{}", fmt::join(marks, ", "));
+}
+
+ReportTable fragments_table(const Case& c) {
+    ReportTable table{{"fragment", "moved, mm", "turned, °", "fitted to", "verdict", "score", "margin", "rms, mm",
+                       "fitted area, mm²", "from the healthy side, mm", "marks"},
+                      {}};
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
-        const Vec3 middle = middle_of(c, n);
-        const Vec3& colour = c.plan.fragments[n].colour;
-        out += fmt::format(
-            "<tr><td><span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> {}</td><td class=\"n\">{:.2f}"
-            "</td><td class=\"n\">{:.2f}</td>",
-            colour.x * 255, colour.y * 255, colour.z * 255, html::escaped(c.name(n)),
-            1e3 * glm::length(c.pose(n).apply(middle) - middle), study::angle_deg(c.pose(n)));
-        if (const auto& fit = c.state.fits[n]; fit && !c.state.holds(static_cast<int>(n)))
-            out += fmt::format("<td>{}</td><td class=\"fail\" colspan=\"5\">{}</td>", html::escaped(fit->partner),
-                               html::escaped(study::fit_words(c.state, static_cast<int>(n))));
-        else if (fit)
-            out += fmt::format(
-                "<td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td "
-                "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
-                html::escaped(fit->partner), fit->verdict == "fit" ? "pass" : "fail", html::escaped(fit->verdict),
-                fit->score, fit->margin, fit->rms * 1e3,
-                // Plans of earlier versions do not contain it.
-                fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
-        else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
-        out += "<td class=\"n\">" + (c.to_healthy[n] ? fmt::format("{:.2f}", *c.to_healthy[n] * 1e3) : "–") + "</td>";
         const int number = static_cast<int>(n);
-        std::string marks;
-        for (int g = c.state.arrangement.group_of(number); g != fit::Arrangement::none;
-             g = c.state.arrangement.parent_of(g))
-            marks += (marks.empty() ? "in " : ", in ") + c.state.group_names[static_cast<std::size_t>(g)];
-        if (c.state.arrangement.is_locked(number)) marks += " locked";
-        if (c.state.arrangement.is_hidden(number)) marks += " hidden";
-        out += "<td>" + html::escaped(marks) + "</td></tr>\n";
+        const Vec3 middle = middle_of(c, n);
+        std::vector<std::string> row{c.name(n),
+                                     fmt::format("{:.2f}", 1e3 * glm::length(c.pose(n).apply(middle) - middle)),
+                                     fmt::format("{:.2f}", study::angle_deg(c.pose(n)))};
+        const auto& fit = c.state.fits[n];
+        const bool is_void = fit && !c.state.holds(number);
+        if (!fit) row.insert(row.end(), {"–", "–", "–", "–", "–", "–"});
+        else if (is_void) row.insert(row.end(), {fit->partner, study::fit_words(c.state, number), "–", "–", "–", "–"});
+        else
+            row.insert(row.end(), {fit->partner, fit->verdict, fmt::format("{:.2f}", fit->score),
+                                   fmt::format("{:.2f}", fit->margin), fmt::format("{:.3f}", fit->rms * 1e3),
+                                   // Plans of earlier versions do not contain it.
+                                   fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–"});
+        row.push_back(c.to_healthy[n] ? fmt::format("{:.2f}", *c.to_healthy[n] * 1e3) : "–");
+        row.push_back(marks_of(c, number));
+        table.rows.push_back(std::move(row));
+        table.marks.push_back(c.plan.fragments[n].colour);
+        table.warnings.push_back(is_void);
     }
-    return out + "</table>\n";
+    return table;
 }
 
 /// Distances of the vertices of a fragment from the other one, each by its own normal: the two sides of thin bone do
@@ -193,135 +204,134 @@ std::vector<float> vertex_gaps(const Case& c, std::size_t i, std::size_t j) {
     return gaps;
 }
 
-/// A fragment coloured by the distance to the other one, seen from the other one.
-std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::SurfaceGap& gap) {
-    const auto& points = c.fragments[i].bone.points;
+/// A fragment coloured by the distance to the other one, seen from the other one; none when nothing faces it.
+std::optional<LabelledPicture> gap_map(const Case& c, std::size_t i, std::size_t j) {
     display::PictureMesh mesh = placed(c.meshes[i], c.pose(i), Vec3(0.0));
     const std::vector<float> gaps = vertex_gaps(c, i, j);
+    Vec3 towards(0.0);
     for (std::size_t v = 0; v < gaps.size(); ++v) {
         const Vec3 colour = gap_colour(static_cast<double>(gaps[v]));
         for (int axis = 0; axis < 3; ++axis)
             mesh.colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
+        if (std::isfinite(gaps[v])) towards += c.pose(i).rotate(c.meshes[i].normals[v]);
     }
-    Vec3 towards(0.0);
-    for (std::size_t n = 0; n < points.size(); ++n)
-        if (std::isfinite(gap.distance[n])) towards += points[n].area * c.pose(i).rotate(points[n].normal);
-    if (!(glm::length(towards) > 0.0)) return "";
+    if (!(glm::length(towards) > 0.0)) return std::nullopt;
     const Vec3 direction = -glm::normalize(towards);
     const Vec3 tilted = std::abs(direction.z) > 0.95 ? glm::normalize(direction + Vec3(0.3, 0.0, 0.0)) : direction;
-    return plan_picture({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
+    return labelled_picture({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
 }
 
 struct Gaps {
-    std::string html;
+    ReportTable table{{"fragment", "and", "facing, mm²", "touching, mm²", "median gap, mm", "95 %, mm", "deepest, mm",
+                       "overlap, mm³"},
+                      {}};
+    PictureGrid maps;
     std::vector<std::string> warnings;  ///< of fragments that lie in each other
 };
 
 Gaps gaps(const Case& c) {
     constexpr double much = 5e-9;  // m³
     Gaps found;
-    std::string rows, maps;
     for (std::size_t i = 0; i < c.fragments.size(); ++i)
         for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
             if (!c.is_shown(i) || !c.is_shown(j)) continue;
-            const fit::SurfaceGap gap =
-                fit::gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
+            const fit::PlacedBone a = study::placed_bone(c.fragments[i], c.pose(i)),
+                                  b = study::placed_bone(c.fragments[j], c.pose(j));
+            const fit::MutualGap gap = fit::mutual_gap(a, b);
             const double overlap =
                 fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j));
-            if (overlap > much &&
-                fit::lie_in_each_other({c.fragments[i].bone.points, &c.fragments[i].map, c.pose(i), c.pose(i)},
-                                       {c.fragments[j].bone.points, &c.fragments[j].map, c.pose(j), c.pose(j)},
-                                       fit::MatcherSettings{}.fit.most_penetration))
+            if (overlap > much && fit::lie_in_each_other(a, b, fit::MatcherSettings{}.fit.most_penetration))
                 found.warnings.push_back(fmt::format("'{}' and '{}' lie in each other with {:.0f} mm³", c.name(i),
                                                      c.name(j), overlap * 1e9));
-            if (!(gap.facing_area > 5e-6)) continue;
-            rows += fmt::format(
-                "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{:.0f}</td><td "
-                "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
-                "</td></tr>\n",
-                html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3),
-                study::deepest_between(c.fragments[i], c.pose(i), c.fragments[j], c.pose(j)) * 1e3, overlap * 1e9);
-            if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
+            if (!(gap.facing > 5e-6)) continue;
+            found.table.rows.push_back(
+                {c.name(i), c.name(j), fmt::format("{:.0f}", gap.facing * 1e6),
+                 fmt::format("{:.0f}", gap.contact * 1e6), fmt::format("{:.2f}", study::shown_mm(gap.median * 1e3)),
+                 fmt::format("{:.2f}", study::shown_mm(gap.p95 * 1e3)), fmt::format("{:.2f}", gap.deepest * 1e3),
+                 fmt::format("{:.1f}", overlap * 1e9)});
+            if (!(gap.facing > 20e-6)) continue;
+            if (auto map = gap_map(c, i, j)) found.maps.pictures.push_back(*std::move(map));
         }
-    if (rows.empty()) {
-        found.html = "<h2>Gaps and overlaps</h2>\n<p>No two fragments face each other within 3 mm.</p>\n";
-        return found;
-    }
-    found.html =
-        "<h2>Gaps and overlaps</h2>\n<table><tr><th>fragment</th><th>and</th><th class=\"n\">facing, mm²</th><th "
-        "class=\"n\">touching, mm²</th><th class=\"n\">median gap, mm</th><th class=\"n\">95 %, mm</th><th "
-        "class=\"n\">deepest, mm</th><th class=\"n\">overlap, mm³</th></tr>\n" +
-        rows + "</table>\n" + gap_legend() + "<div class=\"two\">\n" + maps + "</div>\n";
     return found;
 }
 
-std::string steps(const Case& c) {
-    std::string out =
-        "<h2>Order of steps</h2>\n<table><tr><th class=\"n\">step</th><th>time</th><th>by</th><th>what</th></tr>\n";
-    std::size_t count = 0;
+void add_gaps(const Gaps& found, std::vector<ReportBlock>& out) {
+    out.emplace_back(Heading{"Gaps and overlaps"});
+    if (found.table.rows.empty()) {
+        out.emplace_back(Paragraph{"No two fragments face each other within 3 mm."});
+        return;
+    }
+    out.emplace_back(found.table);
+    if (found.maps.pictures.empty()) return;
+    out.emplace_back(gap_legend());
+    out.emplace_back(found.maps);
+}
+
+void add_steps(const Case& c, std::vector<ReportBlock>& out) {
+    ReportTable table{{"step", "time", "by", "what"}, {}};
     for (const int n : fit::steps_to(c.plan.before(), c.plan.place().head)) {
         const cases::PlanStep& step = c.plan.steps[static_cast<std::size_t>(n)];
         std::string what(cases::name_of(step.kind));
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
+        if (step.painted) what += " as in " + step.painted->file;
         if (step.mirror)
             what += fmt::format(" {}, {:.2f} mm median residual", step.mirror->file, step.mirror->residual * 1e3);
         if (step.fit)
             what += fmt::format(", {} to {}, {:.0f} mm² in contact, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
                                 step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,
                                 study::shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
-        const std::string time = step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time;
-        out += fmt::format("<tr><td class=\"n\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++count,
-                           html::escaped(time), html::escaped(step.by), html::escaped(what));
+        table.rows.push_back({fmt::format("{}", table.rows.size() + 1),
+                              step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time, step.by, what});
     }
-    return count == 0 ? "<h2>Order of steps</h2>\n<p>There are no steps.</p>\n" : out + "</table>\n";
+    out.emplace_back(Heading{"Order of steps"});
+    if (table.rows.empty()) out.emplace_back(Paragraph{"There are no steps."});
+    else out.emplace_back(std::move(table));
 }
 
-std::string alternatives(const cases::CasePlan& plan) {
-    std::string out = "<h2>Alternatives</h2>\n<ul>\n";
+ReportList alternatives(const cases::CasePlan& plan) {
+    ReportList list;
     for (const cases::PlanAlternative& a : plan.alternatives)
-        out += fmt::format("<li>{}: {}</li>\n", html::escaped(a.name),
-                           counted(fit::steps_to(plan.before(), a.place.head).size(), "step"));
-    return out + "</ul>\n";
-}
-
-std::string list_of(const std::vector<std::string>& lines) {
-    std::string out = "<ul>\n";
-    for (const std::string& line : lines) out += "<li>" + html::escaped(line) + "</li>\n";
-    return out + "</ul>\n";
+        list.items.push_back(
+            fmt::format("{}: {}", a.name, counted(fit::steps_to(plan.before(), a.place.head).size(), "step")));
+    return list;
 }
 
 /// What a reader must know before anything else.
-std::string warnings(const Case& c, const std::vector<std::string>& overlaps) {
-    std::vector<std::string> all;
-    if (!study::is_in_one_part(c.state)) all.emplace_back("The fragments are not all connected by fits that hold.");
+void add_warnings(const Case& c, const std::vector<std::string>& overlaps, std::vector<ReportBlock>& out) {
+    ReportList all{{}, true};
+    if (!study::is_in_one_part(c.state))
+        all.items.emplace_back("The fragments are not all connected by fits that hold.");
     for (std::size_t n = 0; n < c.fragments.size(); ++n)
         if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
-            all.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
-    all.insert(all.end(), overlaps.begin(), overlaps.end());
-    if (all.empty()) return "";
-    return "<div class=\"fail\"><h2>Warnings</h2>\n" + list_of(all) + "</div>\n";
+            all.items.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
+    all.items.insert(all.items.end(), overlaps.begin(), overlaps.end());
+    if (all.items.empty()) return;
+    out.emplace_back(Heading{"Warnings", true});
+    out.emplace_back(std::move(all));
 }
 
 /// Which fragments are connected by fits.
-std::string connections(const Case& c) {
-    const std::vector<std::string> lines = study::connection_words(c.plan, c.state);
-    return lines.empty() ? "" : "<h2>Connections</h2>\n" + list_of(lines);
+void add_connections(const Case& c, std::vector<ReportBlock>& out) {
+    ReportList list{study::connection_words(c.plan, c.state)};
+    if (list.items.empty()) return;
+    out.emplace_back(Heading{"Connections"});
+    out.emplace_back(std::move(list));
 }
 
-std::string mirror(const Case& c) {
-    if (!c.state.mirror) return "";
-    return fmt::format(
-        "<h2>Mirror of the healthy side</h2>\n<p>{}: median distance {:.2f} mm. This residual includes the asymmetry "
-        "of the body; there is no ground truth to compare with.</p>\n",
-        html::escaped(c.state.mirror->file), c.state.mirror->residual * 1e3);
+void add_mirror(const Case& c, std::vector<ReportBlock>& out) {
+    if (!c.state.mirror) return;
+    out.emplace_back(Heading{"Mirror of the healthy side"});
+    out.emplace_back(
+        Paragraph{fmt::format("{}: median distance {:.2f} mm. This residual includes the asymmetry of the body; there "
+                              "is no ground truth to compare with.",
+                              c.state.mirror->file, c.state.mirror->residual * 1e3)});
 }
 
 }  // namespace
 
-std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy, const std::string& first) {
+std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                                     std::vector<std::optional<double>> to_healthy, std::vector<ReportBlock> first) {
     Case c;
     c.plan = plan;
     c.state = cases::state_of(c.plan);
@@ -330,22 +340,37 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
     c.to_healthy.resize(c.fragments.size());
     for (const study::CaseFragment& fragment : c.fragments)
         c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
-    std::string pages;
-    std::vector<std::string> overlaps;
+    std::vector<ReportBlock> out, pictures;
+    Gaps found;
     try {
-        Gaps found = gaps(c);
-        pages = pictures(c) + found.html;
-        overlaps = std::move(found.warnings);
+        found = gaps(c);
+        add_pictures(c, pictures);
     } catch (const Error& error) {
         throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
-    const std::string body =
-        fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
-                    html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
-                    counted(c.fragments.size(), "fragment")) +
-        first + warnings(c, overlaps) + connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) +
-        alternatives(c.plan);
-    return html::page(c.plan.title, body);
+    out.emplace_back(Paragraph{fmt::format("Alternative '{}', {}. Research use; not a medical device.",
+                                           c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name,
+                                           counted(c.fragments.size(), "fragment"))});
+    std::ranges::move(first, std::back_inserter(out));
+    add_warnings(c, found.warnings, out);
+    add_connections(c, out);
+    out.emplace_back(Heading{"Fragments"});
+    out.emplace_back(fragments_table(c));
+    add_mirror(c, out);
+    std::ranges::move(pictures, std::back_inserter(out));
+    add_gaps(found, out);
+    out.emplace_back(Heading{"Poses"});
+    out.emplace_back(Paragraph{"p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z."});
+    out.emplace_back(places(c));
+    add_steps(c, out);
+    out.emplace_back(Heading{"Alternatives"});
+    out.emplace_back(alternatives(c.plan));
+    return out;
+}
+
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                      std::vector<std::optional<double>> to_healthy) {
+    return html::page(plan.title, html_of(plan_blocks(plan, std::move(fragments), std::move(to_healthy)), "plan"));
 }
 
 }  // namespace tactus::picture

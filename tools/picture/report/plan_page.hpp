@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan as one HTML page: pictures, gaps, fits, order of steps.
+// A plan as a report, which becomes HTML or PDF: warnings, fits, pictures, gaps, order of steps.
 #pragma once
 
+#include "tools/picture/blocks/report_block.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <optional>
@@ -11,8 +12,13 @@
 namespace tactus::picture {
 
 /// `fragments`: of the plan, in its order; `to_healthy`: m, the median distance of each from the healthy side where it is
-/// planned, as far as there is one; `first`: HTML that comes before all else. Throws Error when pictures cannot be made.
+/// planned, as far as there is one; `first`: what comes before the warnings. Throws Error when pictures cannot be made.
+std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                                     std::vector<std::optional<double>> to_healthy = {},
+                                     std::vector<ReportBlock> first = {});
+
+/// The same as one HTML page.
 std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy = {}, const std::string& first = "");
+                      std::vector<std::optional<double>> to_healthy = {});
 
 }  // namespace tactus::picture

@@ -156,9 +156,4 @@ std::string html_of(const LabelledPicture& picture) {
         width, height, html::escaped(picture.caption), display::base64(display::png_bytes(picture.image)), texts, bar);
 }
 
-std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
-                         const std::string& caption, std::span<const PictureLabel> labels) {
-    return html_of(labelled_picture(meshes, direction, caption, labels));
-}
-
 }  // namespace tactus::picture

@@ -45,9 +45,4 @@ LabelledPicture labelled_picture(const std::vector<display::PictureMesh>& meshes
 /// A figure of HTML; without an image a paragraph that says so.
 std::string html_of(const LabelledPicture& picture);
 
-/// A figure of HTML, seen along `direction`. Nothing to show: a paragraph that says so. Throws Error when no picture
-/// can be made.
-std::string plan_picture(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
-                         const std::string& caption, std::span<const PictureLabel> labels = {});
-
 }  // namespace tactus::picture

@@ -18,8 +18,13 @@ std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std:
                                          cases::Paint paint) {
     cases::check_files(plan, folder);
     std::vector<CaseFragment> all;
-    for (const cases::PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));
+    for (const cases::PlanFragment& fragment : cases::fragments_of(plan))
+        all.push_back(load_fragment(fragment, folder, paint));
     return all;
+}
+
+fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose) {
+    return {fragment.bone.points, &fragment.map, pose, pose};
 }
 
 double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }

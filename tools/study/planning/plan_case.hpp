@@ -6,6 +6,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/plan_lock.hpp"
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/fit/overlap.hpp"
 
 #include <filesystem>
 #include <vector>
@@ -23,6 +24,9 @@ CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::files
 /// Loads all fragments of a plan. Throws Error for the first file that is missing or has changed.
 std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                          cases::Paint paint = cases::Paint::as_filed);
+
+/// A fragment at a pose. It must outlive the result.
+fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose);
 
 /// Millimetres with two decimals; never "-0.00".
 double shown_mm(double millimetres);

@@ -90,30 +90,41 @@ std::string markup_of(const std::string& fragment, const std::vector<Landmark>& 
 
 }  // namespace
 
-std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
-                                          const std::filesystem::path& out, const std::string& format) {
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
+ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                         const std::filesystem::path& out, const std::string& format) {
+    cases::check_files(plan, folder);
     const cases::PlanState state = cases::state_of(plan);
+    const std::vector<cases::PlanFragment> fragments = cases::fragments_of(plan, state);
+    ExportedPlan exported;
     std::vector<std::string> names;
-    for (const cases::PlanFragment& fragment : plan.fragments) {
-        names.push_back(file_name_of(fragment.name));
+    std::vector<CaseFragment> loaded;
+    std::vector<std::size_t> shown;
+    for (std::size_t n = 0; n < fragments.size(); ++n) {
+        if (state.arrangement.is_hidden(static_cast<int>(n))) {
+            exported.left_out.push_back(fragments[n].name);
+            continue;
+        }
+        names.push_back(file_name_of(fragments[n].name));
         if (std::ranges::count(names, names.back()) > 1)
-            throw Error(
-                fmt::format("fragments '{}' and another would both be written to '{}'", fragment.name, names.back()));
+            throw Error(fmt::format("fragments '{}' and another would both be written to '{}'", fragments[n].name,
+                                    names.back()));
+        shown.push_back(n);
     }
+    if (shown.empty()) throw Error("no fragment is shown; show some with 'tactus plan unhide'");
+    for (const std::size_t n : shown) loaded.push_back(load_fragment(fragments[n], folder));
     session::make_output_folder(out);
-    std::vector<ExportedFragment> written;
-    for (std::size_t n = 0; n < loaded.size(); ++n) {
-        const cases::PlanFragment& fragment = plan.fragments[n];
-        const Pose& pose = state.arrangement.pose(static_cast<int>(n));
-        mesh::ColouredSurface surface{surface_of_file(cases::file_of(fragment.file, folder), loaded[n].bone),
+    std::vector<ExportedFragment>& written = exported.written;
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        const cases::PlanFragment& fragment = fragments[shown[k]];
+        const Pose& pose = state.arrangement.pose(static_cast<int>(shown[k]));
+        mesh::ColouredSurface surface{surface_of_file(cases::file_of(fragment.file, folder), loaded[k].bone),
                                       fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
-        const std::vector<std::string> files{names[n] + "." + format, names[n] + ".tfm", names[n] + ".scan.mrk.json",
-                                             names[n] + ".plan.mrk.json"};
+        const std::vector<std::string> files{names[k] + "." + format, names[k] + ".tfm", names[k] + ".scan.mrk.json",
+                                             names[k] + ".plan.mrk.json"};
         mesh::write_mesh({&surface, 1}, out / files[0]);
         file::write_whole_file(out / files[1], tfm_of(pose));
-        const auto marks = landmarks_of(loaded[n].bone.points);
+        const auto marks = landmarks_of(loaded[k].bone.points);
         file::write_whole_file(out / files[2], markup_of(fragment.name, marks, {}));
         file::write_whole_file(out / files[3], markup_of(fragment.name, marks, pose));
         written.push_back({fragment.name, pose, files});
@@ -123,7 +134,7 @@ std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std
         written.push_back(
             {"reconstruction", {}, export_flap(study.inputs(), study.fibula(), study.flap(), study.measures(), out)});
     }
-    return written;
+    return exported;
 }
 
 }  // namespace tactus::study

@@ -16,9 +16,14 @@ struct ExportedFragment {
     std::vector<std::string> files;  ///< in the folder
 };
 
-/// A plan with a reconstruction has a last entry of that name, with its markups (flap_export.hpp).
-/// `folder`: of the plan; `out`: is made; `format`: "stl" or "ply". Throws Error.
-std::vector<ExportedFragment> export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
-                                          const std::filesystem::path& out, const std::string& format);
+struct ExportedPlan {
+    /// Of the shown fragments. A reconstruction has a last entry of that name, with its markups (flap_export.hpp).
+    std::vector<ExportedFragment> written;
+    std::vector<std::string> left_out;  ///< names of the hidden fragments
+};
+
+/// `folder`: of the plan; `out`: is made; `format`: "stl" or "ply". Throws Error, also when all fragments are hidden.
+ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                         const std::filesystem::path& out, const std::string& format);
 
 }  // namespace tactus::study

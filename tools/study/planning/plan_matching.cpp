@@ -61,8 +61,7 @@ void PlanMatching::make_matcher(const FitWay& way) {
 }
 
 bool PlanMatching::lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const {
-    const CaseFragment &mine = fragment(a), &other = fragment(b);
-    return fit::lie_in_each_other({mine.bone.points, &mine.map, at, at}, {other.bone.points, &other.map, there, there},
+    return fit::lie_in_each_other(placed_bone(fragment(a), at), placed_bone(fragment(b), there),
                                   settings().fit.most_penetration);
 }
 
@@ -210,13 +209,11 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
     const auto look = [&](int i, int j) {
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
-        fit::SurfaceGap gap = fit::gap_between(a.bone.points, at, b.map, bt);
+        const fit::MutualGap gap = fit::mutual_gap(placed_bone(a, at), placed_bone(b, bt));
         const double overlap = fit::overlap_volume(a.bone.distance, at, b.map, bt);
-        // The points of a large bone may reach less deep into a small one than the other way round.
-        if (gap.deepest > 0.0 || overlap > 0.0) gap.deepest = deepest_between(a, at, b, bt);
         // What lies deep inside of another does not face it.
-        if (!pair && !(gap.facing_area > 5e-6) && !(overlap > 5e-9)) return;
-        found.push_back({i, j, std::move(gap), overlap});
+        if (!pair && !(gap.facing > 5e-6) && !(overlap > 5e-9)) return;
+        found.push_back({i, j, gap, overlap});
     };
     if (pair) look(pair->first, pair->second);
     else

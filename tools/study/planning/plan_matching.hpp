@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/fit/fragment_matcher.hpp"
-#include "dsp/fit/gap.hpp"
 #include "dsp/fit/kerf_check.hpp"
+#include "dsp/fit/mutual_gap.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
@@ -96,7 +96,7 @@ std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& sta
 /// Gap between two placed fragments.
 struct PlanGap {
     int first = 0, second = 0;
-    fit::SurfaceGap gap;
+    fit::MutualGap gap;
     double overlap = 0.0;  ///< m³
 };
 /// Gaps of one pair, or of all visible pairs that face each other or lie in each other. Throws Error.

@@ -5,6 +5,8 @@
 #include "assets/cases/mesh_unit.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/fit/gap.hpp"
+#include "dsp/fit/mutual_gap.hpp"
 #include "tools/study/bones/kept_numbers.hpp"
 #include "tools/study/bones/kept_result.hpp"
 #include "tools/study/workers.hpp"
@@ -19,7 +21,7 @@ namespace {
 
 // To be raised with every change of code that changes a registration: dsp/fit/registration, dsp/fit/gap.cpp,
 // sampling and import of what is registered.
-constexpr int algorithm = 3;
+constexpr int algorithm = 4;
 
 // m: of surfaces that only a registration uses; it takes some thousand points, and distances are from their planes.
 constexpr double registered_spacing = 1e-3;
@@ -29,7 +31,11 @@ constexpr double beside = 8e-3;  // m around a fragment: more than the distance 
 
 MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::path& folder, int main,
                          const std::filesystem::path& healthy)
-    : plan_(plan), folder_(folder), healthy_(healthy), main_(main), loaded_(plan.fragments.size()) {
+    : fragments_(cases::fragments_of(plan)),
+      folder_(folder),
+      healthy_(healthy),
+      main_(main),
+      loaded_(plan.fragments.size()) {
     cases::check_files(plan, folder);
     cases::CasePlan named;
     cases::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
@@ -56,12 +62,12 @@ std::vector<double> MirrorStudy::known(const ResultKey& key, std::size_t count,
 }
 
 std::filesystem::path MirrorStudy::file_of_fragment(int fragment) const {
-    return cases::file_of(plan_.fragments[static_cast<std::size_t>(fragment)].file, folder_);
+    return cases::file_of(fragments_[static_cast<std::size_t>(fragment)].file, folder_);
 }
 
 const CaseFragment& MirrorStudy::loaded(int fragment) {
     auto& one = loaded_[static_cast<std::size_t>(fragment)];
-    if (!one) one = load_fragment(plan_.fragments[static_cast<std::size_t>(fragment)], folder_);
+    if (!one) one = load_fragment(fragments_[static_cast<std::size_t>(fragment)], folder_);
     return *one;
 }
 
@@ -84,9 +90,9 @@ std::vector<contact::SurfacePoint> MirrorStudy::main_points() {
     return loaded(main_).bone.points;
 }
 
-contact::Voxmap MirrorStudy::main_map(int other, std::span<const Pose> poses) {
+MirrorStudy::MainPart MirrorStudy::main_part(int other, std::span<const Pose> poses) {
     const std::filesystem::path file = file_of_fragment(main_);
-    if (!is_mesh(file)) return loaded(main_).map;
+    if (!is_mesh(file)) return {loaded(main_).bone.points, loaded(main_).map};
     // A whole bone in fine voxels takes most of the time; only what is near the other fragment is looked at.
     std::array<Vec3, 2> box{Vec3(std::numeric_limits<double>::infinity()),
                             Vec3(-std::numeric_limits<double>::infinity())};
@@ -97,8 +103,9 @@ contact::Voxmap MirrorStudy::main_map(int other, std::span<const Pose> poses) {
             box[1] = glm::max(box[1], into.apply(p.position) + Vec3(beside));
         }
     }
-    return contact::make_voxmap(bone::distance_of_mesh(
-        {.input = file, .unit = cases::unit_of_file(file), .is_coarse = false, .within = box, .run = on_threads()}));
+    const volume::Grid distance = bone::distance_of_mesh(
+        {.input = file, .unit = cases::unit_of_file(file), .is_coarse = false, .within = box, .run = on_threads()});
+    return {contact::sample_surface(distance, {}), contact::make_voxmap(distance)};
 }
 
 const fit::RegistrationTarget& MirrorStudy::surface() {
@@ -106,11 +113,11 @@ const fit::RegistrationTarget& MirrorStudy::surface() {
     return *surface_;
 }
 
-FacesThere MirrorStudy::faces_there(int moving, const Pose& at, const contact::Voxmap& main) {
+FacesThere MirrorStudy::faces_there(int moving, const Pose& at, const MainPart& main) {
     const CaseFragment& other = loaded(moving);
-    const fit::SurfaceGap gap = fit::gap_between(other.bone.points, at, main, stands_);
-    return {gap.facing_area, gap.contact_area, gap.median, gap.deepest,
-            fit::overlap_volume(other.bone.distance, at, main, stands_)};
+    const fit::MutualGap gap = fit::mutual_gap(placed_bone(other, at), {main.points, &main.map, stands_, stands_});
+    return {gap.facing, gap.contact, gap.median, gap.deepest,
+            fit::overlap_volume(other.bone.distance, at, main.map, stands_)};
 }
 
 namespace {
@@ -152,7 +159,7 @@ MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
         const std::vector<contact::SurfacePoint>& points = loaded(other).bone.points;
         made.registration = fit::register_surface(points, surface(), from, settings);
         made.away = motion_between(from, made.registration.pose, middle_of(points));
-        const contact::Voxmap main = main_map(other, std::array{from, made.registration.pose});
+        const MainPart main = main_part(other, std::array{from, made.registration.pose});
         made.before = faces_there(other, from, main);
         made.after = faces_there(other, made.registration.pose, main);
         // A fragment that has been moved there is there.

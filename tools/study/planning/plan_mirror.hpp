@@ -2,7 +2,6 @@
 // Mirrors the healthy side of a case, registers it to the main fragment, and compares the other fragments with it.
 #pragma once
 
-#include "dsp/fit/gap.hpp"
 #include "dsp/fit/registration/mirror.hpp"
 #include "tools/study/bones/kept_result.hpp"
 #include "tools/study/bones/surface_file.hpp"
@@ -18,7 +17,7 @@
 
 namespace tactus::study {
 
-/// Contact between a fragment and the main one at a pose.
+/// Contact between a fragment and the main one at a pose, as plan_gaps measures it.
 struct FacesThere {
     double facing = 0.0, contact = 0.0;  ///< m²
     double median = 0.0, deepest = 0.0;  ///< m
@@ -53,13 +52,17 @@ private:
     const fit::RegistrationTarget& surface();
     std::filesystem::path file_of_fragment(int fragment) const;
     std::vector<contact::SurfacePoint> main_points();
-    /// Distances of the main fragment around another one at these poses.
-    contact::Voxmap main_map(int other, std::span<const Pose> poses);
-    FacesThere faces_there(int moving, const Pose& at, const contact::Voxmap& main);
+    struct MainPart {
+        std::vector<contact::SurfacePoint> points;
+        contact::Voxmap map;
+    };
+    /// The main fragment around another one at these poses.
+    MainPart main_part(int other, std::span<const Pose> poses);
+    FacesThere faces_there(int moving, const Pose& at, const MainPart& main);
     std::vector<double> known(const ResultKey& key, std::size_t count,
                               const std::function<std::vector<double>()>& make);
 
-    const cases::CasePlan& plan_;
+    std::vector<cases::PlanFragment> fragments_;
     std::filesystem::path folder_, healthy_;
     int main_;
     fit::MirrorFit fit_;

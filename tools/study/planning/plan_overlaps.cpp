@@ -4,38 +4,138 @@
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/overlap.hpp"
+#include "tools/study/bones/kept_result.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <utility>
 
 namespace tactus::study {
 
-std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder) {
-    const cases::PlanState state = cases::state_of(plan);
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
-    const auto placed = [&](int n) {
-        const CaseFragment& f = loaded[static_cast<std::size_t>(n)];
-        const Pose& pose = state.arrangement.pose(n);
-        return fit::PlacedBone{f.bone.points, &f.map, pose, pose};
-    };
-    std::vector<PlanOverlap> found;
-    for (int a = 0; a < static_cast<int>(loaded.size()); ++a)
-        for (int b = a + 1; b < static_cast<int>(loaded.size()); ++b) {
-            if (state.arrangement.is_hidden(a) || state.arrangement.is_hidden(b) ||
-                !fit::lie_in_each_other(placed(a), placed(b), fit::FitSettings{}.most_penetration))
-                continue;
-            found.push_back(
-                {a, b,
-                 fit::overlap_volume(loaded[static_cast<std::size_t>(a)].bone.distance, state.arrangement.pose(a),
-                                     loaded[static_cast<std::size_t>(b)].map, state.arrangement.pose(b))});
-        }
-    return found;
-}
+namespace {
 
-double deepest_between(const CaseFragment& a, const Pose& at, const CaseFragment& b, const Pose& there) {
-    return std::max(fit::gap_between(a.bone.points, at, b.map, there).deepest,
-                    fit::gap_between(b.bone.points, there, a.map, at).deepest);
+// To be raised with every change of code that changes what lies in what: import of meshes, sampling, dsp/fit/overlap.
+constexpr int algorithm = 1;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct Box {
+    Vec3 low{infinite}, high{-infinite};  // m
+
+    void add(const Vec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+    bool meets(const Box& other) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (low[axis] > other.high[axis] || other.low[axis] > high[axis]) return false;
+        return true;
+    }
+    /// The box around this one at `pose`.
+    Box at(const Pose& pose) const {
+        Box around;
+        for (int corner = 0; corner < 8; ++corner)
+            around.add(pose.apply({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                                   (corner & 4) != 0 ? high.z : low.z}));
+        return around;
+    }
+};
+
+/// A fragment is loaded when a result with it is not known.
+class Overlaps {
+public:
+    Overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder, std::vector<std::string>& notes)
+        : state_(cases::state_of(plan)),
+          fragments_(cases::fragments_of(plan, state_)),
+          folder_(folder),
+          notes_(notes),
+          loaded_(fragments_.size()),
+          boxes_(fragments_.size()) {
+        cases::check_files(plan, folder);
+    }
+
+    std::vector<PlanOverlap> run() {
+        std::vector<PlanOverlap> found;
+        for (int a = 0; a < static_cast<int>(fragments_.size()); ++a)
+            for (int b = a + 1; b < static_cast<int>(fragments_.size()); ++b) {
+                if (state_.arrangement.is_hidden(a) || state_.arrangement.is_hidden(b)) continue;
+                const Pose between = pose(b).inverse() * pose(a);
+                if (!box(a).at(between).meets(box(b)) || !box(b).at(between.inverse()).meets(box(a))) continue;
+                if (const auto volume = volume_in_both(a, b, between)) found.push_back({a, b, *volume});
+            }
+        return found;
+    }
+
+private:
+    const Pose& pose(int n) const { return state_.arrangement.pose(n); }
+
+    const CaseFragment& loaded(int n) {
+        auto& one = loaded_[static_cast<std::size_t>(n)];
+        if (!one) one = load_fragment(fragments_[static_cast<std::size_t>(n)], folder_);
+        return *one;
+    }
+
+    ResultKey key_of(const char* what, std::initializer_list<int> of) const {
+        ResultKey key(what, algorithm);
+        for (const int n : of) key.add_file(cases::file_of(fragments_[static_cast<std::size_t>(n)].file, folder_));
+        return key;
+    }
+
+    void tell(const std::string& note) {
+        if (!note.empty()) notes_.push_back(note);
+    }
+
+    const Box& box(int n) {
+        auto& known = boxes_[static_cast<std::size_t>(n)];
+        if (known) return *known;
+        std::string note;
+        const std::vector<double> sides = result_of(key_of("box around a fragment", {n}), 6, note, [&] {
+            Box around;
+            for (const contact::SurfacePoint& p : loaded(n).bone.points) around.add(p.position);
+            return std::vector<double>{around.low.x,  around.low.y,  around.low.z,
+                                       around.high.x, around.high.y, around.high.z};
+        });
+        tell(note);
+        known = Box{{sides[0], sides[1], sides[2]}, {sides[3], sides[4], sides[5]}};
+        return *known;
+    }
+
+    /// m³; none when they do not lie in each other. One result per pair of files is kept, with its pose.
+    std::optional<double> volume_in_both(int a, int b, const Pose& between) {
+        const ResultKey key = key_of("fragments that lie in each other", {a, b});
+        const Vec3& p = between.position;
+        const Quat& q = between.orientation;
+        const std::array<double, 7> here{p.x, p.y, p.z, q.w, q.x, q.y, q.z};
+        std::string note;
+        const auto known = kept_result(key, note);
+        tell(note);
+        if (known && known->size() == 9 && std::equal(here.begin(), here.end(), known->begin()))
+            return (*known)[7] > 0.0 ? std::optional((*known)[8]) : std::nullopt;
+        const CaseFragment &one = loaded(a), &other = loaded(b);
+        const bool lie = fit::lie_in_each_other(placed_bone(one, pose(a)), placed_bone(other, pose(b)),
+                                                fit::FitSettings{}.most_penetration);
+        const double volume = lie ? fit::overlap_volume(one.bone.distance, pose(a), other.map, pose(b)) : 0.0;
+        std::vector<double> numbers(here.begin(), here.end());
+        numbers.insert(numbers.end(), {lie ? 1.0 : 0.0, volume});
+        keep_result(key, numbers);
+        return lie ? std::optional(volume) : std::nullopt;
+    }
+
+    cases::PlanState state_;
+    std::vector<cases::PlanFragment> fragments_;
+    const std::filesystem::path& folder_;
+    std::vector<std::string>& notes_;
+    std::vector<std::optional<CaseFragment>> loaded_;
+    std::vector<std::optional<Box>> boxes_;
+};
+
+}  // namespace
+
+std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                                       std::vector<std::string>& notes) {
+    return Overlaps(plan, folder, notes).run();
 }
 
 std::string overlap_words(const cases::CasePlan& plan, const PlanOverlap& overlap) {

@@ -15,11 +15,10 @@ struct PlanOverlap {
 };
 
 /// Pairs of shown fragments that lie in each other deeper than a fit may, at the poses of the plan. `folder`: of the
-/// plan. Throws Error for a file that is missing or has changed.
-std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder);
-
-/// m, how deep two placed fragments lie in each other: points of either inside of the other; 0 when they do not.
-double deepest_between(const CaseFragment& a, const Pose& at, const CaseFragment& b, const Pose& there);
+/// plan. What is found is kept (see kept_result.hpp): a fragment is only loaded when a result with it is not known.
+/// `notes` gets sentences about kept results that were no use. Throws Error for a file that is missing or has changed.
+std::vector<PlanOverlap> plan_overlaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                                       std::vector<std::string>& notes);
 
 /// "'a' and 'b' lie in each other with 12 mm³; move or hide one of them".
 std::string overlap_words(const cases::CasePlan& plan, const PlanOverlap& overlap);

@@ -40,13 +40,13 @@ bool is_as_planned(const cases::PlanFragment& fragment, const std::filesystem::p
 
 }  // namespace
 
-Repainted repaint(cases::CasePlan& plan, const std::filesystem::path& folder, int fragment,
+Repainted repaint(const cases::CasePlan& plan, const std::filesystem::path& folder, int fragment,
                   const std::filesystem::path& file, bool is_same_bone) {
-    cases::PlanFragment& now = plan.fragments[static_cast<std::size_t>(fragment)];
+    const cases::PlanFragment now = cases::fragments_of(plan)[static_cast<std::size_t>(fragment)];
     cases::CasePlan taken;
     cases::add_fragment(taken, now.name, file, folder, now.colour);
     const CaseFragment bone = load_fragment(taken.fragments.front(), folder);
-    Repainted made{cases::painted_faces(bone.bone.points).size(), is_as_planned(now, folder)};
+    Repainted made{cases::painted_faces(bone.bone.points).size(), is_as_planned(now, folder), {}};
     if (made.is_compared) {
         const CaseFragment before = load_fragment(now, folder);
         const double off = std::max(share_off(bone, before), share_off(before, bone));
@@ -61,7 +61,10 @@ Repainted repaint(cases::CasePlan& plan, const std::filesystem::path& folder, in
                         "nothing shows whether {} is the same bone; say --same-bone if only its paint differs",
                         now.name, file.string()));
     }
-    now = taken.fragments.front();
+    made.step.kind = cases::StepKind::repaint;
+    made.step.by = "command";
+    made.step.fragments.push_back(fragment);
+    made.step.painted = cases::HashedFile{taken.fragments.front().file, taken.fragments.front().hash};
     return made;
 }
 

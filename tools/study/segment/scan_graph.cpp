@@ -126,7 +126,7 @@ ScanGraph scan_graph(const SegmentSettings& settings) {
 std::vector<segment::SeedLabel> proposed_seeds(const ScanGraph& scan) {
     std::vector<segment::SeedLabel> labels;
     for (segment::ProposedFragment& fragment : segment::propose_seeds(scan.graph, scan.box, scan.law))
-        labels.push_back({fmt::format("fragment {}", labels.size() + 1), {}, std::move(fragment.strokes)});
+        labels.push_back({fmt::format("fragment_{}", labels.size() + 1), {}, std::move(fragment.strokes)});
     if (labels.size() < 2)
         throw Error(
             "no fragments are told apart: the bone is in one piece, or its pieces touch over too wide an area; write "

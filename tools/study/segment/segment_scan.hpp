@@ -45,7 +45,7 @@ struct ScanGraph {
 /// Reads a scan and makes its graph. Throws Error for scans without bone and for label maps.
 ScanGraph scan_graph(const SegmentSettings& settings);
 
-/// Strokes that segment::propose_seeds finds, named "fragment 1" and on. Throws Error when there are fewer than two.
+/// Strokes that segment::propose_seeds finds, named "fragment_1" and on. Throws Error when there are fewer than two.
 std::vector<segment::SeedLabel> proposed_seeds(const ScanGraph& scan);
 
 struct SegmentedLabel {

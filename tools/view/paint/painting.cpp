@@ -22,7 +22,7 @@ constexpr std::size_t most_remembered = 500, most_points = 100'000;
 
 std::string free_name(const Painting::Labels& labels) {
     for (std::size_t n = 1;; ++n) {
-        const std::string name = fmt::format("fragment {}", n);
+        const std::string name = fmt::format("fragment_{}", n);
         if (std::ranges::none_of(labels, [&](const SeedLabel& l) { return l.name == name; })) return name;
     }
 }

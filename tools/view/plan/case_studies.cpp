@@ -3,6 +3,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/counted.hpp"
 #include "tools/picture/report/plan_page.hpp"
 #include "tools/study/planning/plan_export.hpp"
 #include "tools/study/planning/plan_matching.hpp"
@@ -20,7 +21,7 @@ std::string gaps_of(const cases::CasePlan& plan, const fs::path& folder) {
     std::string text;
     const auto name = [&](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     for (const study::PlanGap& g : study::plan_gaps(plan, folder, {}))
-        text += g.gap.facing_area > 0.0
+        text += g.gap.facing > 0.0
                     ? fmt::format("{}, {}: gap {:.2f} mm (95 %: {:.2f} mm), overlap {:.1f} mm³\n", name(g.first),
                                   name(g.second), study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9)
                     : fmt::format("{}, {}: overlap {:.1f} mm³\n", name(g.first), name(g.second), g.overlap * 1e9);
@@ -57,8 +58,10 @@ std::string made(CaseRun::Study what, const fs::path& file) {
         }
         case CaseRun::Study::files: {
             const fs::path out = free_folder(folder);
-            const std::size_t count = study::export_plan(plan, folder, out, "stl").size();
-            return fmt::format("{} fragments written to {}", count, out.string());
+            const study::ExportedPlan exported = study::export_plan(plan, folder, out, "stl");
+            return fmt::format(
+                "{} written to {}{}", counted(exported.written.size(), "fragment"), out.string(),
+                exported.left_out.empty() ? "" : fmt::format("; {} hidden, not written", exported.left_out.size()));
         }
     }
     return {};

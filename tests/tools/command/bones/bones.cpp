@@ -124,12 +124,12 @@ TEST_CASE("a label map goes in and comes out: import, load by name, export, impo
     const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
     REQUIRE(made["bones"].size() == 2);
     CHECK(made["bones"][1]["label"] == 2);
-    CHECK(bone::load_bone(folder / "two.vdb#label 2").provenance.at("label") == "2");
-    const json one = folder.answer("export " + folder / "two.vdb --bone 'label 2' --json -o " + folder / "b.ply");
+    CHECK(bone::load_bone(folder / "two.vdb#label_2").provenance.at("label") == "2");
+    const json one = folder.answer("export " + folder / "two.vdb --bone label_2 --json -o " + folder / "b.ply");
     CHECK(one["volume_mm3"].get<double>() == Approx(ball_mm3(4.0)).epsilon(0.04));
     const json again = folder.answer("import " + folder / "b.ply --json -o " + folder / "b.vdb");
     CHECK(again["bone_volume_mm3"].get<double>() == Approx(one["volume_mm3"].get<double>()).epsilon(0.02));
-    for (const char* refused : {"two.vdb -o x.obj", "two.vdb --bone 'label 7' -o x.stl", "absent.vdb -o x.stl"}) {
+    for (const char* refused : {"two.vdb -o x.obj", "two.vdb --bone label_7 -o x.stl", "absent.vdb -o x.stl"}) {
         const std::string line = "export " + folder / refused;
         CHECK(folder.tactus(line.substr(0, line.find(" -o ") + 4) + folder / line.substr(line.find(" -o ") + 4)).code ==
               2);

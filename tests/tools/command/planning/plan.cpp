@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
+#include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -22,17 +23,12 @@ using tactus::test::bar;
 using tactus::test::box_stl;
 using tactus::test::Folder;
 using tactus::test::Outcome;
+using tactus::test::pose_in;
 using tactus::test::slurp;
 
 namespace {
 
 constexpr double mm = 1e-3;
-
-Pose pose_in(const json& j) {
-    const json &p = j["position_mm"], &q = j["quaternion_wxyz"];
-    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()) * mm,
-            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
-}
 
 /// A case of two boxes, with commands on its plan.
 struct Boxes {
@@ -155,6 +151,71 @@ TEST_CASE("exported transforms and landmarks, read by other code, move the scan 
     CHECK(mesh::load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
 }
 
+TEST_CASE("hidden fragments are not exported, and the command says which", "[slow]") {
+    const Boxes boxes;
+    REQUIRE(boxes.run("hide", "b").code == 0);
+    const Outcome done = boxes.run("export", "--json --out " + boxes.file("out"));
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(json::parse(done.out).size() == 1);
+    CHECK(done.err == "note: hidden, so not written: b; show them with 'tactus plan unhide'\n");
+    CHECK(std::filesystem::exists(boxes.file("out/a.stl")));
+    CHECK_FALSE(std::filesystem::exists(boxes.file("out/b.stl")));
+    REQUIRE(boxes.run("hide", "a").code == 0);
+    const Outcome none = boxes.run("export", "--out " + boxes.file("none"));
+    CHECK(none.code == 2);
+    CHECK_THAT(none.err, Catch::Matchers::ContainsSubstring("no fragment is shown"));
+    CHECK_FALSE(std::filesystem::exists(boxes.file("none")));
+    REQUIRE(boxes.run("unhide", "a b").code == 0);
+    const Outcome both = boxes.run("export", "--json --out " + boxes.file("both"));
+    CHECK(both.err.empty());
+    CHECK(json::parse(both.out).size() == 2);
+}
+
+TEST_CASE("a name with blanks is one name in every verb of a plan", "[slow]") {
+    const Boxes boxes;
+    const std::string plan = boxes.file("blank.plan.json"), left = "'left part'", right = "'right part'";
+    const auto run = [&](const std::string& verb, const std::string& rest) {
+        const Outcome done = boxes.folder.tactus("plan " + verb + " " + plan + " " + rest);
+        INFO(verb << " " << rest << "\n" << done.out << done.err);
+        CHECK(done.code < 2);
+        return done;
+    };
+    run("new", "'left part=" + boxes.file("a.stl") + "' 'right part=" + boxes.file("b.stl") + "'");
+    run("move", right + " --pose -1,0,0,1,0,0,0");
+    run("group", left + " " + right + " --name 'both parts'");
+    run("ungroup", "'both parts'");
+    run("group", left + " " + right);
+    CHECK(json::parse(run("show", "--json").out)["groups"][0]["name"] == "group_1");
+    run("remove", right);
+    run("add", "group_1 " + right);
+    run("ungroup", "group_1");
+    for (const char* verb : {"lock", "unlock", "hide", "unhide"}) run(verb, left);
+    CHECK(json::parse(run("gap", left + " " + right + " --json").out)[0]["fragments"] ==
+          json::array({"left part", "right part"}));
+    run("repaint", right + " " + boxes.file("b.stl"));
+    run("undo", "");
+    run("alternative", "'way two'");
+    run("alternative", "main");
+    run("check", "");
+    run("export", "--out " + boxes.file("blank"));
+    CHECK(std::filesystem::exists(boxes.file("blank/left part.stl")));
+    boxes.folder.write("stroke.json", R"({"radius_mm": 5, "paint": [[11, 6, 7]]})");
+    boxes.folder.write("other.json", R"({"radius_mm": 5, "paint": [[10, 6, 7]]})");
+    for (const auto& [file, strokes] : {std::pair{"a", "other"}, {"b", "stroke"}})
+        REQUIRE(boxes.folder
+                    .tactus("fracture-surface " + boxes.file(file + std::string(".stl")) + " -o " +
+                            boxes.file("painted " + std::string(file) + ".vdb").insert(0, "'") + "' --paint " +
+                            boxes.file(strokes + std::string(".json")))
+                    .code == 0);
+    run("repaint", left + " '" + boxes.file("painted a.vdb") + "'");
+    run("repaint", right + " '" + boxes.file("painted b.vdb") + "'");
+    CHECK(json::parse(run("snap", right + " " + left + " --json").out)["fragment"] == "right part");
+    run("assemble", "");
+    run("mirror", boxes.file("a.stl") + " " + left + " " + right);
+    run("report", "");
+}
+
 TEST_CASE("broken bone is put together by a plan, measured, and written up on one page", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
@@ -271,6 +332,12 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", 
         {"new " + boxes.plan + " " + boxes.file("a.stl"), "never overwritten"},
         {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"),
          "the plan has a fragment 'a' already"},
+        {"new " + fresh + " x=" + boxes.file("a.stl") + " y=" + boxes.file("a.stl"),
+         "is the same bone as fragment 'x'"},
+        {"gap " + boxes.plan + " a a", "two different fragments"},
+        {"snap " + boxes.plan + " a a", "'a' cannot be fitted to itself"},
+        {"mirror " + boxes.plan + " " + boxes.file("a.stl") + " a a", "'a' is named twice"},
+        {"group " + boxes.plan + " a", "needs two fragments that do not move together already"},
         {"new " + fresh + " " + boxes.file("metres.stl"), "--unit"},
         {"new " + fresh + " " + boxes.file("open.stl"), "fragment 'open'"},
         {"new " + fresh + " " + boxes.file("fin.stl"), "fragment 'fin'"},

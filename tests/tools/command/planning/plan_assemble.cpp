@@ -5,6 +5,7 @@
 #include "tests/support/places.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
+#include "tests/tools/plan_pose.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
@@ -21,15 +22,10 @@ using namespace tactus;
 using nlohmann::json;
 using tactus::test::Folder;
 using tactus::test::Outcome;
+using tactus::test::pose_in;
 using tactus::test::slurp;
 
 namespace {
-
-Pose pose_in(const json& j) {
-    const json &p = j["position_mm"], &q = j["quaternion_wxyz"];
-    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()) * 1e-3,
-            glm::normalize(Quat(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()))};
-}
 
 /// A bone of the library in pieces.
 struct Broken {

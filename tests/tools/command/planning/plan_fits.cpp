@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plan says about its fits: void ones, connected parts, reasons. The fits are written into the plan's file.
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/hash.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
+#include <sstream>
 #include <string>
 
 using namespace tactus;
@@ -106,7 +112,7 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     const std::string page = slurp(row.folder.path / "case.html");
     CHECK(says(page, "not all connected"));
     // Warnings come first; pictures have the sides of the patient, a scale and the names.
-    CHECK(page.find("<h2>Warnings") < page.find("<h2>Connections"));
+    CHECK(page.find(">Warnings</h2>") < page.find("<h2>Connections"));
     CHECK(page.find("<h2>Connections") < page.find("<h2>Fragments"));
     for (const char* written : {">R</text>", ">L</text>", ">S</text>", ">I</text>", " mm</text>", ">d</text>"}) {
         CAPTURE(written);
@@ -121,7 +127,7 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     CHECK(json::parse(row.run("check", "--json").out)["ok"] == true);
     REQUIRE(row.run("report").code == 0);
     CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "not all connected"));
-    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "<h2>Warnings"));
+    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), ">Warnings</h2>"));
     REQUIRE(row.run("undo").code == 0);
     CHECK(row.run("check").code == 1);
     REQUIRE(row.run("hide", "d").code == 0);
@@ -275,4 +281,107 @@ TEST_CASE("a fragment does not go where a third one is, is told why it stays, an
     INFO(settled.out);
     CHECK(settled.code == 1);
     CHECK(says(settled.out, "connected to nothing: third"));
+}
+
+TEST_CASE("a pair of fragments has the same gap from plan gap, in either order, and from plan mirror", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(test::bar(), file("bar.vdb"));
+    REQUIRE(
+        folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 0.2 --turn 1").code ==
+        0);
+    // Meshes: of the main one only a part is looked at.
+    const std::string plan = file("case.plan.json");
+    REQUIRE(
+        folder.tactus("plan new " + plan + " one=" + file("f/fragment_01.stl") + " two=" + file("f/fragment_02.stl"))
+            .code == 0);
+    const json there = json::parse(folder.tactus("plan gap " + plan + " one two --json").out)[0],
+               back = json::parse(folder.tactus("plan gap " + plan + " two one --json").out)[0],
+               laid = json::parse(folder.tactus("plan mirror " + plan + " " + file("bar.vdb") + " one two --json").out);
+    const json& faces = laid["others"][0]["faces"]["before"];
+    INFO(there << back << faces);
+    CHECK(there["contact_mm2"].get<double>() > 20.0);
+    for (const char* number : {"facing_mm2", "contact_mm2", "gap_median_mm", "gap_p95_mm", "deepest_mm"})
+        CHECK(back[number].get<double>() == Approx(there[number].get<double>()));
+    CHECK(faces["contact_mm2"].get<double>() == Approx(there["contact_mm2"].get<double>()).epsilon(0.02));
+    CHECK(faces["gap_median_mm"].get<double>() == Approx(there["gap_median_mm"].get<double>()).margin(0.01));
+    CHECK(faces["deepest_mm"].get<double>() == Approx(there["deepest_mm"].get<double>()).margin(0.05));
+}
+
+TEST_CASE("check loads no fragment that cannot lie in another, and none of which it knows the answer", "[slow]") {
+    const Row row;
+    // Deep in each other; the third and the fourth are far away, and not to be read as bones any more.
+    REQUIRE(row.run("move", "b --pose -4,0,0,1,0,0,0").code == 0);
+    REQUIRE(row.run("hide", "d").code == 0);
+    json file = json::parse(slurp(row.plan));
+    row.folder.write("d.stl", "no mesh");
+    Hash hash;
+    file::add_file(hash, row.folder.path / "d.stl");
+    file["fragments"][3]["hash"] = fmt::format("{:016x}", hash.value());
+    row.folder.write("case.plan.json", file.dump());
+    const auto problems = [&] { return json::parse(row.run("check", "--json").out)["problems"]; };
+    const json first = problems();
+    INFO(first);
+    CHECK(says(first.dump(), "'a' and 'b' lie in each other with "));
+    // One file per fragment and pair whose boxes meet.
+    const auto kept = [&] {
+        std::map<std::string, std::string> all;
+        for (const auto& entry : std::filesystem::directory_iterator(row.folder.path / ".cache/tactus/results"))
+            all[entry.path().filename()] = slurp(entry.path());
+        return all;
+    };
+    const auto once = kept();
+    CHECK(once.size() == 4);
+    CHECK(problems() == first);
+    CHECK(kept() == once);
+    // At another place the answer is another one, also when both move together.
+    REQUIRE(row.run("move", "b --pose -2,0,0,1,0,0,0").code == 0);
+    const json second = problems();
+    CHECK(second != first);
+    CHECK(says(second.dump(), "'a' and 'b' lie in each other with "));
+    REQUIRE(row.run("undo").code == 0);
+    CHECK(problems() == first);
+    REQUIRE(row.run("move", "b --pose 0,0,0,1,0,0,0").code == 0);
+    CHECK_FALSE(says(problems().dump(), "lie in each other"));
+    CHECK(kept().size() == 4);
+}
+
+TEST_CASE("the report of a trauma case is a PDF file too, with all of the page", "[slow]") {
+    const Row row;
+    row.fit("b", "a", "-1,0,0,1,0,0,0");
+    row.fit("c", "b", "-2,0,0,1,0,0,0");
+    REQUIRE(row.run("move", "b --pose -1,3,0,1,0,0,0").code == 0);
+    const std::string pdf = (row.folder.path / "case.pdf").string();
+    const Outcome made = row.run("report", "--pdf " + pdf);
+    INFO(made.err);
+    REQUIRE(made.code == 0);
+    CHECK(says(made.out, "case.pdf"));
+    const std::string bytes = slurp(pdf);
+    REQUIRE(bytes.starts_with("%PDF-1.4"));
+    CHECK(bytes.ends_with("%%EOF\n"));
+    // Every entry of the table of objects is where an object begins.
+    const std::size_t table = bytes.rfind("\nxref\n");
+    std::istringstream entries(bytes.substr(table + 6));
+    std::string line;
+    std::getline(entries, line);
+    std::getline(entries, line);
+    for (int n = 1; std::getline(entries, line) && line.ends_with(" n "); ++n)
+        CHECK(bytes.compare(std::stoul(line.substr(0, 10)), std::to_string(n).size() + 5,
+                            std::to_string(n) + " 0 obj") == 0);
+    const auto at = [&](const std::string& text) { return bytes.find("(" + text); };
+    // Warnings first; then what hangs together, fits, pictures with sides, scale and names, gaps, poses, steps.
+    std::size_t last = 0;
+    for (const char* heading : {"Warnings", "Connections", "Fragments", "Pictures", "Gaps and overlaps", "Poses",
+                                "Order of steps", "Alternatives"}) {
+        CAPTURE(heading);
+        CHECK(at(heading) > last);
+        CHECK(at(heading) != std::string::npos);
+        last = at(heading);
+    }
+    for (const char* written : {"R) Tj", "L) Tj", "S) Tj", "I) Tj", " mm) Tj", "d) Tj", "fit to a is void",
+                                "The fragments are not all connected"}) {
+        CAPTURE(written);
+        CHECK(says(bytes, written));
+    }
+    CHECK(says(slurp(row.folder.path / "case.html"), "<h2 class=\"fail\">Warnings"));
 }

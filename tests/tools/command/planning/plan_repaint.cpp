@@ -50,20 +50,31 @@ struct Two {
 
 }  // namespace
 
-TEST_CASE("corrected paint comes into a plan, and its poses and steps stay", "[slow]") {
+TEST_CASE("corrected paint comes into a plan as a step, its poses stay, and undo and redo change the file", "[slow]") {
     const Two two;
     const json before = two.state();
     const Outcome taken = two.run("repaint", "b " + two.file("painted.vdb"));
     INFO(taken.out << taken.err);
     REQUIRE(taken.code == 0);
-    CHECK(says(taken.out, "1 painted face; poses and steps stay"));
+    CHECK(says(taken.out, "1 painted face; poses stay"));
     const json after = two.state();
     CHECK(after["fragments"][1]["file"] == "painted.vdb");
     CHECK(after["fragments"][1]["pose"] == before["fragments"][1]["pose"]);
-    CHECK(after["steps_in_all"] == 1);
+    CHECK(after["steps_in_all"] == 2);
     CHECK(after["problems"].empty());
     CHECK(two.run("gap", "").code == 0);
+    const auto file_of_b = [&] { return two.state()["fragments"][1]["file"]; };
     REQUIRE(two.run("undo", "").code == 0);
+    CHECK(file_of_b() == "b.stl");
+    CHECK(two.state()["fragments"][1]["pose"] == before["fragments"][1]["pose"]);
+    CHECK(two.run("gap", "").code == 0);
+    REQUIRE(two.run("redo", "").code == 0);
+    CHECK(file_of_b() == "painted.vdb");
+    // What is loaded is the file of the step: without it nothing is measured, and after undo it is not missed.
+    std::filesystem::remove(two.file("painted.vdb"));
+    CHECK(two.run("gap", "").code == 2);
+    REQUIRE(two.run("undo", "--steps 2").code == 0);
+    CHECK(two.run("gap", "").code == 0);
     CHECK(two.state()["fragments"][1]["pose"]["position_mm"][0] == 0.0);
 }
 

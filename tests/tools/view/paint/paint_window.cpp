@@ -47,8 +47,8 @@ label right
 stroke 75 26 50
 stroke 75 26 80
 undo
-remove "fragment 1"
-remove "fragment 2"
+remove "fragment_1"
+remove "fragment_2"
 until solved
 vessel 50 46 30
 until solved

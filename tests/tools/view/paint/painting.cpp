@@ -189,7 +189,7 @@ TEST_CASE("a stroke that the chosen threshold leaves without bone is named") {
     scene.scan = study::scan_graph(scene.settings);
     std::optional<segment::Walks> none;
     const auto found = view::live_labelling(scene.scan, scene.painting().labels(), none, run_in_turn);
-    CHECK(found.problem.find("stroke 2 of 'fragment 2'") != std::string::npos);
+    CHECK(found.problem.find("stroke 2 of 'fragment_2'") != std::string::npos);
 }
 
 TEST_CASE("a refusal is told again when it happens again") {
@@ -290,7 +290,7 @@ TEST_CASE("labels are added, named, coloured and removed, and names that the fil
     dab(painting, 0, left_block);
     REQUIRE(painting.add_label());
     CHECK(painting.active == 2);
-    CHECK(painting.labels()[2].name == "fragment 3");
+    CHECK(painting.labels()[2].name == "fragment_3");
     REQUIRE(painting.rename(2, "wing \"of\" the ilium"));
     CHECK_FALSE(painting.rename(1, "wing \"of\" the ilium"));
     CHECK_FALSE(painting.rename(1, ""));
@@ -373,7 +373,7 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
     }
     const auto plan = cases::load_case_plan(scene.folder.path / "case.plan.json");
     REQUIRE(plan.fragments.size() == 2);
-    CHECK(plan.fragments[0].name == "fragment 1");
+    CHECK(plan.fragments[0].name == "fragment_1");
     CHECK(plan.fragments[1].name == "wing ##2, 50 % s");
     CHECK(cases::changed_files(plan, scene.folder.path).empty());
     CHECK(bone::load_bones(scene.folder.path / "case.vdb").size() == 2);

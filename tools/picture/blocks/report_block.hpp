@@ -14,6 +14,7 @@ namespace tactus::picture {
 
 struct Heading {
     std::string text;
+    bool is_warning = false;
 };
 
 struct Paragraph {
@@ -21,9 +22,17 @@ struct Paragraph {
     bool is_warning = false;
 };
 
+struct ReportList {
+    std::vector<std::string> items;
+    bool is_warning = false;
+};
+
+/// Cells that are numbers stand at the right of their column in HTML.
 struct ReportTable {
     std::vector<std::string> head;
     std::vector<std::vector<std::string>> rows;
+    std::vector<Vec3> marks{};  ///< per row: sRGB of a square before it; empty: none
+    std::vector<bool> warnings{};  ///< per row: it is one; empty: none
 };
 
 struct Drawing {
@@ -31,7 +40,12 @@ struct Drawing {
     std::string caption;
 };
 
-using ReportBlock = std::variant<Heading, Paragraph, ReportTable, Drawing, LabelledPicture>;
+/// Pictures two in a row.
+struct PictureGrid {
+    std::vector<LabelledPicture> pictures;
+};
+
+using ReportBlock = std::variant<Heading, Paragraph, ReportList, ReportTable, Drawing, LabelledPicture, PictureGrid>;
 
 /// HTML of the blocks, for html::page. Drawings get names that begin with `mark` (letters).
 std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks of a report as PDF 1.4 (ISO 32000-1): the standard font Helvetica, pictures as the data of their PNG files.
 #include "devices/display/png.hpp"
-#include "tools/picture/flap/report_block.hpp"
+#include "tools/picture/blocks/report_block.hpp"
 
 #include <fmt/format.h>
 
@@ -16,6 +16,8 @@ namespace {
 
 constexpr double page_width = 595.0, page_height = 842.0, margin = 48.0;  // points; A4
 constexpr double inside = page_width - 2.0 * margin;
+constexpr double gutter = 12.0, mark_width = 10.0, caption_size = 8.0, least_size = 6.0;  // points
+constexpr double bold = 1.08;  // width of bold text over that of plain text
 
 /// WinAnsi, in which bytes from 160 to 255 are Latin-1; with ( ) and \ escaped.
 std::string ansi(std::string_view text) {
@@ -31,6 +33,7 @@ std::string ansi(std::string_view text) {
             code = code << 6U | (static_cast<unsigned char>(text[++n]) & 63U);
         if (code == 0x2013) code = 0x96;
         else if (code == 0x2212) code = '-';
+        else if (code == 0x2022) code = 0x95;
         else if (code > 255 || code < 32 || (code > 126 && code < 160)) code = '?';
         if (code == '(' || code == ')' || code == '\\') out += '\\';
         out += static_cast<char>(code);
@@ -64,32 +67,62 @@ public:
     void add(const Heading& h) {
         room(60.0);
         y_ -= 12.0;
-        lines(h.text, 13.0, true);
+        lines(h.text, 13.0, true, h.is_warning);
     }
     void add(const Paragraph& p) { lines(p.text, 9.5, false, p.is_warning); }
+
+    void add(const ReportList& l) {
+        for (const std::string& item : l.items) lines("\u2022 " + item, 9.5, false, l.is_warning);
+    }
 
     void add(const ReportTable& t) {
         if (t.head.empty()) return;
         constexpr double size = 7.5;
         std::vector<double> widths(t.head.size(), 0.0);
-        const auto measure = [&](const std::vector<std::string>& row) {
+        const auto measure = [&](const std::vector<std::string>& row, double wider) {
             for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c)
-                widths[c] = std::max(widths[c], std::min(width_of(ansi(row[c]), size) + 8.0, 0.45 * inside));
+                widths[c] = std::max(widths[c], std::min(wider * width_of(ansi(row[c]), size) + 8.0, 0.45 * inside));
         };
-        measure(t.head);
-        for (const auto& row : t.rows) measure(row);
+        measure(t.head, bold);
+        for (const auto& row : t.rows) measure(row, 1.0);
         double whole = 0.0;
+        if (!t.marks.empty()) widths[0] = std::min(widths[0] + mark_width, inside);
         for (const double w : widths) whole += w;
         if (whole > inside)
             for (double& w : widths) w *= inside / whole;
         row_of(t.head, widths, size, true);
-        for (const auto& row : t.rows) row_of(row, widths, size, false);
+        for (std::size_t n = 0; n < t.rows.size(); ++n)
+            row_of(t.rows[n], widths, size, false, n < t.marks.size() ? &t.marks[n] : nullptr,
+                   n < t.warnings.size() && t.warnings[n]);
         y_ -= 6.0;
     }
 
-    void add(const Drawing& d) { image(d.figure.image(2.0), {}, d.caption); }
+    void add(const Drawing& d) { add_image(d.figure.image(2.0), {}, d.caption); }
     void add(const LabelledPicture& p) {
-        if (!p.image.rgb.empty()) image(p.image, p, p.caption);
+        if (!p.image.rgb.empty()) add_image(p.image, p, p.caption);
+    }
+    void add(const PictureGrid& g) {
+        constexpr double wide = 0.5 * (inside - gutter);
+        for (std::size_t n = 0; n < g.pictures.size(); n += 2) {
+            const std::size_t count = std::min<std::size_t>(2, g.pictures.size() - n);
+            double high = 0.0, below = 0.0;
+            for (std::size_t k = n; k < n + count; ++k) {
+                const LabelledPicture& p = g.pictures[k];
+                if (p.image.rgb.empty()) continue;
+                high = std::max(high, wide * static_cast<double>(p.image.height) / p.image.width);
+                below = std::max(below, caption_height(p.caption, wide));
+            }
+            if (!(high > 0.0)) continue;
+            room(high + below + 8.0);
+            const double top = y_;
+            for (std::size_t k = n; k < n + count; ++k)
+                if (const LabelledPicture& p = g.pictures[k]; !p.image.rgb.empty()) {
+                    const double left = margin + static_cast<double>(k - n) * (wide + gutter);
+                    draw(p.image, p, left, top, wide);
+                    captioned(p.caption, left, top - wide * p.image.height / p.image.width - 2.0, wide);
+                }
+            y_ = top - high - below - 8.0;
+        }
     }
 
     std::string bytes() {
@@ -166,7 +199,7 @@ private:
     }
 
     void lines(const std::string& words, double size, bool is_bold, bool is_red = false) {
-        for (const std::string& line : wrapped(words, size, inside / (is_bold ? 1.08 : 1.0))) {
+        for (const std::string& line : wrapped(words, size, inside / (is_bold ? bold : 1.0))) {
             room(1.35 * size);
             y_ -= 1.35 * size;
             text(margin, y_, line, size, is_bold, is_red);
@@ -174,19 +207,22 @@ private:
         y_ -= 3.0;
     }
 
-    void row_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size, bool is_bold) {
+    void row_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size, bool is_bold,
+                const Vec3* mark = nullptr, bool is_red = false) {
         std::vector<std::vector<std::string>> cells;
         std::size_t most = 1;
+        const auto before = [&](std::size_t c) { return c == 0 && mark ? mark_width : 0.0; };
         for (std::size_t c = 0; c < widths.size(); ++c) {
-            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, widths[c] - 5.0));
+            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, widths[c] - 5.0 - before(c)));
             most = std::max(most, cells.back().size());
         }
         const double high = 1.3 * size * static_cast<double>(most) + 3.0;
         room(high);
+        if (mark) square(*mark, margin, y_ - 1.3 * size, 0.8 * size);
         double x = margin;
         for (std::size_t c = 0; c < widths.size(); ++c) {
             for (std::size_t n = 0; n < cells[c].size(); ++n)
-                text(x, y_ - 1.3 * size * static_cast<double>(n + 1), cells[c][n], size, is_bold);
+                text(x + before(c), y_ - 1.3 * size * static_cast<double>(n + 1), cells[c][n], size, is_bold, is_red);
             x += widths[c];
         }
         y_ -= high;
@@ -194,12 +230,32 @@ private:
                              y_ - 1.0);
     }
 
-    void image(const display::Image& picture, const LabelledPicture& over, const std::string& caption) {
+    void square(const Vec3& colour, double x, double y, double size) {
+        page_ += fmt::format("{:.3f} {:.3f} {:.3f} rg {:.2f} {:.2f} {:.2f} {:.2f} re f\n", colour.x, colour.y, colour.z,
+                             x, y, size, size);
+    }
+
+    void add_image(const display::Image& picture, const LabelledPicture& over, const std::string& caption) {
         const double aspect = static_cast<double>(picture.height) / picture.width;
         const double wide = std::min({inside, static_cast<double>(picture.width) * 0.6, 330.0 / aspect});
-        const double high = aspect * wide, scale = wide / picture.width;
-        room(high + 22.0);
-        const double left = margin, low = y_ - high;
+        room(aspect * wide + 22.0);
+        draw(picture, over, margin, y_, wide);
+        y_ -= aspect * wide + 2.0;
+        lines(caption, caption_size, false);
+        y_ -= 4.0;
+    }
+
+    static double caption_height(const std::string& caption, double width) {
+        return 1.35 * caption_size * static_cast<double>(wrapped(caption, caption_size, width).size()) + 5.0;
+    }
+    void captioned(const std::string& caption, double left, double top, double width) {
+        for (const std::string& line : wrapped(caption, caption_size, width))
+            text(left, top -= 1.35 * caption_size, line, caption_size, false);
+    }
+
+    /// `left`, `top` and `wide` in points; what is written over the picture with it.
+    void draw(const display::Image& picture, const LabelledPicture& over, double left, double top, double wide) {
+        const double scale = wide / picture.width, high = scale * picture.height, low = top - high;
         // The data of a PNG file is what FlateDecode with PNG predictors reads.
         std::string data;
         const std::string png = display::png_bytes(picture);
@@ -219,20 +275,15 @@ private:
             fmt::format("q {:.2f} 0 0 {:.2f} {:.2f} {:.2f} cm /I{} Do Q\n", wide, high, left, low, images_.size() - 1);
         for (const PictureText& t : over.texts) {
             const std::string shown = ansi(t.text);
-            const double size = t.size * scale, away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
-            const double x = left + t.x * scale - (t.anchor == 's' ? 0.0 : away), y = y_ - t.y * scale;
-            if (t.mark)
-                page_ += fmt::format("{:.3f} {:.3f} {:.3f} rg {:.2f} {:.2f} {:.2f} {:.2f} re f\n", t.mark->x, t.mark->y,
-                                     t.mark->z, x - 14.0 * scale, y, 10.0 * scale, 10.0 * scale);
+            const double size = std::max(t.size * scale, least_size), away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
+            const double x = left + t.x * scale - (t.anchor == 's' ? 0.0 : away), y = top - t.y * scale;
+            if (t.mark) square(*t.mark, x - 14.0 * scale, y, 10.0 * scale);
             text(x, y, shown, size, t.size > 13.0);
         }
         if (over.bar_length > 0.0)
             page_ += fmt::format("0 G 1 w {:.2f} {:.2f} m {:.2f} {:.2f} l S\n", left + over.bar_x * scale,
-                                 y_ - over.bar_y * scale, left + (over.bar_x + over.bar_length) * scale,
-                                 y_ - over.bar_y * scale);
-        y_ = low - 2.0;
-        lines(caption, 8.0, false);
-        y_ -= 4.0;
+                                 top - over.bar_y * scale, left + (over.bar_x + over.bar_length) * scale,
+                                 top - over.bar_y * scale);
     }
 
     std::vector<std::string> pages_, images_;
