@@ -194,3 +194,37 @@ TEST_CASE("a service that lies, floods or hangs up is invalid for less than a se
         CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
     }
 }
+
+TEST_CASE("a service that stays silent, cut, far too long or no JSON is invalid, and back within a second", "[live]") {
+    using Trouble = HaplyService::Trouble;
+    for (const Trouble trouble : {Trouble::none, Trouble::huge, Trouble::bad_json, Trouble::half}) {
+        CAPTURE(static_cast<int>(trouble));
+        HaplyService service;
+        Options options = options_of({{"port", std::to_string(service.port), {}}});
+        // As a run has it, opened again four times a second.
+        driver::ThreadedDevice device(haply::make_inverse3(options), {.driver = "haply", .is_untested = false});
+        device.prepare(1e-3);
+        REQUIRE(wait_until([&] { return device.acquire(1e-3).valid; }));
+        service.lasts = true;
+        service.trouble = trouble;
+        service.is_silent = trouble == Trouble::none;
+        const std::int64_t begin = hosted::steady_ns();
+        REQUIRE(wait_until([&] { return !device.acquire(1e-3).valid; }, 1000));
+        CHECK(hosted::steady_ns() - begin < 40 * ms);  // 20 ms, one answer on the way, and a loaded machine
+        int valid = 0;
+        for (int i = 0; i < 600; ++i) {
+            device.commit({});
+            valid += device.acquire(1e-3).valid;
+            hosted::sleep_until(hosted::steady_ns() + ms);
+        }
+        CHECK(valid == 0);
+        service.lasts = service.is_silent = false;
+        service.trouble = Trouble::none;
+        CHECK(wait_until(
+            [&] {
+                device.commit({});
+                return device.acquire(1e-3).valid;
+            },
+            1000));
+    }
+}
