@@ -36,6 +36,17 @@ struct Settings {
     double max_torque = 0.1, max_force = 2.0;
 };
 
+/// For who has named a line that is none.
+std::string lines_here() {
+    std::string names;
+    std::error_code failure;
+    for (fs::directory_iterator at("/dev", failure), end; !failure && at != end; at.increment(failure))
+        if (const std::string name = at->path().filename(); name.starts_with("ttyACM") || name.starts_with("ttyUSB"))
+            names += (names.empty() ? "" : ", ") + at->path().string();
+    return names.empty() ? "no board is plugged in: there is no /dev/ttyACM* or /dev/ttyUSB*"
+                         : fmt::format("give its line as 'port'; here are: {}", names);
+}
+
 class SerialBoard final : public driver::Backend {
 public:
     SerialBoard(Settings settings, std::unique_ptr<Protocol> protocol)
@@ -50,7 +61,8 @@ public:
     driver::Opened open(driver::OpenMode mode, const std::shared_ptr<driver::Exchange>&,
                         const driver::StepLog& step) override {
         step("open " + settings_.port);
-        if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty()) throw Error(why);
+        if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty())
+            throw Error(fmt::format("{}; {}", why, lines_here()));
         protocol_->reset();
         gives_ = mode == driver::OpenMode::run;
         heard_ns_ = hosted::steady_ns();
