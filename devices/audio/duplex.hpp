@@ -10,7 +10,7 @@ namespace tactus::audio {
 
 struct Duplex {
     std::string
-        device;      ///< part of a name from `list_audio_outputs`; the device must also have inputs; "": the default
+        device;      ///< part of a name from `list_audio_cards`; the device must also have inputs; "": the default
     double rate = 48000.0;   ///< Hz
     int output_channel = 0;  ///< from 0
     int input_channel = 0;

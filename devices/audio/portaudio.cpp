@@ -29,20 +29,47 @@ PaDeviceIndex default_output() {
     return Pa_GetDefaultOutputDevice();
 }
 
-PaDeviceIndex find_output(const std::string& wanted) {
-    std::string names;
+PaDeviceIndex default_input() {
+    const PaHostApiIndex jack = Pa_HostApiTypeIdToHostApiIndex(paJACK);
+    if (jack >= 0 && Pa_GetHostApiInfo(jack)->defaultInputDevice != paNoDevice)
+        return Pa_GetHostApiInfo(jack)->defaultInputDevice;
+    return Pa_GetDefaultInputDevice();
+}
+
+/// What a run wants of a card.
+struct Wanted {
+    bool plays = true, hears = false;
+
+    bool is_met_by(const PaDeviceInfo& info) const {
+        return (!plays || info.maxOutputChannels > 0) && (!hears || info.maxInputChannels > 0);
+    }
+    const char* word() const { return !plays ? "input" : hears ? "card with outputs and inputs" : "output"; }
+    const char* words() const { return !plays ? "inputs" : hears ? "cards with outputs and inputs" : "outputs"; }
+};
+
+/// The card of that name; without a name the default one.
+PaDeviceIndex find_card(const std::string& name, const Wanted& wanted) {
+    std::string others;
+    const char* lacks = nullptr;
     for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i) {
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(i);
-        if (info.maxOutputChannels == 0) continue;
-        const std::string name = audio_device_name(i);
-        if (!wanted.empty() && name.find(wanted) != std::string::npos) return i;
-        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name);
+        const std::string full = audio_device_name(i);
+        const bool is_named = !name.empty() && full.find(name) != std::string::npos;
+        if (wanted.is_met_by(info)) {
+            if (is_named) return i;
+            others += fmt::format("{}'{}'", others.empty() ? "" : ", ", full);
+        } else if (is_named) lacks = wanted.plays && info.maxOutputChannels == 0 ? "outputs" : "inputs";
     }
-    if (names.empty()) throw Error("there is no sound output on this machine");
-    if (!wanted.empty()) throw Error(fmt::format("there is no sound output '{}'; there are: {}", wanted, names));
-    const PaDeviceIndex index = default_output();
-    if (index == paNoDevice) throw Error(fmt::format("there is no default sound output; choose one of: {}", names));
-    return index;
+    if (lacks)
+        throw Error(fmt::format("sound card '{}' has no {}; sound {} of this machine: {}", name, lacks, wanted.words(),
+                                others.empty() ? "none" : others));
+    if (others.empty()) throw Error(fmt::format("there is no sound {} on this machine", wanted.word()));
+    if (!name.empty())
+        throw Error(fmt::format("there is no sound {} '{}'; there are: {}", wanted.word(), name, others));
+    const PaDeviceIndex output = default_output(), input = default_input();
+    for (const PaDeviceIndex index : {wanted.plays ? output : input, wanted.plays ? input : output})
+        if (index != paNoDevice && wanted.is_met_by(*Pa_GetDeviceInfo(index))) return index;
+    throw Error(fmt::format("there is no default sound {}; choose one of: {}", wanted.word(), others));
 }
 
 /// The stream and all data of its callback. Outlives the sink when the card does not close.
@@ -53,8 +80,11 @@ struct OpenStream {
     StreamState state;
     std::shared_ptr<InputRing> inputs;
     std::unique_ptr<JackWatch> jack;
+    std::vector<float> unheard;  ///< of a card without outputs: what is played goes here, a piece at a time
     PaStream* stream = nullptr;
 };
+
+constexpr std::size_t most_unheard = 65536;  // frames in one callback of a card without outputs
 
 std::int64_t steady_now_ns() {
     return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -73,18 +103,18 @@ int feed_card(const void* input, void* output, unsigned long frames, const PaStr
         open.inputs->capture(static_cast<const float*>(input), frames, now,
                              (flags & (paInputOverflow | paInputUnderflow)) != 0);
     if (open.jack && open.jack->freewheels()) wait_for_sound(open.state, frames);
+    if (!output) {
+        if (frames <= most_unheard) open.state.feed(open.unheard.data(), frames, now);
+        return paContinue;
+    }
     open.state.feed(static_cast<float*>(output), frames, open.inputs ? now : steady_now_ns());
     return paContinue;
 }
 
 class PortAudioSink final : public AudioSink {
 public:
-    PortAudioSink(std::string device, double lead_s, std::shared_ptr<InputRing> inputs,
-                  std::vector<std::string> input_names)
-        : device_(std::move(device)),
-          lead_s_(lead_s),
-          inputs_(std::move(inputs)),
-          input_names_(std::move(input_names)) {}
+    PortAudioSink(std::string device, double lead_s, HeardChannels heard)
+        : device_(std::move(device)), lead_s_(lead_s), heard_(std::move(heard)) {}
     ~PortAudioSink() override { release(); }
 
     const std::string& name() const override { return name_; }
@@ -94,7 +124,7 @@ public:
         try {
             open(rate, static_cast<int>(channels.size()));
             if (open_->jack) open_->jack->name_ports("out", channels);
-            if (open_->jack) open_->jack->name_ports("in", input_names_);
+            if (open_->jack) open_->jack->name_ports("in", heard_.names);
         } catch (...) {
             open_.reset();
             throw;
@@ -123,24 +153,26 @@ private:
         const auto start = static_cast<std::size_t>(std::lround(lead_s_ * rate));
         // Capacity for short stalls of the card or the engine, and for the largest buffers of cards.
         open_ = std::make_shared<OpenStream>(channels, 4 * start + 16384, start);
-        open_->inputs = inputs_;
-        PaStreamParameters parameters{};
-        parameters.device = find_output(device_);
-        const PaDeviceInfo& info = *Pa_GetDeviceInfo(parameters.device);
-        name_ = audio_device_name(parameters.device);
-        if (channels < 1 || channels > info.maxOutputChannels)
+        open_->inputs = heard_.ring;
+        const int inputs = heard_.ring ? heard_.ring->channels() : 0;
+        PaStreamParameters played{};
+        played.device = find_card(device_, {heard_.is_played || inputs == 0, inputs > 0});
+        const PaDeviceInfo& info = *Pa_GetDeviceInfo(played.device);
+        name_ = audio_device_name(played.device);
+        const bool has_outputs = info.maxOutputChannels > 0;
+        if (channels < 1 || (has_outputs && channels > info.maxOutputChannels))
             throw Error(
                 fmt::format("'{}' has {} channels, but {} are needed", name_, info.maxOutputChannels, channels));
-        const int inputs = inputs_ ? inputs_->channels() : 0;
         if (inputs > info.maxInputChannels)
             throw Error(fmt::format("'{}' has {} inputs, but {} are needed", name_, info.maxInputChannels, inputs));
+        if (!has_outputs) open_->unheard.resize(most_unheard * static_cast<std::size_t>(channels));
         if (info.hostApi == Pa_HostApiTypeIdToHostApiIndex(paJACK)) open_->jack = std::make_unique<JackWatch>();
-        parameters.channelCount = channels;
-        parameters.sampleFormat = paFloat32;
-        parameters.suggestedLatency = info.defaultLowOutputLatency;
-        const PaStreamParameters heard{parameters.device, inputs, paFloat32, info.defaultLowInputLatency, nullptr};
-        PaError error = Pa_OpenStream(&open_->stream, inputs > 0 ? &heard : nullptr, &parameters, rate,
-                                      paFramesPerBufferUnspecified, paNoFlag, feed_card, open_.get());
+        played.channelCount = channels;
+        played.sampleFormat = paFloat32;
+        played.suggestedLatency = info.defaultLowOutputLatency;
+        const PaStreamParameters heard{played.device, inputs, paFloat32, info.defaultLowInputLatency, nullptr};
+        PaError error = Pa_OpenStream(&open_->stream, inputs > 0 ? &heard : nullptr, has_outputs ? &played : nullptr,
+                                      rate, paFramesPerBufferUnspecified, paNoFlag, feed_card, open_.get());
         if (error == paNoError) error = Pa_StartStream(open_->stream);
         if (error == paNoError) return;
         if (open_->stream != nullptr) Pa_CloseStream(open_->stream);
@@ -182,28 +214,28 @@ private:
 
     std::string device_, name_ = "sound card";
     double lead_s_;
-    std::shared_ptr<InputRing> inputs_;
-    std::vector<std::string> input_names_;
+    HeardChannels heard_;
     std::shared_ptr<OpenStream> open_;
     AudioStatistics last_;
 };
 
 }  // namespace
 
-std::vector<AudioOutput> list_audio_outputs() {
+std::vector<AudioCard> list_audio_cards() {
     const PortAudioSession session;
     const PaDeviceIndex preferred = default_output();
-    std::vector<AudioOutput> outputs;
+    std::vector<AudioCard> cards;
     for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i)
-        if (const PaDeviceInfo& info = *Pa_GetDeviceInfo(i); info.maxOutputChannels > 0)
-            outputs.push_back({audio_device_name(i), info.maxOutputChannels, info.defaultSampleRate,
-                               info.defaultLowOutputLatency, i == preferred});
-    return outputs;
+        if (const PaDeviceInfo& info = *Pa_GetDeviceInfo(i); info.maxOutputChannels > 0 || info.maxInputChannels > 0)
+            cards.push_back({audio_device_name(i), info.maxOutputChannels, info.maxInputChannels,
+                             info.defaultSampleRate,
+                             info.maxOutputChannels > 0 ? info.defaultLowOutputLatency : info.defaultLowInputLatency,
+                             i == preferred});
+    return cards;
 }
 
-std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s, std::shared_ptr<InputRing> inputs,
-                                               std::vector<std::string> input_names) {
-    return std::make_unique<PortAudioSink>(std::move(device), lead_s, std::move(inputs), std::move(input_names));
+std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s, HeardChannels heard) {
+    return std::make_unique<PortAudioSink>(std::move(device), lead_s, std::move(heard));
 }
 
 }  // namespace tactus::audio

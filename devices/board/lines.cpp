@@ -19,6 +19,7 @@ void FrameProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t) noex
         told_.angle = joints.angle;
         told_.buttons = joints.buttons;
         told_.serial = joints.serial;
+        ++told_.heard;
         ++told_.count;
     }
 }
@@ -33,6 +34,7 @@ namespace {
 constexpr std::uint8_t board_id = 5;
 constexpr std::int64_t gap_ns = 3'000'000;
 constexpr float most_degrees = 720.0f;
+constexpr double most_jump_deg = 10.0;
 
 void append(std::vector<std::uint8_t>& bytes, double number) {
     const auto value = static_cast<float>(number);
@@ -86,14 +88,22 @@ void DiyProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t silence
             skips_ = true;
             continue;
         }
-        for (std::size_t i = 0; i < 2; ++i) told_.angle[i] = degrees[i] * std::numbers::pi / 180.0;
+        ++told_.heard;
+        bool is_near = has_before_;
+        for (std::size_t i = 0; i < 2; ++i) {
+            is_near = is_near && std::abs(degrees[i] - before_deg_[i]) <= most_jump_deg;
+            before_deg_[i] = degrees[i];
+        }
+        has_before_ = true;
+        if (!is_near) continue;
+        for (std::size_t i = 0; i < 2; ++i) told_.angle[i] = before_deg_[i] * std::numbers::pi / 180.0;
         ++told_.count;
     }
 }
 
 void DiyProtocol::reset() noexcept {
     size_ = 0;
-    skips_ = false;
+    skips_ = has_before_ = false;
 }
 
 }  // namespace tactus::board

@@ -17,6 +17,7 @@ struct Told {
     std::array<double, 2> angle{};  ///< rad
     std::uint32_t buttons = 0, serial = 0;
     std::uint64_t count = 0;  ///< answers so far
+    std::uint64_t heard = 0;  ///< whole ones, also those that were not believed
 };
 
 class Protocol {
@@ -30,6 +31,8 @@ public:
     virtual void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept = 0;
     /// The line was opened anew.
     virtual void reset() noexcept = 0;
+    /// How long the line must be silent before it is asked again without an answer. 0: it may be asked at any time.
+    virtual std::int64_t patience_ns() const noexcept { return 0; }
     const Told& told() const noexcept { return told_; }
 
 protected:
@@ -52,26 +55,30 @@ private:
 };
 
 /// Haply's first board (2diy, firmware M3 1.5): no frame mark and no checksum, so that only silence tells where an
-/// answer begins, and only an answer of the right length and range counts.
+/// answer begins, and only an answer of the right length and range counts, within 10 degrees of the one before: bytes of two
+/// answers, joined where one was cut, are angles, too. A true jump counts with the answer after it. Who asks on while an answer is cut or foreign
+/// never leaves the line silent.
 class DiyProtocol final : public Protocol {
 public:
     struct Settings {
         std::array<double, 2> offset_deg{180.0, 0.0};  ///< of the encoders
-        double counts = 13'824.0;                      ///< of an encoder, per turn
+        double counts = 13'824.0;  ///< of an encoder, per turn
     };
     explicit DiyProtocol(const Settings& settings) : settings_(settings) {}
     std::vector<std::uint8_t> greeting() override;
     std::span<const std::uint8_t> request(const std::array<double, 2>& torque, bool run) noexcept override;
     void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept override;
     void reset() noexcept override;
+    std::int64_t patience_ns() const noexcept override { return 4'000'000; }
 
 private:
     static constexpr std::size_t request_size = 10, answer_size = 9;
     Settings settings_;
     std::array<std::uint8_t, request_size> out_{};
     std::array<std::uint8_t, answer_size> held_{};
+    std::array<double, 2> before_deg_{};
     std::size_t size_ = 0;
-    bool skips_ = false;
+    bool skips_ = false, has_before_ = false;
 };
 
 }  // namespace tactus::board

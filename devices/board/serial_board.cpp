@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t longest_opening_ns = 2'500'000'000, longest_silence_ns = 500'000'000;
-constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t ms = 1'000'000, longest_patience_ns = 10 * ms;
 
 struct Settings {
     std::string name, port, serial;
@@ -35,6 +35,17 @@ struct Settings {
     bool are_motors_far = true;
     double max_torque = 0.1, max_force = 2.0;
 };
+
+/// For who has named a line that is none.
+std::string lines_here() {
+    std::string names;
+    std::error_code failure;
+    for (fs::directory_iterator at("/dev", failure), end; !failure && at != end; at.increment(failure))
+        if (const std::string name = at->path().filename(); name.starts_with("ttyACM") || name.starts_with("ttyUSB"))
+            names += (names.empty() ? "" : ", ") + at->path().string();
+    return names.empty() ? "no board is plugged in: there is no /dev/ttyACM* or /dev/ttyUSB*"
+                         : fmt::format("give its line as 'port'; here are: {}", names);
+}
 
 class SerialBoard final : public driver::Backend {
 public:
@@ -50,7 +61,8 @@ public:
     driver::Opened open(driver::OpenMode mode, const std::shared_ptr<driver::Exchange>&,
                         const driver::StepLog& step) override {
         step("open " + settings_.port);
-        if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty()) throw Error(why);
+        if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty())
+            throw Error(fmt::format("{}; {}", why, lines_here()));
         protocol_->reset();
         gives_ = mode == driver::OpenMode::run;
         heard_ns_ = hosted::steady_ns();
@@ -66,7 +78,7 @@ public:
             if (!hello.empty()) port_.send(hello);
             // Some boards start anew when their line is opened: asked again until they have.
             for (int i = 0; i < 50 && protocol_->told().count == before; ++i) {
-                ask({}, false);
+                if (may_ask()) ask({}, false);
                 hosted::sleep_until(hosted::steady_ns() + 2 * ms);
                 if (!listen()) throw Error("the line was lost");
             }
@@ -92,7 +104,8 @@ public:
         const Vec3 force = gives_ ? to_mechanism(exchange.force().force) : Vec3(0.0);
         // A board that is silent is where nobody knows: the Jacobian of its last place is not that of its place now.
         const bool is_fresh = now - heard_ns_ < driver::Exchange::oldest_sample_ns;
-        ask(is_fresh ? limited(settings_.mechanism.torques(told.angle, force)) : std::array<double, 2>{}, is_fresh);
+        if (may_ask())
+            ask(is_fresh ? limited(settings_.mechanism.torques(told.angle, force)) : std::array<double, 2>{}, is_fresh);
         return port_.is_open() && now - heard_ns_ < longest_silence_ns;
     }
 
@@ -152,7 +165,16 @@ private:
     }
 
     void ask(const std::array<double, 2>& torque, bool run) noexcept {
+        asked_ns_ = hosted::steady_ns();
+        asked_count_ = protocol_->told().heard;
         port_.send(protocol_->request(torque, run && gives_));
+    }
+
+    /// A line that is never silent is told all the same: its board may hold a force.
+    bool may_ask() const noexcept {
+        const std::int64_t now = hosted::steady_ns();
+        return protocol_->told().heard != asked_count_ || now - asked_ns_ >= longest_patience_ns ||
+               now - std::max(asked_ns_, byte_ns_) >= protocol_->patience_ns();
     }
 
     /// False when the line is lost.
@@ -171,7 +193,8 @@ private:
     std::unique_ptr<Protocol> protocol_;
     gripper::SerialPort port_;
     std::uint64_t count_ = 0;
-    std::int64_t heard_ns_ = 0, byte_ns_ = 0;
+    std::int64_t heard_ns_ = 0, byte_ns_ = 0, asked_ns_ = 0;
+    std::uint64_t asked_count_ = 0;
     bool gives_ = false;
 };
 

@@ -9,12 +9,15 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +40,7 @@ struct Settings {
     std::string file, serial;
     double range = 0.0;  ///< rad from stop to stop; 0: as the driver says
     double radius = 0.14, max_torque = strongest_torque;
+    double centring_after = 0.0, gain_after = 1.0;  ///< of full, where the wheel's driver does not state what it had
     Motion motion = Motion::slide;
     bool is_reversed = false, states_torque = false;
 };
@@ -48,20 +52,57 @@ std::string text_of(EventSystem& system, int file, unsigned long request) {
     return text.data();
 }
 
-bool is_wheel(EventSystem& system, int file) {
-    return Bits::of_kind(system, file, EV_FF)[FF_CONSTANT] && Bits::of_kind(system, file, EV_ABS)[ABS_X];
+std::string name_of(EventSystem& system, int file) { return text_of(system, file, EVIOCGNAME(255)); }
+
+/// What an event device with a constant force is. Joysticks have such forces and the axis X, too: the kernel has no kind of
+/// device for wheels.
+enum class Kind { other, joystick, wheel };
+
+Kind kind_of(EventSystem& system, int file, const std::string& path) {
+    const Bits axes = Bits::of_kind(system, file, EV_ABS), keys = Bits::of_kind(system, file, EV_KEY);
+    if (!Bits::of_kind(system, file, EV_FF)[FF_CONSTANT] || !axes[ABS_X]) return Kind::other;
+    // What only a wheel has: an angle from stop to stop, a gear lever, the axis of that name; or its maker says so.
+    if (!system.attribute(path, "range").empty() || axes[ABS_WHEEL] || keys[BTN_GEAR_DOWN]) return Kind::wheel;
+    std::string name = name_of(system, file);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const char* word : {"wheel", "racing", "driving", "formula"})
+        if (name.find(word) != std::string::npos) return Kind::wheel;
+    return axes[ABS_Y] ? Kind::joystick : Kind::wheel;
 }
 
-/// The first that can be read; empty: none.
-std::string first_wheel(EventSystem& system) {
+struct Found {
+    std::string path;  ///< the first wheel that can be read; empty: none
+    std::string absence;
+};
+
+Found find_wheel(EventSystem& system) {
+    Found found;
     for (const std::string& path : system.devices()) {
         const int file = system.open(path, O_RDONLY | O_NONBLOCK);
         if (file < 0) continue;
-        const bool found = is_wheel(system, file);
+        const Kind kind = kind_of(system, file, path);
+        const std::string name = name_of(system, file);
         system.close(file);
-        if (found) return path;
+        if (kind == Kind::wheel) return {path, ""};
+        if (kind == Kind::joystick && found.absence.empty())
+            found.absence = fmt::format(
+                "there is no wheel with force feedback in /dev/input; '{}' seems to be a joystick: if it is a wheel, "
+                "give "
+                "{} as 'file'",
+                name, path);
     }
-    return {};
+    if (found.absence.empty())
+        found.absence =
+            "there is no wheel with force feedback in /dev/input that you may read; plug one in, or give its event "
+            "device as 'file'";
+    return found;
+}
+
+/// Of full strength, as the wheel's driver states it; drivers that do have the range of the events.
+std::optional<std::uint16_t> strength_in(const std::string& text) {
+    std::uint16_t value = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    return end.ec == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 class Wheel final : public driver::Backend {
@@ -72,8 +113,7 @@ public:
     Wheel& operator=(const Wheel&) = delete;
 
     driver::Outline outline() const override {
-        if (settings_.file.empty())
-            return {info(), first_wheel(system_).empty() ? "there is no wheel with force feedback in /dev/input" : ""};
+        if (settings_.file.empty()) return {info(), find_wheel(system_).absence};
         const int file = system_.open(settings_.file, O_RDONLY | O_NONBLOCK);
         if (file < 0) return {info(), fmt::format("cannot open {}: {}", settings_.file, std::strerror(errno))};
         system_.close(file);
@@ -83,11 +123,9 @@ public:
     driver::Opened open(driver::OpenMode mode, const std::shared_ptr<driver::Exchange>&,
                         const driver::StepLog& step) override {
         step("look for a wheel");
-        const std::string path = settings_.file.empty() ? first_wheel(system_) : settings_.file;
-        if (path.empty())
-            throw Error(
-                "there is no wheel with force feedback in /dev/input that you may read; plug one in, or give its event "
-                "device as 'file'");
+        const Found found = settings_.file.empty() ? find_wheel(system_) : Found{settings_.file, ""};
+        if (found.path.empty()) throw Error(found.absence);
+        const std::string& path = found.path;
         step("open " + path);
         gives_ = mode == driver::OpenMode::run;
         file_ = system_.open(path, (gives_ ? O_RDWR : O_RDONLY) | O_NONBLOCK);
@@ -108,12 +146,12 @@ public:
         if (!effects[FF_CONSTANT])
             throw Error(fmt::format("{} gives no constant force{}", path,
                                     effects[FF_RUMBLE] ? ", it only rumbles: use the driver 'gamepad'" : ""));
-        if (gives_) begin_forces(effects, step);
+        if (gives_) begin_forces(effects, path, step);
         refused_ns_ = 0;
 
         driver::Opened opened;
         opened.info = info();
-        opened.info.name = text_of(system_, file_, EVIOCGNAME(255));
+        opened.info.name = name_of(system_, file_);
         if (opened.info.name.empty()) opened.info.name = "wheel";
         opened.serial = settings_.serial.empty() ? text_of(system_, file_, EVIOCGUNIQ(255)) : settings_.serial;
         input_id id{};
@@ -148,6 +186,9 @@ public:
     void close() noexcept override {
         if (file_ < 0) return;
         effect_.end();
+        // Nobody else does: they outlive the file that set them.
+        if (centring_before_) set(FF_AUTOCENTER, *std::exchange(centring_before_, std::nullopt));
+        if (gain_before_) set(FF_GAIN, *std::exchange(gain_before_, std::nullopt));
         system_.close(std::exchange(file_, -1));
     }
 
@@ -200,18 +241,28 @@ private:
             if (keys_[i] != 0 && held[keys_[i]]) mask_ |= 1u << i;
     }
 
-    void begin_forces(const Bits& effects, const driver::StepLog& step) {
+    bool set(std::uint16_t code, int value) noexcept {
+        input_event event{};
+        event.type = EV_FF;
+        event.code = code;
+        event.value = value;
+        return system_.write(file_, event);
+    }
+
+    void begin_forces(const Bits& effects, const std::string& path, const driver::StepLog& step) {
         step("switch centring off");
-        const auto set = [&](std::uint16_t code, int value) {
-            input_event event{};
-            event.type = EV_FF;
-            event.code = code;
-            event.value = value;
-            if (effects[code] && !system_.write(file_, event))
-                throw Error(fmt::format("the wheel refused a setting: {}", std::strerror(errno)));
+        const auto begin = [&](std::uint16_t code, int value, const char* stated, double otherwise) {
+            std::optional<std::uint16_t> before;
+            if (!effects[code]) return before;
+            // Events cannot be asked what was set before.
+            before = strength_in(stated ? system_.attribute(path, stated) : "");
+            if (!before) before = static_cast<std::uint16_t>(std::lround(0xFFFF * otherwise));
+            if (!set(code, value)) throw Error(fmt::format("the wheel refused a setting: {}", std::strerror(errno)));
+            return before;
         };
-        set(FF_AUTOCENTER, 0);
-        set(FF_GAIN, 0xFFFF);
+        centring_before_ = begin(FF_AUTOCENTER, 0, "autocenter", settings_.centring_after);
+        // The attribute 'gain' of some drivers is another one, which multiplies this one.
+        gain_before_ = begin(FF_GAIN, 0xFFFF, nullptr, settings_.gain_after);
         step("upload a force");
         if (!effect_.begin(file_, FF_CONSTANT))
             throw Error(fmt::format("the wheel takes no constant force: {}", std::strerror(errno)));
@@ -280,6 +331,7 @@ private:
     input_absinfo axis_{};
     std::int32_t value_ = 0;
     std::array<std::uint16_t, 4> keys_{};
+    std::optional<std::uint16_t> centring_before_, gain_before_;  ///< while they are ours
     std::uint32_t mask_ = 0;
     double range_ = 0.0;
     std::int64_t refused_ns_ = 0;
@@ -299,6 +351,8 @@ std::unique_ptr<driver::Backend> make_wheel_of(EventSystem& system, Options& opt
     settings.max_torque = options.quantity("max_torque", "30 N m", "0.1 N m", "30 N m");
     settings.motion = options.choice("moves", motions, "slide") == 0 ? Motion::slide : Motion::rim;
     settings.is_reversed = options.flag("reversed", false);
+    settings.centring_after = options.quantity("centring_after", "0", "0", "1");
+    settings.gain_after = options.quantity("gain_after", "1", "0", "1");
     return std::make_unique<Wheel>(system, std::move(settings));
 }
 

@@ -49,7 +49,11 @@ public:
     driver::Opened open(driver::OpenMode mode, const std::shared_ptr<driver::Exchange>&,
                         const driver::StepLog& step) override {
         step(fmt::format("connect to the Inverse Service at {}:{}", settings_.address, settings_.port));
-        service_.open(settings_.address, settings_.port, longest_opening);
+        try {
+            service_.open(settings_.address, settings_.port, longest_opening);
+        } catch (const Error& error) {
+            throw Error(error.message() + "; is Haply's Inverse Service running?");
+        }
         step("hear what devices there are");
         const InverseState state = first_state();
         step("check its axes");

@@ -151,8 +151,13 @@ std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const 
 
 std::unique_ptr<driver::ThreadedDevice> open_to_look(std::string_view driver, Options& options, driver::OpenMode mode) {
     const HapticDriver& found = find_driver(driver, options.where());
-    if (!found.backend)
-        throw Error(fmt::format("driver '{}' has nothing to look at; drivers of real devices have", driver));
+    if (!found.backend) {
+        std::string names;
+        for (const HapticDriver& one : haptic_drivers())
+            if (one.backend) names += (names.empty() ? "" : ", ") + one.name;
+        throw Error(
+            fmt::format("driver '{}' can only be tried in a run; --probe and --verify know: {}", driver, names));
+    }
     driver::DeviceOptions how{.driver = found.name, .mode = mode, .is_untested = found.is_untested};
     how.ignores_confirmation = true;
     return open_backend(found, options, how);

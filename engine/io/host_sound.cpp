@@ -10,6 +10,15 @@
 
 namespace tactus::io {
 
+namespace {
+
+bool has_outputs(const std::string& card) {
+    return std::ranges::any_of(audio::list_audio_cards(),
+                               [&](const audio::AudioCard& one) { return one.name == card && one.outputs > 0; });
+}
+
+}  // namespace
+
 bool EngineHost::is_in_use(const SoundCard& card, int channel) const {
     return std::ranges::any_of(sounds_in_use_, [&](const SoundChannel* sound) {
         return &sound->card() == &card && sound->index() == channel;
@@ -30,8 +39,8 @@ std::unique_ptr<SoundCard> EngineHost::make_card(Flicks period, const SoundPlace
         inputs = std::make_shared<audio::InputRing>(
             static_cast<int>(input_names.size()),
             65536 + static_cast<std::size_t>(4.0 * audio_.margin_s * rate_of(period)));
-    auto sink = audio::make_portaudio_sink(place.card.empty() ? chosen : place.card, audio_.margin_s, inputs,
-                                           std::move(input_names));
+    auto sink = audio::make_portaudio_sink(place.card.empty() ? chosen : place.card, audio_.margin_s,
+                                           {inputs, std::move(input_names), use.is_played});
     return std::make_unique<SoundCard>(std::move(sink), std::move(use), std::move(inputs));
 }
 
@@ -71,6 +80,11 @@ SoundCard& EngineHost::shared_card(Flicks period, const SoundPlace& place) {
 
 SoundChannel& EngineHost::shared_channel(const StreamFormat& format, const SoundPlace& place) {
     SoundCard& card = shared_card(format.period, place);
+    if (!card.use().is_played && !has_outputs(card.name()))
+        throw Error(place.where,
+                    fmt::format("{} has no outputs, and is heard in this run; a node that plays takes effect "
+                                "at the next start, with another card",
+                                card.name()));
     if (place.channel > card.channels())
         throw Error(place.where,
                     fmt::format("{} plays {} channels in this run; channel {} takes effect at the next start",

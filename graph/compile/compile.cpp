@@ -20,6 +20,7 @@ std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Prob
     decide_types(plan);
     form_groups(plan, problems);
     resolve_wires(plan, problems);
+    join_heard_cards(plan);
     if (problems.empty()) check_sounds(plan, problems);
     if (problems.empty()) check_units(plan, problems);
     // An order is only worth finding among wires that exist: otherwise one slip is reported twice.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -26,6 +27,26 @@ std::optional<SoundTarget> sound_target(const PlanNode& node) {
 
 std::optional<SoundTarget> sound_source(const PlanNode& node) {
     return node.texts.contains("sensor") ? channel_of(node) : std::nullopt;
+}
+
+void join_heard_cards(Plan& plan) {
+    for (PlanNode& node : plan.nodes) {
+        if (!node.type || node.type->role != NodeRole::sound_sink) continue;
+        const auto channel = node.params.find("channel");
+        const auto card = node.texts.find("card");
+        if (channel == node.params.end() || card == node.texts.end() || channel->second->value != 0.0) continue;
+        const auto on_card = [&](const std::optional<SoundTarget>& other) {
+            return other && other->card == card->second->value;
+        };
+        const bool is_heard = std::ranges::any_of(plan.nodes, [&](const PlanNode& other) {
+            return on_card(sound_source(other)) && other.group == node.group;
+        });
+        const bool is_free = std::ranges::none_of(plan.nodes, [&](const PlanNode& other) {
+            const std::optional<SoundTarget> target = sound_target(other);
+            return on_card(target) && (target->channel == 1 || other.group != node.group);
+        });
+        if (is_heard && is_free) channel->second->value = 1.0;
+    }
 }
 
 void check_sounds(const Plan& plan, patch::Problems& problems) {

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -87,8 +89,8 @@ struct HostilePeer::Speaker {
     }
 };
 
-HostilePeer::HostilePeer(Line line, Attack attack)
-    : line_(line), attack_(attack), speaker_(std::make_unique<Speaker>(line)) {
+HostilePeer::HostilePeer(Line line, Attack attack, int priority)
+    : line_(line), attack_(attack), priority_(priority), speaker_(std::make_unique<Speaker>(line)) {
     if (line == Line::serial) {
         file_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
         std::array<char, 128> name{};
@@ -163,7 +165,7 @@ void HostilePeer::answer(int file, const std::string& heard) {
         speaker.is_greeted = true;
     } else {
         if (told_ns_ != 0) replies_ns_.push_back(hosted::steady_ns() - told_ns_);
-        send(file, speaker.message());
+        if (send(file, speaker.message())) ++answers_;
         told_ns_ = hosted::steady_ns();
     }
     speaker.held.clear();
@@ -217,6 +219,7 @@ void HostilePeer::serve(int client) {
         }
         pollfd one{client, POLLIN, 0};
         ::poll(&one, 1, 5);
+        ran_ns_ = hosted::steady_ns();
         const ssize_t count = ::read(client, bytes.data(), bytes.size());
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR && errno != EIO)) return;
         if (count > 0) answer(client, {bytes.data(), static_cast<std::size_t>(count)});
@@ -228,6 +231,11 @@ void HostilePeer::serve(int client) {
 }
 
 void HostilePeer::run_server() {
+    if (priority_ > 0) {
+        sched_param parameters{};
+        parameters.sched_priority = priority_;
+        ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+    }
     while (!ends_) {
         pollfd one{file_, POLLIN, 0};
         if (::poll(&one, 1, 5) <= 0) continue;

@@ -112,7 +112,7 @@ TEST_CASE("an ALSA configuration without a default device is an error, not the e
 }
 
 TEST_CASE("run by the test of a broken ALSA configuration", "[.broken_alsa]") {
-    CHECK_THROWS_WITH(audio::list_audio_outputs(), Catch::Matchers::ContainsSubstring("pcm.default"));
+    CHECK_THROWS_WITH(audio::list_audio_cards(), Catch::Matchers::ContainsSubstring("pcm.default"));
 }
 
 TEST_CASE("an output opens, asks for sound and closes") {

@@ -3,6 +3,7 @@
 
 #include "devices/board/board_frames.hpp"
 #include "devices/board/serial_board.hpp"
+#include "dsp/core/random.hpp"
 
 #include <fcntl.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <mutex>
@@ -67,6 +69,7 @@ public:
         return speaks_frames_ ? board::make_serial_board(options) : board::make_haply_2diy(options);
     }
     std::string line() const { return link_.string(); }
+    LineFaults faults;
     void place(const Vec3& position, const Quat&) override {
         const std::lock_guard lock(mutex_);
         x_ = -position.x;
@@ -114,9 +117,28 @@ private:
         const std::lock_guard lock(mutex_);
         torque_ = {};
     }
+    void send(const std::vector<std::uint8_t>& bytes) {
+        [[maybe_unused]] const ssize_t sent = ::write(master_, bytes.data(), bytes.size());
+    }
+    bool happens(int percent) { return static_cast<int>(random_.bits(draw_++) % 100) < percent; }
+    /// Foreign bytes; an answer of the board without frames begins with 5, and nothing tells such a byte from one.
+    std::vector<std::uint8_t> noise(int count) {
+        std::vector<std::uint8_t> bytes;
+        for (int i = 0; i < count; ++i) {
+            const auto byte = static_cast<std::uint8_t>(random_.bits(draw_++));
+            bytes.push_back(byte == 5 ? 6 : byte);
+        }
+        return bytes;
+    }
     void tell(const std::uint8_t* bytes, std::size_t size) {
-        for (int i = 0; i < (must_burst_.exchange(false) ? 20 : 1); ++i) [[maybe_unused]]
-            const ssize_t sent = ::write(master_, bytes, size);
+        for (int i = 0; i < (must_burst_.exchange(false) ? 20 : 1); ++i) waiting_.emplace_back(bytes, bytes + size);
+        while (static_cast<int>(waiting_.size()) > faults.late_answers) {
+            std::vector<std::uint8_t> answer = std::move(waiting_.front());
+            waiting_.pop_front();
+            if (happens(faults.noise_percent)) send(noise(1 + static_cast<int>(random_.bits(draw_++) % 8)));
+            if (happens(faults.cut_percent)) answer.resize(1 + random_.bits(draw_++) % (answer.size() - 1));
+            if (!happens(faults.drop_percent)) send(answer);
+        }
     }
     std::array<double, 2> angles() const { return {angle_for(x_, y_, -1), angle_for(x_, y_, 1)}; }
     void take_frame(std::uint8_t byte) {
@@ -165,6 +187,7 @@ private:
             }
             std::this_thread::sleep_for(std::chrono::microseconds(300));
             if (master_ < 0) continue;
+            if (const int count = faults.burst.exchange(0); count > 0) send(noise(count));
             std::uint8_t bytes[256];
             const ssize_t count = is_silent_ ? 0 : ::read(master_, bytes, sizeof bytes);
             if (count > 0) heard = std::chrono::steady_clock::now();
@@ -190,6 +213,9 @@ private:
     gripper::FrameReader reader_;
     std::uint16_t sequence_ = 0;
     std::string held_;
+    std::deque<std::vector<std::uint8_t>> waiting_;
+    const Random random_{23};
+    std::uint64_t draw_ = 0;
     std::thread thread_;
 };
 
@@ -198,5 +224,6 @@ private:
 std::unique_ptr<Peer> make_frame_board_peer() { return std::make_unique<BoardPeer>(true); }
 std::unique_ptr<Peer> make_diy_peer() { return std::make_unique<BoardPeer>(false); }
 std::string line_of(Peer& board) { return dynamic_cast<BoardPeer&>(board).line(); }
+LineFaults& faults_of(Peer& board) { return dynamic_cast<BoardPeer&>(board).faults; }
 
 }  // namespace tactus::test

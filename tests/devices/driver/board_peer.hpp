@@ -4,6 +4,8 @@
 
 #include "tests/devices/driver/peer.hpp"
 
+#include <atomic>
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -15,5 +17,15 @@ std::unique_ptr<Peer> make_frame_board_peer();
 std::unique_ptr<Peer> make_diy_peer();
 /// The line of one of these.
 std::string line_of(Peer& board);
+
+/// What happens to a board's answers on the line, and noise of its own.
+struct LineFaults {
+    std::atomic<int> cut_percent{0};      ///< some bytes of an answer are lost
+    std::atomic<int> drop_percent{0};     ///< all are
+    std::atomic<int> noise_percent{0};    ///< foreign bytes come before it
+    std::atomic<int> late_answers{0};     ///< so many wait in the line
+    std::atomic<int> burst{0};            ///< so many foreign bytes come now
+};
+LineFaults& faults_of(Peer& board);
 
 }  // namespace tactus::test

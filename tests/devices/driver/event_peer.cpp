@@ -170,7 +170,8 @@ std::vector<std::string> FakeEvents::devices() {
 }
 
 std::string FakeEvents::attribute(const std::string&, const std::string& wanted) {
-    return wanted == "range" ? range : "";
+    if (wanted == "range") return range;
+    return wanted == "autocenter" ? stated_centring : "";
 }
 
 void FakeEvents::tell(std::uint16_t type, std::uint16_t code, int value, bool is_dropped) {

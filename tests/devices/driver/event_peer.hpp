@@ -47,7 +47,7 @@ public:
     std::size_t open_files();
 
     // Before it is opened.
-    std::string path = "/dev/input/event7", name = "Fake Wheel", serial = "W7", range = "900";
+    std::string path = "/dev/input/event7", name = "Fake Wheel", serial = "W7", range = "900", stated_centring;
     std::map<unsigned, input_absinfo> axes;
     std::vector<unsigned> keys, effects;
     bool is_read_only = false;

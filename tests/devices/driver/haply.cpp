@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Haply's service: its messages, a WebSocket that is cut, flooded or far too long, and both names of a force.
+#include "devices/board/serial_board.hpp"
 #include "devices/haply/handshake.hpp"
 #include "devices/haply/inverse3.hpp"
 #include "devices/haply/inverse_messages.hpp"
 #include "devices/haply/web_socket.hpp"
+#include "devices/haptic/catalogue.hpp"
 #include "tests/devices/driver/service_peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -71,6 +73,20 @@ TEST_CASE("a server that answers another greeting, or never to the end, is no se
     const std::int64_t begin = hosted::steady_ns();
     CHECK_THROWS_WITH(open(slow), ContainsSubstring("no service at"));
     CHECK(hosted::steady_ns() - begin < 4000 * ms);
+}
+
+TEST_CASE("who finds no service, no board or nothing to probe is told what to do") {
+    const auto opened = [](std::unique_ptr<driver::Backend> backend) {
+        driver::ThreadedDevice device(std::move(backend), {.driver = "test"});
+    };
+    Options service = options_of({{"port", "1", {}}}), board = options_of({{"port", "/dev/null", {}}});
+    CHECK_THROWS_WITH(opened(haply::make_inverse3(service)), ContainsSubstring("is Haply's Inverse Service running?"));
+    CHECK_THROWS_WITH(opened(board::make_serial_board(board)),
+                      ContainsSubstring("/dev/null is not a serial line; ") && ContainsSubstring("/dev/ttyUSB"));
+    Options none = options_of({});
+    CHECK_THROWS_WITH(
+        haptic::open_to_look("gamepad", none, driver::OpenMode::reading),
+        ContainsSubstring("can only be tried in a run; --probe and --verify know: force_dimension, touch"));
 }
 
 TEST_CASE("a port that is no whole number is refused, not rounded") {
@@ -192,5 +208,39 @@ TEST_CASE("a service that lies, floods or hangs up is invalid for less than a se
         }
         CHECK(longest < 20 * ms);
         CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
+    }
+}
+
+TEST_CASE("a service that stays silent, cut, far too long or no JSON is invalid, and back within a second", "[live]") {
+    using Trouble = HaplyService::Trouble;
+    for (const Trouble trouble : {Trouble::none, Trouble::huge, Trouble::bad_json, Trouble::half}) {
+        CAPTURE(static_cast<int>(trouble));
+        HaplyService service;
+        Options options = options_of({{"port", std::to_string(service.port), {}}});
+        // As a run has it, opened again four times a second.
+        driver::ThreadedDevice device(haply::make_inverse3(options), {.driver = "haply", .is_untested = false});
+        device.prepare(1e-3);
+        REQUIRE(wait_until([&] { return device.acquire(1e-3).valid; }));
+        service.lasts = true;
+        service.trouble = trouble;
+        service.is_silent = trouble == Trouble::none;
+        const std::int64_t begin = hosted::steady_ns();
+        REQUIRE(wait_until([&] { return !device.acquire(1e-3).valid; }, 1000));
+        CHECK(hosted::steady_ns() - begin < 40 * ms);  // 20 ms, one answer on the way, and a loaded machine
+        int valid = 0;
+        for (int i = 0; i < 600; ++i) {
+            device.commit({});
+            valid += device.acquire(1e-3).valid;
+            hosted::sleep_until(hosted::steady_ns() + ms);
+        }
+        CHECK(valid == 0);
+        service.lasts = service.is_silent = false;
+        service.trouble = Trouble::none;
+        CHECK(wait_until(
+            [&] {
+                device.commit({});
+                return device.acquire(1e-3).valid;
+            },
+            1000));
     }
 }

@@ -144,7 +144,8 @@ void HaplyService::serve(int client) {
             if (opcode != 1) continue;
             accept(text);
             std::string answer = frame(state());
-            if (const Trouble now = trouble.exchange(Trouble::none); now == Trouble::huge) {
+            const Trouble now = lasts ? trouble.load() : trouble.exchange(Trouble::none);
+            if (now == Trouble::huge) {
                 answer = std::string("\x81\x7f\0\0\0\0\1\0\0\0", 10);  // 16 MB
                 for (int i = 0; i < 256 && send(answer); ++i) answer.assign(65536, 'x');
                 continue;

@@ -29,6 +29,7 @@ public:
     std::atomic<bool> is_impostor{false};     ///< answers a greeting that nobody sent
     std::atomic<bool> slow_greeting{false};  ///< of the next connection: its answer never ends
     std::atomic<Trouble> trouble{Trouble::none};  ///< of the next answer
+    std::atomic<bool> lasts{false};               ///< of all that follow, too
     std::atomic<std::uint64_t> texts{0}, greetings{0};
     std::string version = "3.5.0", basis = "XYZ";  ///< before the driver opens it
     std::string said_key;                          ///< "vector" or "values", of the last text

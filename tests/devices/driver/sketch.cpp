@@ -94,19 +94,33 @@ TEST_CASE("Haply's first board is found again after noise and cut answers, withi
     };
     constexpr std::int64_t silence = 5'000'000;
     line.take(answer(90.0f, 45.0f), silence);
+    CHECK(line.told().count == 0);
+    line.take(answer(91.0f, 45.0f), silence);
     CHECK(line.told().count == 1);
     CHECK(line.told().angle[1] == Approx(0.785398).margin(1e-6));
-    std::vector<std::uint8_t> cut = answer(10.0f, 20.0f);
+    std::vector<std::uint8_t> cut = answer(91.0f, 44.0f);
     cut.resize(6);
     line.take(cut, silence);
-    line.take(answer(30.0f, 40.0f), silence);  // the rest never came: silence begins anew
+    line.take(answer(92.0f, 44.0f), silence);  // the rest never came: silence begins anew
     CHECK(line.told().count == 2);
-    CHECK(line.told().angle[0] == Approx(0.523599).margin(1e-6));
+    CHECK(line.told().angle[0] == Approx(1.605703).margin(1e-6));
+    // A board that answers twice after a pause: what a cut answer and the next one make together is no angle.
+    line.take(cut, silence);
+    line.take(answer(92.0f, 44.0f), 0);
+    CHECK(line.told().count == 2);
+    CHECK(line.told().angle[0] == Approx(1.605703).margin(1e-6));
+    line.take(answer(92.0f, 44.0f), silence);
+    line.take(answer(92.0f, 44.0f), silence);
+    CHECK(line.told().count >= 3);
+    const auto before = line.told().count;
     line.take(std::vector<std::uint8_t>{7, 7, 7}, silence);
-    line.take(answer(1.0f, 1.0f), 0);  // right behind noise: not believed
-    CHECK(line.told().count == 2);
-    line.take(answer(1e9f, 1.0f), silence);
-    CHECK(line.told().count == 2);
-    line.take(answer(1.0f, 1.0f), silence);
-    CHECK(line.told().count == 3);
+    line.take(answer(92.0f, 44.0f), 0);  // right behind noise: not believed
+    CHECK(line.told().count == before);
+    line.take(answer(1e9f, 44.0f), silence);
+    CHECK(line.told().count == before);
+    line.take(answer(1.0f, 1.0f), silence);  // a jump counts when the next answer says the same
+    CHECK(line.told().count == before);
+    line.take(answer(1.0f, 1.5f), silence);
+    CHECK(line.told().count == before + 1);
+    CHECK(line.told().angle[0] == Approx(0.017453).margin(1e-6));
 }

@@ -150,6 +150,26 @@ TEST_CASE("the cap steers the hand: right, up, and away from the user, turns wit
     }));
 }
 
+TEST_CASE("a hand that a 3D mouse has led to the end of its reach is there to a micrometre, and lost with the daemon",
+          "[live]") {
+    SpaceDaemon daemon;
+    Options options = options_of({{"socket", daemon.path, {}}, {"speed", "1 m/s", {}}, {"reach", "20 mm", {}}});
+    driver::ThreadedDevice device(spacenav::make_space_mouse(options), {.driver = "space_mouse"});
+    daemon.accept();
+    device.prepare(1e-3);
+    for (const Vec3& corner : {Vec3(0.02, 0.02, -0.02), Vec3(-0.02, 0.02, 0.02)}) {
+        const auto full = [](double x) { return x > 0.0 ? 350 : -350; };
+        CHECK(wait_until([&] {
+            device.commit({});
+            daemon.send(motion(full(corner.x), full(corner.z), full(corner.y), 0, 0, 0));
+            const DeviceSample sample = device.acquire(1e-3);
+            return sample.valid && glm::length(sample.pose.position - corner) < 1e-6;
+        }));
+    }
+    daemon.leave();
+    CHECK(wait_until([&] { return !device.acquire(1e-3).valid; }, 1000));
+}
+
 TEST_CASE("a daemon that is gone, floods or sends pieces neither delays nor moves the hand by itself", "[live]") {
     SpaceDaemon daemon;
     const auto device = open(daemon);

@@ -84,6 +84,69 @@ TEST_CASE("centring is switched off, the gain is full, and nothing of it is left
     CHECK(rig.events.open_files() == 0);
 }
 
+TEST_CASE("a wheel that is closed centres as before, and one that was only read was not touched") {
+    const struct {
+        std::string stated;
+        std::vector<OptionText> given;
+        int centring, gain;
+    } cases[] = {{"13107", {}, 13107, 0xFFFF},
+                 {"13107", {{"centring_after", "0.5", {}}}, 13107, 0xFFFF},
+                 {"", {}, 0, 0xFFFF},
+                 {"", {{"centring_after", "0.5", {}}, {"gain_after", "0.2", {}}}, 32768, 13107},
+                 {"on", {{"centring_after", "1", {}}}, 0xFFFF, 0xFFFF}};
+    for (const auto& one : cases) {
+        CAPTURE(one.stated, one.centring);
+        Rig rig;
+        rig.events.stated_centring = one.stated;
+        rig.open(one.given);
+        REQUIRE(rig.push({1.0, 0.0, 0.0}));
+        CHECK(rig.events.autocenter == 0);
+        CHECK(rig.events.gain == 0xFFFF);
+        rig.wheel->close();
+        CHECK(rig.events.autocenter == one.centring);
+        CHECK(rig.events.gain == one.gain);
+        rig.events.autocenter = rig.events.gain = -1;
+        rig.wheel->close();
+        CHECK(rig.events.autocenter == -1);
+    }
+    Rig read;
+    read.open({}, driver::OpenMode::reading);
+    read.wheel->close();
+    CHECK(read.events.autocenter == -1);
+    CHECK(read.events.gain == -1);
+    Rig plain;  // a wheel that knows neither
+    plain.events.effects = {FF_CONSTANT};
+    plain.open();
+    plain.wheel->close();
+    CHECK(plain.events.autocenter == -1);
+    CHECK(plain.events.gain == -1);
+}
+
+TEST_CASE("a joystick with force feedback is not taken for a wheel unless it is named") {
+    const auto opens = [](const std::function<void(FakeEvents&)>& change, std::vector<OptionText> given = {}) {
+        Rig rig;
+        rig.events.range.clear();
+        rig.events.name = "Sidewinder Force";
+        rig.events.axes[ABS_Y] = rig.events.axes[ABS_X];
+        change(rig.events);
+        try {
+            rig.open(std::move(given));
+        } catch (const Error& error) {
+            return error.message();
+        }
+        return std::string("opened");
+    };
+    CHECK(opens([](FakeEvents&) {}) ==
+          "there is no wheel with force feedback in /dev/input; 'Sidewinder Force' seems to be a joystick: if it is a "
+          "wheel, give /dev/input/event7 as 'file'");
+    CHECK(opens([](FakeEvents&) {}, {{"file", "/dev/input/event7", {}}}) == "opened");
+    CHECK(opens([](FakeEvents& e) { e.range = "540"; }) == "opened");
+    CHECK(opens([](FakeEvents& e) { e.name = "G29 Driving Force RACING Wheel"; }) == "opened");
+    CHECK(opens([](FakeEvents& e) { e.axes[ABS_WHEEL] = e.axes[ABS_X]; }) == "opened");
+    CHECK(opens([](FakeEvents& e) { e.keys.push_back(BTN_GEAR_DOWN); }) == "opened");
+    CHECK(opens([](FakeEvents& e) { e.axes.erase(ABS_Y); }) == "opened");
+}
+
 TEST_CASE("a wheel whose driver hangs gives no force after a tenth of a second, and one that is pushed goes on",
           "[live]") {
     Rig rig;

@@ -3,6 +3,9 @@
 #include "devices/openigtlink/message.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
+
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <bit>
@@ -86,6 +89,20 @@ Bytes with_metadata(Bytes message, const std::string& key, const std::string& va
 TEST_CASE("the checksum is CRC-64 of ECMA-182") {
     const std::string digits = "123456789";
     CHECK(crc64({reinterpret_cast<const std::uint8_t*>(digits.data()), digits.size()}) == 0x6C40DF5F0B497347u);
+}
+
+TEST_CASE("libopenigtlink's checksum of any bytes is ours") {
+    void* const library = ::dlopen("libOpenIGTLink.so.1.11", RTLD_NOW | RTLD_LOCAL);
+    if (!library) return tactus::test::skip("libopenigtlink1.11 is not installed");
+    const auto theirs =
+        reinterpret_cast<std::uint64_t (*)(unsigned char*, std::uint64_t, std::uint64_t)>(::dlsym(library, "crc64"));
+    REQUIRE(theirs);
+    const Random random{5};
+    for (std::size_t i = 0; i < 1000; ++i) {
+        Bytes bytes(i);
+        for (std::size_t k = 0; k < i; ++k) bytes[k] = static_cast<std::uint8_t>(random.bits(1000 * i + k));
+        REQUIRE(crc64(bytes) == theirs(bytes.data(), bytes.size(), 0));
+    }
 }
 
 TEST_CASE("poses of another program's messages are read: transforms, positions, several tools") {

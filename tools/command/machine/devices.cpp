@@ -26,12 +26,13 @@ int devices(bool json) {
                                   {"untested_on_hardware", driver.is_untested}});
     std::string no_sound = "none";
     try {
-        for (const audio::AudioOutput& output : audio::list_audio_outputs())
-            list["audio"].push_back({{"name", output.name},
-                                     {"channels", output.channels},
-                                     {"rate_hz", output.rate},
-                                     {"latency_ms", 1e3 * output.latency},
-                                     {"default", output.is_default}});
+        for (const audio::AudioCard& card : audio::list_audio_cards())
+            list["audio"].push_back({{"name", card.name},
+                                     {"channels", card.outputs},
+                                     {"inputs", card.inputs},
+                                     {"rate_hz", card.rate},
+                                     {"latency_ms", 1e3 * card.latency},
+                                     {"default", card.is_default}});
     } catch (const Error& error) {
         no_sound = error.what();
     }
@@ -43,11 +44,12 @@ int devices(bool json) {
     for (const auto& driver : list["haptic"])
         fmt::print("  {:<16} {}{}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>(),
                    driver["untested_on_hardware"].get<bool>() ? " (untested on hardware)" : "");
-    fmt::print("sound outputs{}\n", list["audio"].empty() ? ": " + no_sound : "");
-    for (const auto& output : list["audio"])
-        fmt::print("  {} ({}, {:.0f} Hz, {:.1f} ms{})\n", output["name"].get<std::string>(),
-                   counted(output["channels"].get<int>(), "channel"), output["rate_hz"].get<double>(),
-                   output["latency_ms"].get<double>(), output["default"].get<bool>() ? ", default" : "");
+    fmt::print("sound cards{}\n", list["audio"].empty() ? ": " + no_sound : "");
+    for (const auto& card : list["audio"])
+        fmt::print("  {} ({}, {}, {:.0f} Hz, {:.1f} ms{})\n", card["name"].get<std::string>(),
+                   counted(card["channels"].get<int>(), "output"), counted(card["inputs"].get<int>(), "input"),
+                   card["rate_hz"].get<double>(), card["latency_ms"].get<double>(),
+                   card["default"].get<bool>() ? ", default" : "");
     return done;
 }
 
@@ -79,6 +81,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb devices_verb() { return {"devices", "list haptic drivers and sound outputs of this machine", add}; }
+Verb devices_verb() { return {"devices", "list haptic drivers and sound cards of this machine", add}; }
 
 }  // namespace tactus::command

@@ -72,10 +72,10 @@ Json sound_json(const compile::Plan& plan) {
               {"plays", plays},
               {"hears", hears}};
     try {
-        for (const audio::AudioOutput& output : audio::list_audio_outputs())
-            if (output.is_default) {
-                json["card"] = output.name;
-                json["card_ms"] = 1e3 * output.latency;
+        for (const audio::AudioCard& card : audio::list_audio_cards())
+            if (card.is_default) {
+                json["card"] = card.name;
+                json["card_ms"] = 1e3 * card.latency;
             }
     } catch (const Error&) {
         // Without a sound system there is no card.

@@ -114,7 +114,10 @@ void print_plan(const Json& json) {
         fmt::print("{:>10}  latency {:.4g} ms  {}\n", group["name"].get<std::string>(),
                    group["latency_ms"].get<double>(), counted(group["nodes"].size(), "node"));
     if (json.contains("processes")) print_processes(json["processes"]);
-    if (json["paths"].empty()) return;
+    if (json["paths"].empty()) {
+        if (json.contains("sound")) print_sound(json["sound"]);
+        return;
+    }
     fmt::print("\n{:<32} {:>10} {:>12} {:>12}\n", "path, on the patch's device", "latency", "may feel", "declared");
     for (const Json& path : json["paths"]) {
         std::string line =

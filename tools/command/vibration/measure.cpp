@@ -3,12 +3,14 @@
 #include "assets/file/json.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/vibration/equalisation.hpp"
 #include "tools/study/vibration/measurement.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace tactus::command {
 
@@ -18,13 +20,25 @@ using file::Json;
 
 struct MeasureChoice {
     study::MeasureSettings settings;
-    std::filesystem::path csv = "response.csv";
+    std::filesystem::path csv = "response.csv", equaliser;
     bool json = false;
 };
 
 constexpr const char* kinds[] = {"displacement", "velocity", "acceleration"};
 
-std::string json_of(const study::Measurement& found, const MeasureChoice& choice) {
+using Made = std::optional<study::Equalisation>;
+
+/// As 'equalise' makes it by default.
+Made equalise(const MeasureChoice& choice) {
+    if (choice.equaliser.empty()) return std::nullopt;
+    study::EqualiseSettings settings;
+    settings.response = choice.csv;
+    Made made = study::equalise(settings);
+    sound::save_equaliser(made->equaliser, made->title, choice.equaliser);
+    return made;
+}
+
+std::string json_of(const study::Measurement& found, const MeasureChoice& choice, const Made& made) {
     const auto known = [&](const auto& value) { return found.resonance.hz > 0.0 ? Json(value) : Json(); };
     Json json{{"resonance_hz", known(found.resonance.hz)},
               {"damping_ratio", known(found.resonance.damping)},
@@ -44,11 +58,17 @@ std::string json_of(const study::Measurement& found, const MeasureChoice& choice
         json["device"] = {{"name", found.card->device},
                           {"output_latency_s", found.card->output_latency},
                           {"input_latency_s", found.card->input_latency},
-                          {"underflows", found.card->underflows}};
+                          {"underflows", found.card->underflows},
+                          {"clipped_samples", found.clipped}};
+    if (made)
+        json["equaliser"] = {{"file", choice.equaliser.string()},
+                             {"band_hz", {made->equaliser.lowest, made->equaliser.highest}},
+                             {"deviation_before_db", made->flat.before_db},
+                             {"deviation_after_db", made->flat.after_db}};
     return json.dump(2) + "\n";
 }
 
-void print(const study::Measurement& found, const MeasureChoice& choice) {
+void print(const study::Measurement& found, const MeasureChoice& choice, const Made& made) {
     const study::MeasureSettings& settings = choice.settings;
     fmt::print("{}\n", found.response.title);
     if (!(found.resonance.hz > 0.0))
@@ -65,7 +85,13 @@ void print(const study::Measurement& found, const MeasureChoice& choice) {
     if (found.card)
         fmt::print("  sound card  reports {:.3f} ms out and {:.3f} ms in; lost sound {} times\n",
                    1e3 * found.card->output_latency, 1e3 * found.card->input_latency, found.card->underflows);
+    if (found.clipped > 0)
+        fmt::print("  CLIPPED     the input was at full scale {} times: give a smaller --amplitude\n", found.clipped);
     fmt::print("  response    {}\n", choice.csv.string());
+    if (made)
+        fmt::print("  equaliser   {}: from {:g} to {:g} Hz {:.1f} dB off flat without it, {:.1f} dB with it\n",
+                   choice.equaliser.string(), made->equaliser.lowest, made->equaliser.highest, made->flat.before_db,
+                   made->flat.after_db);
 }
 
 int measure(const MeasureChoice& choice) {
@@ -74,8 +100,9 @@ int measure(const MeasureChoice& choice) {
         choice.settings, [&](double share) { line.show(fmt::format("{:3.0f} % of the sweep", 100.0 * share)); });
     line.clear();
     sound::save_response(found.response, choice.csv);
-    if (choice.json) fmt::print("{}", json_of(found, choice));
-    else print(found, choice);
+    const Made made = equalise(choice);
+    if (choice.json) fmt::print("{}", json_of(found, choice, made));
+    else print(found, choice, made);
     return done;
 }
 
@@ -97,17 +124,22 @@ Action add(VerbOptions& verb) {
     verb.add("patch", settings.patch.patch, "patch file, or a name in the library");
     verb.add("--in", settings.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
     verb.add("--probe", settings.out_port, "NODE.PORT, the output that is recorded");
+    verb.add("--actuator", settings.actuator,
+             "instead of ports: an entry of [actuators] that plays the sweep on its channel of the sound card");
+    verb.add("--sensor", settings.sensor, "an entry of [sensors] that hears it, in its own unit");
     verb.add("--device", settings.device, "a sound card instead: part of its name, or 'default'");
     verb.add("--output-channel", settings.output_channel, "output channel of the card, from 1").shows_default();
     verb.add("--input-channel", settings.input_channel, "input channel of the card, from 1").shows_default();
     verb.add("--rate", settings.rate, "sample rate of the card, Hz").unit("Hz").shows_default().range(1e3, 1e6);
     verb.add("-o,--out", choice->csv, "CSV file for the response").shows_default();
+    verb.add("--equaliser", choice->equaliser,
+             "also make the filter for the 'equaliser' node, as 'equalise' does: TOML file");
     verb.band("--band", settings.first, settings.last, "first and last frequency of the sweep, Hz");
     verb.add("--duration", settings.duration, "duration of the sweep, s").unit("s").shows_default().range(0.1, 1e3);
     verb.add("--pause", settings.pause, "silence after the sweep, s").unit("s").shows_default().range(0.05, 1e2);
     verb.add("--repeats", settings.repeats, "number of sweeps, averaged").shows_default().range(1, 1000);
     verb.add("--amplitude", settings.amplitude,
-             "amplitude of the sweep, in the unit of the port it feeds; card: of full scale")
+             "amplitude of the sweep, in the unit of the port or actuator that it feeds; card alone: of full scale")
         .shows_default();
     verb.band("--fit-band", settings.fit_lowest, settings.fit_highest, "search range of the resonance, Hz");
     add_override_options(verb, settings.patch);

@@ -9,6 +9,7 @@
 #include "tools/session/load_plan.hpp"
 #include "tools/session/scratch_folder.hpp"
 #include "tools/study/patch_measure.hpp"
+#include "tools/study/vibration/card_channels.hpp"
 
 #include <fmt/format.h>
 
@@ -25,6 +26,7 @@ struct Answer {
     double rate = 48000.0;
     std::string title, unit;
     std::optional<audio::Captured> card;
+    std::size_t clipped = 0;
 };
 
 vibration::SweepRun sweep_of(const MeasureSettings& settings) {
@@ -36,15 +38,23 @@ vibration::SweepRun sweep_of(const MeasureSettings& settings) {
     return run;
 }
 
-Answer through_patch(const MeasureSettings& settings, const Progress& progress) {
-    if (settings.in.empty() || settings.out_port.empty())
-        throw Error(
-            "name the ports: --in NODE.PORT --probe NODE.PORT, as in --in actuator.drive --probe actuator.signal");
+patch::Patch flat_patch(const MeasureSettings& settings) {
     patch::Problems problems;
     patch::Patch patch = patch::load_patch(session::find_patch(settings.patch.patch), problems);
     patch::apply_overrides(patch, settings.patch.overrides, problems);
     patch::flatten(patch, problems);
     session::throw_problems(problems);
+    return patch;
+}
+
+Answer through_patch(const MeasureSettings& settings, const Progress& progress) {
+    if (settings.in.empty() || settings.out_port.empty())
+        throw Error(
+            "name the ports: --in NODE.PORT --probe NODE.PORT, as in --in actuator.drive --probe actuator.signal; or "
+            "an "
+            "actuator and a sensor of the patch: --actuator NAME --sensor NAME");
+    patch::Problems problems;
+    patch::Patch patch = flat_patch(settings);
     if (settings.patch.seed) patch.seed = *settings.patch.seed;
     const auto setting = [](const char* name, double value, const char* unit) {
         return OptionText{name, fmt::format("{}{}{}", value, *unit ? " " : "", unit), {"--" + std::string(name), 0, 0}};
@@ -77,25 +87,38 @@ Answer through_patch(const MeasureSettings& settings, const Progress& progress) 
             unit, std::nullopt};
 }
 
-Answer through_card(const MeasureSettings& settings, const vibration::SweepRun& run, const Progress& progress) {
-    if (!(std::abs(run.amplitude) <= 1.0))
-        throw Error("the amplitude of a sweep through a sound card must lie within full scale, 1");
-    const auto period = static_cast<std::size_t>(std::llround((run.sweep.duration + run.pause) * settings.rate));
-    // Some cards connect shortly after the start: play silence first, and remove it from the recording.
-    const auto lead = static_cast<std::size_t>(std::llround(0.25 * settings.rate));
+/// Silence for cards that connect shortly after the start, then the sweeps, in shares of full scale.
+std::vector<float> played(const vibration::SweepRun& run, double rate, std::size_t lead, double full_scale) {
+    const auto period = static_cast<std::size_t>(std::llround((run.sweep.duration + run.pause) * rate));
     std::vector<float> samples(lead + period * static_cast<std::size_t>(run.repeats));
     for (std::size_t i = lead; i < samples.size(); ++i)
         samples[i] =
-            static_cast<float>(run.amplitude * run.sweep(static_cast<double>((i - lead) % period) / settings.rate));
+            static_cast<float>(run.amplitude / full_scale * run.sweep(static_cast<double>((i - lead) % period) / rate));
+    return samples;
+}
+
+Answer through_card(const MeasureSettings& settings, const vibration::SweepRun& run, const Progress& progress) {
+    const bool is_named = !settings.actuator.empty();
+    CardChannels at{settings.device, settings.output_channel, settings.input_channel, 1.0, 1.0};
+    if (is_named) at = card_channels(flat_patch(settings), settings.actuator, settings.sensor);
+    if (is_named && !settings.device.empty()) at.card = settings.device;
+    if (!(std::abs(run.amplitude) <= at.full_output))
+        throw Error(is_named ? fmt::format("an amplitude of {:g} is more than actuator '{}' has at full scale, {:g}",
+                                           run.amplitude, settings.actuator, at.full_output)
+                             : "the amplitude of a sweep through a sound card must lie within full scale, 1");
+    const auto lead = static_cast<std::size_t>(std::llround(0.25 * settings.rate));
     audio::Captured captured =
-        audio::play_and_capture({settings.device == "default" ? "" : settings.device, settings.rate,
-                                 settings.output_channel - 1, settings.input_channel - 1},
-                                samples, progress);
+        audio::play_and_capture({at.card == "default" ? "" : at.card, settings.rate, at.output - 1, at.input - 1},
+                                played(run, settings.rate, lead, at.full_output), progress);
     Answer answer{{captured.samples.begin() + static_cast<std::ptrdiff_t>(lead), captured.samples.end()},
                   settings.rate,
-                  "sound card " + captured.device,
+                  is_named ? fmt::format("{} to {}, sound card {}", settings.actuator, settings.sensor, captured.device)
+                           : "sound card " + captured.device,
                   "",
                   std::nullopt};
+    answer.clipped =
+        static_cast<std::size_t>(std::ranges::count_if(answer.samples, [](float x) { return std::abs(x) >= 0.9999F; }));
+    for (float& sample : answer.samples) sample *= static_cast<float>(at.full_input);
     answer.card = std::move(captured);
     return answer;
 }
@@ -128,13 +151,23 @@ double mean_coherence(const vibration::FrequencyResponse& response, double lowes
 }  // namespace
 
 Measurement measure(const MeasureSettings& settings, const Progress& progress) {
-    if (settings.patch.patch.empty() == settings.device.empty())
-        throw Error("measure takes a patch with --in and --probe, or --device for a sound card");
+    const bool is_named = !settings.actuator.empty() || !settings.sensor.empty();
+    if (is_named && (settings.actuator.empty() || settings.sensor.empty() || settings.patch.patch.empty()))
+        throw Error("a sweep from an actuator to a sensor takes a patch, --actuator NAME and --sensor NAME");
+    if (is_named && (!settings.in.empty() || !settings.out_port.empty()))
+        throw Error(
+            "--actuator and --sensor go through a sound card, --in and --probe through the patch: give one pair");
+    if (!is_named && settings.patch.patch.empty() == settings.device.empty())
+        throw Error(
+            "measure takes a patch with --in and --probe or with --actuator and --sensor, or --device for a sound "
+            "card");
     const vibration::SweepRun run = sweep_of(settings);
-    Answer answer = settings.device.empty() ? through_patch(settings, progress) : through_card(settings, run, progress);
+    Answer answer = settings.device.empty() && !is_named ? through_patch(settings, progress)
+                                                         : through_card(settings, run, progress);
     Measurement found;
     found.response = {answer.title, answer.unit, vibration::identify(run, answer.samples, answer.rate)};
     found.card = std::move(answer.card);
+    found.clipped = answer.clipped;
     const vibration::FrequencyResponse& response = found.response.identified.response;
     found.lowest = std::max(2.0 * settings.first, response.hz.front());
     found.highest = std::min(0.5 * settings.last, response.hz.back());

@@ -17,13 +17,14 @@ struct MeasureSettings {
     session::PatchChoice patch;                      ///< for a sweep through a patch
     std::string in, out_port;                        ///< its ports, NODE.PORT
     std::string device;                              ///< a sound card instead: part of its name, or "default"
-    double first = 20.0, last = 2000.0;              ///< Hz
-    double duration = 8.0, pause = 1.0;              ///< s
-    double amplitude = 1.0;                          ///< in the unit of the fed port; card: fraction of full scale
+    std::string actuator, sensor;  ///< entries of the patch, instead of its ports: through their card
+    double first = 20.0, last = 2000.0;  ///< Hz
+    double duration = 8.0, pause = 1.0;  ///< s
+    double amplitude = 1.0;  ///< in the unit of the fed port or of the actuator; card alone: fraction of full scale
     int repeats = 1;
-    double fit_lowest = 30.0, fit_highest = 400.0;   ///< Hz: search range of the resonance
-    double rate = 48000.0;                           ///< of the sound card, Hz
-    int output_channel = 1, input_channel = 1;       ///< of the sound card, from 1
+    double fit_lowest = 30.0, fit_highest = 400.0;  ///< Hz: search range of the resonance
+    double rate = 48000.0;  ///< of the sound card, Hz
+    int output_channel = 1, input_channel = 1;  ///< of the sound card, from 1
 };
 
 /// One order of harmonic distortion: rms over the frequencies, and maximum; relative to the fundamental.
@@ -34,12 +35,13 @@ struct DistortionOrder {
 
 struct Measurement {
     sound::ResponseFile response;
-    std::optional<audio::Captured> card;         ///< for a sound card
-    vibration::Resonance resonance;                  ///< 0 Hz: none found
-    double lowest = 0.0, highest = 0.0;   ///< Hz: range of coherence and distortion
-    double fit_highest = 0.0;             ///< Hz, upper limit of the search for the resonance
-    double coherence = 0.0;               ///< mean
+    std::optional<audio::Captured> card;  ///< for a sound card
+    vibration::Resonance resonance;  ///< 0 Hz: none found
+    double lowest = 0.0, highest = 0.0;  ///< Hz: range of coherence and distortion
+    double fit_highest = 0.0;  ///< Hz, upper limit of the search for the resonance
+    double coherence = 0.0;  ///< mean
     std::vector<DistortionOrder> orders;
+    std::size_t clipped = 0;  ///< samples of a card's input at full scale: the response is not to be trusted
 };
 
 using Progress = std::function<void(double share)>;

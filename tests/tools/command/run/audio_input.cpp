@@ -122,7 +122,7 @@ bool echoes_every_frame(const Folder& folder, const std::string& file, int perio
     const std::string take = (folder.path / "take").string();
     std::filesystem::remove_all(take);
     auto running = std::async(std::launch::async, [&] {
-        return folder.tactus("run " + file + " --seconds 2 --audio default --audio-margin 100 --overwrite --out " +
+        return folder.tactus("run " + file + " --seconds 4 --audio default --audio-margin 400 --overwrite --out " +
                              (folder.path / "live").string() + " --record " + take);
     });
     const bool connected = counter.connect();
@@ -148,7 +148,7 @@ bool echoes_every_frame(const Folder& folder, const std::string& file, int perio
     CHECK(counter.delays(0).size() == 1);
     CHECK(counter.delays(0) == counter.delays(1));
     // Each way the margin and a callback, then a call of the group and a part of a callback; as 'check' says.
-    const int loop = *counter.delays(0).begin(), least = 2 * (4800 + period);
+    const int loop = *counter.delays(0).begin(), least = 2 * (19'200 + period);
     INFO("loop " << loop << " frames, least " << least);
     CHECK(loop > least - 2400);
     CHECK(loop < least + 2 * period + 2400);
@@ -163,7 +163,8 @@ TEST_CASE("what a client plays is heard and played to the sample, at one distanc
     const std::string file = folder.write("echo.toml", echo).string();
     for (const int period : {64, 1024}) {
         bool is_whole = false;
-        for (int attempt = 0; attempt < 3 && !is_whole; ++attempt) is_whole = echoes_every_frame(folder, file, period);
+        // The margin outlasts most stalls of a loaded machine, and a run with a gap is made again.
+        for (int attempt = 0; attempt < 5 && !is_whole; ++attempt) is_whole = echoes_every_frame(folder, file, period);
         if (!is_whole) tactus::test::skip("this machine was too busy to hear without gaps");
     }
 }
@@ -198,6 +199,70 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
     const Outcome again = folder.tactus("replay " + take);
     INFO(again.out << again.err);
     CHECK(again.code == 0);
+}
+
+TEST_CASE("a node without a channel plays on the card that its patch hears, which is opened once", "[live]") {
+    if (!has_server()) return;
+    const Folder folder;
+    const auto run = [&](const std::string& outputs) {
+        const std::string file = folder
+                                     .write("both.toml", R"(wires = [ "mic.signal -> loud.signal" ]
+[nodes]
+mic = { type = "audio_input", rate = "48 kHz", channel = 2 }
+)" + outputs)
+                                     .string();
+        const Server server(folder, 256);
+        const Recorder there;
+        INFO(server.said());
+        REQUIRE(there.is_there());
+        const Outcome outcome = folder.tactus("run " + file + " --seconds 1 --audio default --overwrite --out " +
+                                              (folder.path / "live").string());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return json::parse(slurp(folder.path / "live/summary.json"))["sound"];
+    };
+    const json one = run("loud = { type = \"audio_output\", rate = \"48 kHz\" }\n");
+    INFO(one.dump());
+    REQUIRE(one.size() == 1);
+    CHECK(one[0]["heard"]["channels"] == 2);
+    CHECK(one[0]["frames_written"] > 30'000);
+}
+
+TEST_CASE("a card with inputs only is heard, and who plays on it is told that it has no outputs", "[live]") {
+    if (!has_server()) return;
+    const Folder folder;
+    const std::string nodes = "[nodes]\nmic = { type = \"audio_input\", rate = \"48 kHz\", channel = 2 }\n";
+    const std::string hears =
+        folder
+            .write("hear.toml", "wires = [ \"mic.signal -> louder.in\" ]\n" + nodes +
+                                    "louder = { type = \"gain\", rate = \"48 kHz\", factor = 3 }\n")
+            .string();
+    const std::string plays =
+        folder
+            .write("play.toml", "wires = [ \"mic.signal -> loud.signal\" ]\n" + nodes +
+                                    "loud = { type = \"audio_output\", rate = \"48 kHz\", channel = 1 }\n")
+            .string();
+    const Server server(folder, 256, 0);
+    const Recorder there;
+    INFO(server.said());
+    REQUIRE(there.is_there());
+    const auto run = [&](const std::string& file) {
+        return folder.tactus("run " + file + " --seconds 1 --audio system --overwrite --out " +
+                             (folder.path / "live").string());
+    };
+    const Outcome heard = run(hears);
+    INFO(heard.err);
+    REQUIRE(heard.code == 0);
+    const json sound = json::parse(slurp(folder.path / "live/summary.json"))["sound"];
+    INFO(sound.dump());
+    REQUIRE(sound.size() == 1);
+    CHECK(sound[0]["heard"]["channels"] == 2);
+    CHECK(sound[0]["heard"]["frames_missed"] < 24'000);
+    CHECK(sound[0]["frames_written"] > 30'000);
+    const Outcome played = run(plays);
+    CHECK(played.code == 2);
+    CHECK_THAT(played.err, ContainsSubstring("sound card 'system' has no outputs"));
+    CHECK_THAT(folder.tactus("devices").out, ContainsSubstring("(0 outputs, 2 inputs, 48000 Hz"));
 }
 
 TEST_CASE("offline a file is heard in place of a card, as loud as the sensor says") {
@@ -252,7 +317,10 @@ TEST_CASE("a card that cannot be heard offline, and a sensor that is not there, 
         folder.tactus("run " + file + " --seconds 0.1 --audio none --out " + (folder.path / "n").string());
     CHECK(none.code == 2);
     CHECK_THAT(none.err, ContainsSubstring("--audio names none"));
-    CHECK(folder.tactus("check " + file).code == 0);
+    const Outcome checked = folder.tactus("check " + file);
+    CHECK(checked.code == 0);
+    CHECK_THAT(checked.out, ContainsSubstring("what a card hears waits 10 ms (--audio-margin) and one callback"));
+    CHECK_THAT(checked.out, ContainsSubstring("a run adds the card's buffer, 10 ms (--audio-margin) and one callback"));
     const auto refused = [&](const std::string& from, const std::string& to) {
         std::string text = echo;
         text.replace(text.find(from), from.size(), to);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boards on a line that loses, delays and adds bytes.
+#include "tests/devices/driver/board_peer.hpp"
+#include "tests/devices/hosted/with_host.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+using hosted::steady_ns;
+
+namespace {
+
+const Vec3 place{0.012, -0.1, 0.0};
+
+std::vector<PeerKind> boards() { return {{"serial_board", make_frame_board_peer}, {"haply_2diy", make_diy_peer}}; }
+
+bool waits_for_valid(HapticDevice& device) {
+    return wait_until([&] {
+        device.commit({});
+        return device.acquire(1e-3).valid;
+    });
+}
+
+}  // namespace
+
+TEST_CASE("a line that cuts, drops, delays and adds bytes costs samples of a board, never truth", "[live]") {
+    for (const PeerKind& kind : boards()) {
+        CAPTURE(kind.driver);
+        const auto board = kind.make();
+        board->place(place, {1.0, 0.0, 0.0, 0.0});
+        const auto device = open_peer(*board);
+        REQUIRE(waits_for_valid(*device));
+        LineFaults& faults = faults_of(*board);
+        faults.cut_percent = faults.drop_percent = faults.noise_percent = 10;
+        faults.late_answers = 1;
+        int valid = 0;
+        double off = 0.0;
+        const std::int64_t before = device->published();
+        for (int i = 0; i < 1500; ++i) {
+            device->commit({});
+            if (const DeviceSample sample = device->acquire(1e-3); sample.valid) {
+                ++valid;
+                off = std::max(off, glm::length(sample.pose.position - place));
+            }
+            hosted::sleep_until(steady_ns() + ms);
+        }
+        CHECK(off < 1e-6);
+        CHECK(valid > 50);  // how many is a matter of the machine, too
+        CHECK(device->published() - before > 50);
+        CHECK(device->returns() == 0);
+        faults.cut_percent = faults.drop_percent = faults.noise_percent = 0;
+        faults.late_answers = 0;
+        CHECK(waits_for_valid(*device));
+    }
+}
+
+TEST_CASE("a board is understood again within 20 ms after noise on its line", "[live]") {
+    for (const PeerKind& kind : boards()) {
+        CAPTURE(kind.driver);
+        const auto board = kind.make();
+        board->place(place, {1.0, 0.0, 0.0, 0.0});
+        const auto device = open_peer(*board);
+        REQUIRE(waits_for_valid(*device));
+        std::vector<std::int64_t> took;
+        for (int i = 0; i < 21; ++i) {
+            faults_of(*board).burst = 64;
+            const std::int64_t begin = steady_ns();
+            while (faults_of(*board).burst != 0 && steady_ns() - begin < 500 * ms)
+                hosted::sleep_until(steady_ns() + ms / 8);
+            // The first answer may have been on its way before the noise.
+            const std::int64_t heard = device->published();
+            while (device->published() < heard + 3 && steady_ns() - begin < 500 * ms) {
+                device->commit({});
+                hosted::sleep_until(steady_ns() + ms / 8);
+            }
+            took.push_back(steady_ns() - begin);
+        }
+        std::ranges::sort(took);
+        CAPTURE(took.front(), took.back());
+        CHECK(took[took.size() / 2] < 20 * ms);  // one that is late shows a loaded machine
+        CHECK(device->returns() == 0);
+    }
+}
