@@ -16,6 +16,7 @@ namespace {
 
 constexpr double page_width = 595.0, page_height = 842.0, margin = 48.0;  // points; A4
 constexpr double inside = page_width - 2.0 * margin;
+constexpr double bold_over_plain = 1.08;  // of a text's width, roughly
 
 /// WinAnsi, in which bytes from 160 to 255 are Latin-1; with ( ) and \ escaped.
 std::string ansi(std::string_view text) {
@@ -71,19 +72,37 @@ public:
     void add(const ReportTable& t) {
         if (t.head.empty()) return;
         constexpr double size = 7.5;
-        std::vector<double> widths(t.head.size(), 0.0);
-        const auto measure = [&](const std::vector<std::string>& row) {
-            for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c)
-                widths[c] = std::max(widths[c], std::min(width_of(ansi(row[c]), size) + 8.0, 0.45 * inside));
+        std::vector<double> widths(t.head.size(), 0.0), least = widths;
+        const auto measure = [&](const std::vector<std::string>& row, double boldness) {
+            for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c) {
+                const double wide = boldness * width_of(ansi(row[c]), size) + 8.0;
+                widths[c] = std::max(widths[c], std::min(wide, 0.45 * inside));
+                for (const std::string& word : wrapped(row[c], size, 0.0))
+                    least[c] = std::max(least[c], boldness * width_of(word, size) + 8.0);
+            }
         };
-        measure(t.head);
-        for (const auto& row : t.rows) measure(row);
-        double whole = 0.0;
-        for (const double w : widths) whole += w;
-        if (whole > inside)
-            for (double& w : widths) w *= inside / whole;
+        measure(t.head, bold_over_plain);
+        for (const auto& row : t.rows) measure(row, 1.0);
+        double whole = 0.0, needed = 0.0;
+        for (std::size_t c = 0; c < widths.size(); ++c) {
+            widths[c] = std::max(widths[c], least[c]);
+            whole += widths[c];
+            needed += least[c];
+        }
+        // What is too wide is broken between words, as long as the words fit.
+        const double share = whole > needed ? std::max(0.0, (inside - needed) / (whole - needed)) : 1.0;
+        for (std::size_t c = 0; c < widths.size(); ++c)
+            if (whole > inside)
+                widths[c] = (least[c] + share * (widths[c] - least[c])) * std::min(1.0, inside / needed);
+        // A head stands above its first rows, and again on each page.
+        room(5.0 * size);
         row_of(t.head, widths, size, true);
-        for (const auto& row : t.rows) row_of(row, widths, size, false);
+        for (const auto& row : t.rows) {
+            const std::size_t page = pages_.size();
+            room(height_of(row, widths, size));
+            if (pages_.size() != page) row_of(t.head, widths, size, true);
+            row_of(row, widths, size, false);
+        }
         y_ -= 6.0;
     }
 
@@ -166,7 +185,7 @@ private:
     }
 
     void lines(const std::string& words, double size, bool is_bold, bool is_red = false) {
-        for (const std::string& line : wrapped(words, size, inside / (is_bold ? 1.08 : 1.0))) {
+        for (const std::string& line : wrapped(words, size, inside / (is_bold ? bold_over_plain : 1.0))) {
             room(1.35 * size);
             y_ -= 1.35 * size;
             text(margin, y_, line, size, is_bold, is_red);
@@ -174,11 +193,19 @@ private:
         y_ -= 3.0;
     }
 
+    static double height_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size) {
+        std::size_t most = 1;
+        for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c)
+            most = std::max(most, wrapped(row[c], size, widths[c] - 5.0).size());
+        return 1.3 * size * static_cast<double>(most) + 3.0;
+    }
+
     void row_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size, bool is_bold) {
         std::vector<std::vector<std::string>> cells;
         std::size_t most = 1;
         for (std::size_t c = 0; c < widths.size(); ++c) {
-            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, widths[c] - 5.0));
+            const double wide = (widths[c] - 5.0) / (is_bold ? bold_over_plain : 1.0);
+            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, wide));
             most = std::max(most, cells.back().size());
         }
         const double high = 1.3 * size * static_cast<double>(most) + 3.0;
