@@ -143,6 +143,7 @@
     X(ToNumber, math)                   \
     X(ToSignal, math)                   \
     X(TransformPoint, geometry)         \
+    X(TumourMargin, planning)           \
     X(Vessel, planning)                 \
     X(Viscosity, guide)                 \
     X(VoxmapContact, contact)           \

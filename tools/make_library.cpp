@@ -8,12 +8,16 @@
 #include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
+#include "assets/mesh/write_mesh.hpp"
 #include "assets/vessel/track_file.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -71,8 +75,21 @@ void make_flap_case(const fs::path& folder) {
     }
     tactus::vessel::write_track(made.artery, folder / "artery.csv");
     tactus::vessel::write_track(made.vein, folder / "vein.csv");
+    tactus::bone::save_bone(pieces.tumour, folder / "tumour.vdb");
+    std::array<std::uint64_t, 3> meshes{};
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        const fs::path file = folder / std::array{"fibula.stl", "jaw.stl", "tumour.stl"}[n];
+        tactus::mesh::write_mesh(
+            std::vector<tactus::mesh::ColouredSurface>{{*std::array{&made.fibula, &made.jaw, &made.tumour}[n], {}}},
+            file);
+        tactus::Hash hash;
+        tactus::file::add_file(hash, file);
+        meshes[n] = hash.value();
+    }
     tactus::file::write_whole_file(folder / "hand.txt", pieces.script);
-    tactus::cases::save_case_plan(tactus::library::plan_of(pieces, files, hashes), folder / "case.plan.json");
+    tactus::cases::save_case_plan(
+        tactus::library::plan_of(pieces, files, hashes, tactus::library::reconstruction_of(made, meshes)),
+        folder / "case.plan.json");
     fmt::print("{}: the hand needs {:.1f} s in {} lines\n", (folder / "case.plan.json").string(), pieces.seconds,
                pieces.moves);
 }

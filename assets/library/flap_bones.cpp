@@ -174,6 +174,18 @@ geometry::TriangleSurface make_fibula_surface() {
     return surface_in(Vec3(-18.0, -20.0, -184.0) * mm, Vec3(20.0, 18.0, 184.0) * mm, 0.8 * mm, fibula_distance);
 }
 
+geometry::TriangleSurface make_tumour_surface() {
+    constexpr double angle = 0.4;
+    const Vec3 middle = arch_point(angle) + Vec3(0.0, 0.0, 2.0 * mm), along = arch_direction(angle),
+               across = glm::cross(Vec3(0.0, 0.0, 1.0), along);
+    return surface_in(middle - Vec3(14.0 * mm), middle + Vec3(14.0 * mm), 0.7 * mm, [&](const Vec3& p) {
+        const Vec3 d = p - middle;
+        const double size =
+            glm::length(Vec3(glm::dot(d, along) / (10.0 * mm), glm::dot(d, across) / (6.5 * mm), d.z / (7.5 * mm)));
+        return (size - 1.0) * 6.5 * mm;
+    });
+}
+
 geometry::TriangleSurface mirrored(geometry::TriangleSurface surface) {
     for (Vec3& v : surface.vertices) v.x = -v.x;
     for (auto& t : surface.triangles) std::swap(t[1], t[2]);

@@ -23,6 +23,9 @@ geometry::TriangleSurface make_jaw_surface();
 /// towards +x. Closed, without a marrow cavity.
 geometry::TriangleSurface make_fibula_surface();
 
+/// A tumour in that jaw: an ellipsoid of 20 by 13 by 15 mm, the longest along the arch, in the left body. Closed.
+geometry::TriangleSurface make_tumour_surface();
+
 /// The mirror image at x = 0, with triangles that look outwards again.
 geometry::TriangleSurface mirrored(geometry::TriangleSurface surface);
 

@@ -245,6 +245,7 @@ FlapCase make_flap(const FlapOptions& options) {
         "synthetic: not a patient; vessels, perforators and recipient sites are placed by rules, not measured",
         "for research, not a medical device"};
     made.jaw = make_jaw_surface();
+    made.tumour = make_tumour_surface();
     made.fibula = options.fibula ? *options.fibula : make_fibula_surface();
     const Leg given = options.fibula ? options.fibula_leg : Leg::left;
     std::vector<TriangleSurface> muscles = options.between;

@@ -32,6 +32,7 @@ struct NamedPoint {
 /// Frame LPS, m. Jaw and sites share one frame; fibula, vessels and perforators another.
 struct FlapCase {
     geometry::TriangleSurface jaw, fibula;
+    geometry::TriangleSurface tumour;  ///< in the jaw, frame of the jaw
     vessel::Track artery;  ///< the fibular artery from proximal to distal; perforators are its side branches
     vessel::Track vein;
     std::vector<NamedPoint> perforators;  ///< where they reach the skin
@@ -46,7 +47,7 @@ struct FlapCase {
 /// the tongue. Deterministic. Throws Error when the fibula is not a long bone along z, and for one muscle.
 FlapCase make_flap(const FlapOptions& options = {});
 
-/// Writes jaw.stl, fibula.stl, artery.csv and vein.csv (as write_track), artery.mrk.json, perforators.mrk.json, sites.mrk.json
+/// Writes jaw.stl, fibula.stl, tumour.stl, artery.csv and vein.csv (as write_track), artery.mrk.json, perforators.mrk.json, sites.mrk.json
 /// and INPUTS.json for `plan fibula` and `plan reconstruct`, into a folder that exists. mm, LPS. Throws Error.
 void write_flap(const FlapCase& made, const std::filesystem::path& folder);
 

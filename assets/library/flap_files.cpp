@@ -63,7 +63,9 @@ std::string inputs_text(const FlapCase& made) {
         {"vessels",
          Json::array({Json{{"kind", "artery"}, {"file", "artery.csv"}}, Json{{"kind", "vein"}, {"file", "vein.csv"}}})},
         {"perforators", "perforators.mrk.json"},
-        {"sites", "sites.mrk.json"}};
+        {"sites", "sites.mrk.json"},
+        {"tumour", "tumour.stl"},
+        {"margin_mm", 10}};
     return json.dump(2) + "\n";
 }
 
@@ -75,6 +77,7 @@ void write_flap(const FlapCase& made, const std::filesystem::path& folder) {
     };
     mesh(made.jaw, "jaw.stl");
     mesh(made.fibula, "fibula.stl");
+    mesh(made.tumour, "tumour.stl");
     vessel::write_track(made.artery, folder / "artery.csv");
     vessel::write_track(made.artery, folder / "artery.mrk.json");
     vessel::write_track(made.vein, folder / "vein.csv");

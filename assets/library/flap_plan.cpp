@@ -8,6 +8,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/reconstruct/cut.hpp"
+#include "dsp/reconstruct/margin_wall.hpp"
 #include "dsp/volume/surface_distance.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 
 namespace tactus::library {
@@ -73,6 +75,10 @@ class Hand {
 public:
     explicit Hand(const FlapPieces& pieces) : now_(pieces.table) {}
 
+    void go(double seconds, const Vec3& place) {
+        at_ = {place, upright};
+        script_.go(seconds, at_, "");
+    }
     /// To `grip`, a place in the frame of the piece's file, and closes there.
     void take(std::size_t piece, const Vec3& grip) {
         piece_ = piece;
@@ -121,10 +127,17 @@ Pose beside(const Pose& place, const Vec3& about, const Vec3& way) {
 
 constexpr std::size_t resected = 2, first_segment = 3;
 
-void write_script(FlapPieces& pieces, const std::vector<Vec3>& middle) {
+/// `wall`: of the margin, at the right stump.
+void write_script(FlapPieces& pieces, const std::vector<Vec3>& middle, const Plane& wall) {
     Hand hand(pieces);
     const Vec3 front(0.0, -1.0, 0.0);
     hand.wait(0.3, "");
+    // From the stump towards the tumour, until the margin stops it; back, and round to the front.
+    hand.go(0.4, wall.origin + 8.0 * mm * wall.normal);
+    hand.go(0.5, wall.origin - 5.0 * mm * wall.normal);
+    hand.wait(0.1, "");
+    hand.go(0.3, wall.origin + 8.0 * mm * wall.normal);
+    hand.go(0.4, middle[resected] + 40.0 * mm * front);
     // The resected piece comes out to the front, and is laid down beside.
     hand.take(resected, middle[resected]);
     hand.carry(0.3, {});
@@ -196,17 +209,49 @@ FlapPieces cut_flap(const FlapCase& made) {
     pieces.table.assign(3, Pose{});
     for (std::size_t n = 0; n < count; ++n)
         pieces.table.push_back(Pose{Vec3(0.0, -55.0, -25.0) * mm, upright} * plan.segments[1].donor_to_target);
-    write_script(pieces, middle);
+    pieces.tumour = bone_of(made.tumour, "tumour", 0.9 * mm, {}, 1);
+    pieces.tumour.colour = Vec3(0.55, 0.16, 0.42);
+    write_script(pieces, middle,
+                 reconstruct::margin_walls(inputs, made.tumour.vertices, reconstruct::Flap{}.margin).front());
     return pieces;
 }
 
+reconstruct::Reconstruction reconstruction_of(const FlapCase& made, const std::array<std::uint64_t, 3>& hashes) {
+    reconstruct::Reconstruction all;
+    all.inputs = made.inputs;
+    all.donor = {"fibula.stl", hashes[0]};
+    all.jaw = {"jaw.stl", hashes[1]};
+    all.tumour = {"tumour.stl", hashes[2]};
+    const auto vessel = [](const vessel::Track& track, const char* name, reconstruct::VesselKind kind) {
+        reconstruct::FlapVessel one{name, kind, track.branches[0].nodes[0].radius, {}};
+        for (const vessel::Node& node : track.branches[0].nodes) one.points.push_back(node.position);
+        return one;
+    };
+    all.flap.vessels = {vessel(made.artery, "artery", reconstruct::VesselKind::artery),
+                        vessel(made.vein, "vein", reconstruct::VesselKind::vein)};
+    for (const NamedPoint& mark : made.perforators) all.flap.perforators.push_back({mark.name, mark.position});
+    for (const NamedPoint& site : made.sites) {
+        const bool is_vein = site.name.find("vein") != std::string::npos;
+        all.flap.sites.push_back(
+            {site.name, is_vein ? reconstruct::VesselKind::vein : reconstruct::VesselKind::artery, site.position});
+    }
+    return all;
+}
+
 cases::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes) {
+                        const std::vector<std::uint64_t>& hashes, const reconstruct::Reconstruction& all) {
     cases::CasePlan plan;
     plan.title = "A jaw and three segments of a fibula (synthetic)";
     for (std::size_t n = 0; n < pieces.bones.size(); ++n)
         plan.fragments.push_back({pieces.bones[n].name, files[n], hashes[n], pieces.bones[n].colour});
+    const auto kept = std::make_shared<const reconstruct::Reconstruction>(all);
     const auto arrange = [&](const std::vector<Pose>& places, bool is_resected) {
+        cases::PlanStep whole;
+        whole.kind = cases::StepKind::reconstruct;
+        whole.by = "command";
+        for (std::size_t n = 0; n < places.size(); ++n) whole.fragments.push_back(static_cast<int>(n));
+        whole.reconstruction = kept;
+        cases::add_step(plan, whole);
         for (const int stump : {0, 1}) {
             cases::PlanStep lock;
             lock.kind = cases::StepKind::lock;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace tactus::reconstruct {
@@ -52,6 +53,31 @@ Plate plate_of(const Members& item) {
     if (plate.outward.size() != plate.points.size()) item.fail("needs a direction 'outward' for each point");
     for (const Members& screw : item.list("screws", most_things)) plate.screws.push_back(screw_of(screw));
     return plate;
+}
+
+double share_of(const Members& item, const char* key, double otherwise, double most) {
+    const double found = item.has(key) ? item.number(key) : otherwise;
+    if (!(found >= 0.0 && found <= most)) item.fail(fmt::format("has a '{}' that is not 0 to {:g}", key, most));
+    return found;
+}
+
+double not_negative(const Members& item, const char* key, double otherwise) {
+    const double found = item.length(key, otherwise);
+    if (found < 0.0) item.fail(fmt::format("has a negative '{}'", key));
+    return found;
+}
+
+FlapLimits limits_of(const Members& item) {
+    const FlapLimits usual;
+    FlapLimits limits;
+    limits.clearance = not_negative(item, "clearance", usual.clearance);
+    limits.perforator_to_cut = not_negative(item, "perforator_to_cut", usual.perforator_to_cut);
+    limits.over_in_situ = share_of(item, "over_in_situ", usual.over_in_situ, 1.0);
+    limits.kink = share_of(item, "kink_radii", usual.kink, 100.0);
+    constexpr double degree = std::numbers::pi / 180.0;
+    limits.twist = item.has("twist_deg") ? share_of(item, "twist_deg", 0.0, 180.0) * degree
+                                         : share_of(item, "twist_rad", usual.twist, std::numbers::pi + 1e-9);
+    return limits;
 }
 
 template <class Named>
@@ -212,6 +238,7 @@ Flap flap_of(const Members& all) {
                        item->positive("width", paddle.width)};
     flap.margin = all.length("margin", flap.margin);
     if (flap.margin < 0.0) all.fail("has a negative margin");
+    if (const auto item = all.object("limits")) flap.limits = limits_of(*item);
     check_names(all, flap.vessels, "vessels");
     check_names(all, flap.perforators, "perforators");
     check_names(all, flap.sites, "sites");
@@ -259,6 +286,11 @@ void add_members(Json& json, const Flap& flap) {
         json["paddle"] = {
             {"at_m", json_of(flap.paddle->at)}, {"length_m", flap.paddle->length}, {"width_m", flap.paddle->width}};
     json["margin_m"] = flap.margin;
+    json["limits"] = {{"clearance_m", flap.limits.clearance},
+                      {"perforator_to_cut_m", flap.limits.perforator_to_cut},
+                      {"over_in_situ", flap.limits.over_in_situ},
+                      {"kink_radii", flap.limits.kink},
+                      {"twist_rad", flap.limits.twist}};
 }
 
 }  // namespace tactus::reconstruct

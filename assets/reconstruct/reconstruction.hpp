@@ -33,7 +33,7 @@ file::Json json_of(const Reconstruction& all);
 Reconstruction reconstruction_of(const file::Json& json, const std::string& where);
 
 /// What a file of inputs says of the flap, in mm: the members "vessels", "perforators", "sites", "plates", "implants",
-/// "paddle", "margin_mm", all of which may be missing.
+/// "paddle", "margin_mm", "limits", all of which may be missing.
 Flap flap_of_inputs(const file::Json& json, const std::string& where);
 
 /// Throws Error when the flap holds what cannot be: names that are empty or taken, a vessel of one point, a direction

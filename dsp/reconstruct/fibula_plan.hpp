@@ -113,4 +113,8 @@ std::vector<JawPlane> planes_on(const CurveSplit& split);
 /// segment is turned, a donor that the line leaves, a donor that is too short, and places that are out of order.
 FibulaPlan plan_fibula(const FibulaInputs& inputs);
 
+class DonorBone;
+/// The same with a donor that is prepared already: the inputs' line, leg, farthest_from_line and donor are not read.
+FibulaPlan plan_fibula(const FibulaInputs& inputs, const DonorBone& donor);
+
 }  // namespace tactus::reconstruct

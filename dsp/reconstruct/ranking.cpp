@@ -2,6 +2,7 @@
 #include "dsp/reconstruct/ranking.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/flap_obstacle.hpp"
 
 #include <algorithm>
@@ -73,9 +74,9 @@ FibulaInputs turned(const FibulaInputs& given, const FibulaPlan* now, bool rever
     return inputs;
 }
 
-void measure(Candidate& c, const Flap& flap, const RankingScene& scene) {
+void measure(Candidate& c, const Flap& flap, const DonorBone& donor, const RankingScene& scene) {
     try {
-        c.plan = plan_fibula(c.inputs);
+        c.plan = plan_fibula(c.inputs, donor);
     } catch (const Error& error) {
         c.excluded = error.message();
         return;
@@ -112,7 +113,14 @@ Flap other_leg(const Flap& flap) {
 }
 
 std::vector<Candidate> ranked(const FibulaInputs& inputs, const Flap& flap, const RankingScene& scene) {
-    const std::array<FibulaInputs, 2> legs{inputs, other_leg(inputs)};
+    const DonorBone given_leg(inputs);
+    std::array<FibulaInputs, 2> legs{inputs, {}};
+    legs[0].jaw.reset();
+    // What does not lie along the line is left out before it is mirrored.
+    if (legs[0].donor) legs[0].donor = given_leg.surface();
+    legs[1] = other_leg(legs[0]);
+    const DonorBone mirrored_leg(legs[1]);
+    for (FibulaInputs& leg : legs) leg.donor.reset();
     const std::array<Flap, 2> flaps{flap, other_leg(flap)};
     std::vector<Candidate> all;
     const FibulaPlan* now = nullptr;
@@ -127,9 +135,8 @@ std::vector<Candidate> ranked(const FibulaInputs& inputs, const Flap& flap, cons
                 c.at_first = c.inputs.reversed;
                 c.is_flipped = flip;
                 c.changes = (flip ? 1 : 0) + (reverse ? 2 : 0) + (other ? 4 : 0);
-                measure(c, flaps[other ? 1 : 0], scene);
+                measure(c, flaps[other ? 1 : 0], other ? mirrored_leg : given_leg, scene);
                 if (c.changes == 0) given = c.plan, now = &given;
-                c.inputs.donor.reset();
                 all.push_back(std::move(c));
             }
     std::ranges::stable_sort(all, {}, [&](const Candidate& c) { return order_of(c, flap); });

@@ -36,7 +36,8 @@ struct RankingScene {
 /// All eight, best first. A candidate is excluded when plan_fibula refuses it or an artery or vein reaches no site. The
 /// others are ordered by: plates, screws or implants that meet vessels; the worst reach of artery and vein; kinks and
 /// twists; other warnings; what differs from what was given; strain. Plates and implants stay where they are in the jaw.
-/// Places along the line hold for the given direction; others begin as far from the ankle. Allocates.
+/// Places along the line hold for the given direction; others begin as far from the ankle. The donor's surface is prepared once per leg. Allocates. Throws Error as DonorBone
+/// does.
 std::vector<Candidate> ranked(const FibulaInputs& inputs, const Flap& flap, const RankingScene& scene);
 
 /// The given donor reflected at x = 0: the other leg of a symmetric body.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/reach.hpp"
 
-#include "dsp/reconstruct/jaw_normal.hpp"
+#include "dsp/reconstruct/margin_wall.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/rope/measure.hpp"
 #include "dsp/rope/rope.hpp"
@@ -101,18 +101,27 @@ std::optional<Pedicle> pedicle_of(const std::vector<VesselPart>& parts, const Fi
     double length = 0.0;
     const std::vector<Vec3>& on_bone = parts[1].points;
     for (std::size_t n = 0; n < on_bone.size() && length < lead_in; ++n) {
-        if (n > 0) length += glm::length(on_bone[n] - on_bone[n - 1]);
-        found.lead.push_back(pose.apply(on_bone[n]));
+        const double step = n > 0 ? glm::length(on_bone[n] - on_bone[n - 1]) : 0.0;
+        const double share = step > 0.0 ? std::min(1.0, (lead_in - length) / step) : 1.0;
+        length += step;
+        found.lead.push_back(pose.apply(n > 0 ? glm::mix(on_bone[n - 1], on_bone[n], share) : on_bone[n]));
     }
     std::ranges::reverse(found.lead);
     return found;
 }
 
+/// Over two pieces of bend_step, wherever they lie on the way.
 double bend_of(const Pedicle& pedicle, const std::vector<Vec3>& path) {
+    constexpr std::size_t parts = 10;
     std::vector<Vec3> line = pedicle.lead;
     line.insert(line.end(), path.begin() + 1, path.end());
-    const auto count = static_cast<std::size_t>(std::round(rope::length_of(line) / bend_step)) + 1;
-    return count < 3 ? infinity : rope::least_bend_radius(rope::resampled(line, count));
+    const auto count = static_cast<std::size_t>(std::round(rope::length_of(line) * parts / bend_step)) + 1;
+    if (count < 2 * parts + 1) return infinity;
+    const std::vector<Vec3> fine = rope::resampled(line, count);
+    double least = infinity;
+    for (std::size_t n = parts; n + parts < fine.size(); ++n)
+        least = std::min(least, rope::least_bend_radius(std::array{fine[n - parts], fine[n], fine[n + parts]}));
+    return least;
 }
 
 void measure_hardware(SiteReach& reach, double radius, const Flap& flap) {
@@ -193,19 +202,6 @@ void measure_spans(std::vector<SpanReach>& spans, const FlapVessel& vessel, cons
     }
 }
 
-/// Of the first and the last plane, as far as they cut the jaw; normals into what is resected.
-std::vector<Plane> resection_planes(const FibulaInputs& inputs) {
-    std::vector<Plane> planes;
-    for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
-        if (inputs.resection == Resection::none || (inputs.resection == Resection::after_first && end == 1) ||
-            (inputs.resection == Resection::before_last && end == 0))
-            continue;
-        const std::size_t n = end == 0 ? 0 : inputs.planes.size() - 1;
-        planes.push_back({inputs.planes[n].origin, jaw_normal(inputs, n) * (end == 0 ? 1.0 : -1.0)});
-    }
-    return planes;
-}
-
 }  // namespace
 
 const char* name_of(Reach reach) {
@@ -250,10 +246,9 @@ FlapMeasures measure_flap(const FibulaInputs& inputs, const FibulaPlan& plan, co
     for (PlacedVessel& vessel : measures.vessels)
         if (const SiteReach* best = best_of(measures.reaches, vessel.name)) vessel.lines.push_back(best->points);
     measures.clearances = clearances(flap, cuts_of(inputs, plan), measures.vessels);
-    for (const Plane& plane : resection_planes(inputs))
-        for (const Vec3& p : tumour)
-            measures.tumour_margin =
-                std::min(measures.tumour_margin.value_or(infinity), glm::dot(plane.normal, p - plane.origin));
+    if (!tumour.empty())
+        for (const Plane& plane : resection_planes(inputs))
+            measures.tumour_margin = std::min(measures.tumour_margin.value_or(infinity), margin_behind(plane, tumour));
     add_warnings(measures, inputs, plan, flap);
     return measures;
 }

@@ -59,8 +59,16 @@ Section Slabs::section(const Plane& plane, const Vec3* near) const {
     const double at = glm::dot(plane.normal, plane.origin - point_) / glm::dot(plane.normal, axis_);
     const double reach = radius_ * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / cosine + 1e-6;
     const std::size_t from = slab_of(at - reach - longest_), to = slab_of(at + reach);
-    chosen_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin_[from]),
-                   order_.begin() + static_cast<std::ptrdiff_t>(begin_[to + 1]));
+    chosen_.clear();
+    const auto is_below = [&](int v) {
+        return glm::dot(plane.normal, surface_.vertices[static_cast<std::size_t>(v)] - plane.origin) < 0.0;
+    };
+    for (std::size_t n = begin_[from]; n < begin_[to + 1]; ++n) {
+        const auto& corners = surface_.triangles[static_cast<std::size_t>(order_[n])];
+        const bool first = is_below(corners[0]);
+        // What the plane does not cross adds nothing to its section.
+        if (is_below(corners[1]) != first || is_below(corners[2]) != first) chosen_.push_back(order_[n]);
+    }
     std::ranges::sort(chosen_);
     part_.triangles.clear();
     part_.vertices.clear();

@@ -20,7 +20,9 @@ struct PlannedPlace {
     static constexpr auto about =
         "Where the held piece goes in the plan. Near that place there is a fit, to which a coupling can pull the "
         "piece: "
-        "wire it like fragment_matcher. Planned places come from the last step of an alternative of the plan.";
+        "wire it like fragment_matcher. The place is that beside the piece where it is nearest; another piece must be "
+        "nearer "
+        "by 1 mm. Planned places come from the last step of an alternative of the plan.";
 
     In<tactus::coupling::Scene> scene{"the pieces, in the order of the plan"};
     In<double> held{"place of the held piece; -1: none"};
@@ -62,6 +64,7 @@ struct PlannedPlace {
         fits = false;
         fragment = -1.0;
         partner = -1.0;
+        beside_ = none;
     }
 
     void process(const Tick&) noexcept {
@@ -70,15 +73,18 @@ struct PlannedPlace {
         const double place = held.get();
         if (!(place >= 0.0 && place < static_cast<double>(std::min(places_.size(), scene->count)))) {
             fragment = -1.0;
+            beside_ = none;
             return;
         }
         const auto n = static_cast<std::size_t>(place);
+        if (fragment.get() != place) beside_ = none;
         const coupling::SceneObject& object = scene->objects[n];
         const Pose& seen = pose.connected ? pose.get() : object.pose;
         fragment = static_cast<double>(n);
         if (!is_valid(seen) || !is_valid(object.body.home)) return;
         const Pose now = Pose{seen.position, glm::normalize(seen.orientation)} * object.body.home.inverse();
         double least = std::numeric_limits<double>::infinity();
+        std::size_t found = none;
         for (std::size_t other = 0; other < places_.size() && other < scene->count; ++other) {
             if (!may_meet(n, other)) continue;
             const coupling::SceneObject& beside = scene->objects[other];
@@ -88,8 +94,11 @@ struct PlannedPlace {
             const double by = glm::length(rotation_between(now.orientation, there.orientation));
             // Of points spread about the middle with this radius of gyration, a turn moves two thirds.
             const double off = std::hypot(away, std::sqrt(2.0 / 3.0) * 2.0 * std::sin(0.5 * by) * places_[n].gyration);
-            if (!(off < least)) continue;
-            least = off;
+            // The piece beside which it was so far keeps it, unless another one is nearer by more than that.
+            const double held_back = off - (other == beside_ ? stays_with : 0.0);
+            if (!(held_back < least)) continue;
+            least = held_back;
+            found = other;
             target = there * object.body.home;
             distance = away;
             angle = by;
@@ -98,6 +107,7 @@ struct PlannedPlace {
             partner = static_cast<double>(other);
         }
         if (!fits.get()) partner = -1.0;
+        beside_ = found;
     }
 
 private:
@@ -152,7 +162,11 @@ private:
         }
     }
 
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+    static constexpr double stays_with = 1e-3;  // m: the target does not jump to and fro between two pieces
+
     std::vector<Place> places_;
+    std::size_t beside_ = none;
 };
 
 TACTUS_NODE(PlannedPlace, scene, held, pose, target, fits, fragment, partner, distance, angle, gap, plan, alternative,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/rope/attached_vessel.hpp"
 
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/rope/scene_bones.hpp"
 #include "graph/node/assets.hpp"
@@ -34,7 +35,7 @@ struct Vessel {
     In<double> held{optional, "place of the held piece; -1 or open: none"};
     In<Pose> pose{optional, "of the held piece, newer than in the scene: coupling.pose", "m"};
     In<double> strength{optional, "share of the force that the hand feels, 0 to 1: grasp.strength; open: 1"};
-    In<Pose> site{optional, "where the end is sewn; open: 'site_at'", "m"};
+    In<Pose> site{optional, "where the end is sewn; open: 'plan_site', else 'site_at'", "m"};
     In<bool> sewn{optional, "the end is sewn to its site; false: it is free; open: true"};
     Out<Wrench> wrench{"on the hand: 'gain' times the vessel's pull on the held piece and its group; 0 of a vein",
                        "N, N m"};
@@ -55,6 +56,7 @@ struct Vessel {
         "from the end that is sewn, in the frame of the pieces' files: a table of 'tactus vessel'"};
     Text pieces{"", "it runs along pieces whose names begin like this; empty: along any"};
     Choice kind{{"artery", "vein"}, "artery: gives forces; vein: its law is not known, so it gives reach only"};
+    Text plan_site{"", "name of a site of the plan's reconstruction, where the end is sewn; empty: 'site_at'"};
     Vector site_at{"0 mm, 0 mm, 0 mm", "where the end is sewn, in the scene"};
     Param gain{"3", "0", "20", "how many times as strong as it is the hand feels the pull"};
     Param max_force{"4 N", "0 N", "30 N", "limit of the force on the hand"};
@@ -111,9 +113,10 @@ struct Vessel {
         phase_ = static_cast<std::int64_t>(turn.value() % static_cast<std::uint64_t>(idle_ticks_));
         shape_ = {};
         shape_.is_vein = kind.is("vein") ? 1 : 0;
+        find_plan_site(setup, state);
         last_site_.reset();
-        if (!site.connected) last_site_ = Vec3(site_at.value);
-        site_ = last_site_.value_or(Vec3(site_at.value));
+        if (!site.connected) last_site_ = given_site();
+        site_ = last_site_.value_or(given_site());
         publish(false);
         rope = shape_;
     }
@@ -123,11 +126,11 @@ struct Vessel {
         const int place = held_place();
         follow(place);
         const bool is_held = holds(place);
-        if (!site.connected) last_site_ = Vec3(site_at.value);
+        if (!site.connected) last_site_ = given_site();
         else if (is_valid(site.get())) last_site_ = site->position;
         // A site that was never there is sewn to nothing.
         const bool is_wanted = last_site_ && (!sewn.connected || sewn.get());
-        const Vec3 where = last_site_.value_or(Vec3(site_at.value));
+        const Vec3 where = last_site_.value_or(given_site());
         if (!is_held && (tick.index + phase_) % idle_ticks_ != 0) {
             wrench = Wrench{};
             if (ticks_ > 0) return;
@@ -166,6 +169,29 @@ private:
         const auto count = static_cast<std::size_t>(std::ceil(rope::length_of(points) / 1e-3)) + 1;
         return rope::resampled(points, std::clamp<std::size_t>(count, 2, 5000));
     }
+
+    void find_plan_site(const Setup& setup, const cases::PlanState& state) {
+        plan_site_.reset();
+        if (plan_site.value.empty()) return;
+        if (!state.reconstruction)
+            setup.fail("plan '" + plan.name + "' has no reconstruction, hence no site '" + plan_site.value +
+                       "'; clear 'plan_site' and give 'site_at'");
+        std::string names;
+        for (const reconstruct::RecipientSite& one : state.reconstruction->flap.sites) {
+            if (one.name == plan_site.value) {
+                const bool is_vein = one.kind == reconstruct::VesselKind::vein;
+                if (is_vein != kind.is("vein"))
+                    setup.fail("site '" + one.name + "' is that of " + (is_vein ? "a vein" : "an artery") +
+                               ", and this vessel is " + (is_vein ? "an artery" : "a vein"));
+                plan_site_ = one.at;
+                return;
+            }
+            names += (names.empty() ? "" : ", ") + one.name;
+        }
+        setup.fail("plan '" + plan.name + "' has no site '" + plan_site.value +
+                   "'; it has: " + (names.empty() ? "none" : names));
+    }
+    Vec3 given_site() const noexcept { return plan_site_.value_or(Vec3(site_at.value)); }
 
     int held_place() const noexcept {
         const double place = held.connected ? held.get() : -1.0;
@@ -250,15 +276,15 @@ private:
     std::vector<Pose> poses_;  // of each fragment, from its file's frame
     std::string name_;
     Vec3 site_{0.0};
-    std::optional<Vec3> last_site_;
+    std::optional<Vec3> last_site_, plan_site_;
     std::int64_t idle_ticks_ = 1, phase_ = 0;
     double waited_ = 0.0, greatest_ = 0.0, greatest_felt_ = 0.0, residual_ = 0.0;
     std::uint64_t ticks_ = 0, unsolved_ = 0;
 };
 
 TACTUS_NODE(Vessel, scene, hand, held, pose, strength, site, sewn, wrench, tension, span_tension, strain, slack, twist,
-            bend, verdict, reaches, is_kinked, is_twisted, rope, plan, course, pieces, kind, site_at, gain, max_force,
-            pedicle, beside, stiffness, idle_rate, kink, twist_limit)
+            bend, verdict, reaches, is_kinked, is_twisted, rope, plan, course, pieces, kind, plan_site, site_at, gain,
+            max_force, pedicle, beside, stiffness, idle_rate, kink, twist_limit)
 TACTUS_VISUALS(Vessel)
 
 }  // namespace tactus::nodes

@@ -57,6 +57,8 @@ void make_earlier_work(const fs::path& folder) {
     fs::remove_all(folder / "seeds");
     make({"plan", "new", "case.plan.json", "a.stl", "b.stl"}, folder);
     make({"plan", "move", "case.plan.json", "a", "--pose", "1,2,3,1,0,0,0"}, folder);
+    make({"flap", "-o", "flap"}, folder);
+    make({"plan", "reconstruct", "jaw.plan.json", "flap/INPUTS.json"}, folder);
 }
 
 std::vector<Job> crash_jobs(bool has_display) {
@@ -71,7 +73,16 @@ std::vector<Job> crash_jobs(bool has_display) {
         {.name = "plan",
          .script = "for n in 1 2 3 4 5 6; do $T plan move case.plan.json b --pose $n,0,0,1,0,0,0 || exit; "
                    "$T plan lock case.plan.json a || exit; $T plan undo case.plan.json || exit; done\n",
-         .may_change = {"case.plan.json"}}};
+         .may_change = {"case.plan.json"}},
+        {.name = "reconstruction",
+         .script = "for n in 1 2 3; do $T plan plate jaw.plan.json chin --screws $n || exit; "
+                   "$T plan implant jaw.plan.json molar --at $n -38 6 --axis 0 0 -1 || exit; "
+                   "$T plan site jaw.plan.json 'lingual artery' --at $n 0 -40 || exit; "
+                   "$T plan vessel jaw.plan.json artery --remove || exit; "
+                   "$T plan limits jaw.plan.json --clearance $n || exit; "
+                   "$T plan margin jaw.plan.json --margin $n || exit; $T plan undo jaw.plan.json --steps 6 || exit; "
+                   "done; exec $T plan reconstruct jaw.plan.json flap/INPUTS.json --alternative new$N\n",
+         .may_change = {"jaw.plan.json"}}};
     if (has_display)
         jobs.push_back({.name = "view",
                         .script = "exec $T run p.toml --view --view-script window.script --audio none --out new$N\n",

@@ -72,6 +72,7 @@
     X(plan_vessel, reconstruct)      \
     X(plan_site, reconstruct)        \
     X(plan_margin, reconstruct)      \
+    X(plan_limits, reconstruct)      \
     X(plan_reach, reconstruct)
 
 namespace tactus::command {

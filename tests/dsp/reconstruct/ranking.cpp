@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two stories of Olsson 2015, 6.1.3.1: a plate that meets the vessel, and vessels that do not reach.
 #include "dsp/reconstruct/ranking.hpp"
+
+#include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tests/dsp/reconstruct/small_flap.hpp"
 #include "tests/support/catch.hpp"
@@ -100,4 +102,27 @@ TEST_CASE("a candidate that cannot be cut is excluded with the reason, and the o
     const std::vector<Candidate> high = ranking(in, flap);
     CHECK_THAT(given(high).excluded, Catch::Matchers::ContainsSubstring("misses the donor"));
     CHECK(given(high).plan.segments.empty());
+}
+
+TEST_CASE("a donor that is prepared once gives the plans that one prepared anew gives") {
+    FibulaInputs in = small_inputs();
+    const DonorBone donor(in);
+    for (const bool is_reversed : {false, true})
+        for (const double roll : {0.0, 1.0, 3.0}) {
+            in.reversed = is_reversed;
+            in.roll = roll;
+            in.planes[1].origin.z += 0.3 * milli;
+            const FibulaPlan anew = plan_fibula(in);
+            FibulaInputs without = in;
+            without.donor.reset();
+            const FibulaPlan once = plan_fibula(without, donor);
+            REQUIRE(once.segments.size() == anew.segments.size());
+            for (std::size_t n = 0; n < once.segments.size(); ++n) {
+                CHECK(once.segments[n].donor_to_target.position == anew.segments[n].donor_to_target.position);
+                CHECK(once.segments[n].length_shortest == anew.segments[n].length_shortest);
+                CHECK(once.segments[n].area == anew.segments[n].area);
+            }
+            CHECK(once.clearances == anew.clearances);
+            CHECK(once.left_proximal == anew.left_proximal);
+        }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A vessel under the hand: what is felt is what is reported, it gives no energy, and it rests while nobody holds it.
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
@@ -317,6 +318,78 @@ TEST_CASE("a vessel gives a hand on a simulated device no energy, at 250 to 2000
                     CHECK(most > 1.0);
                     CHECK(work < explained);
                 }
+}
+
+TEST_CASE("a vessel is sewn to a site of the plan by its name, and one of the other kind or none is refused") {
+    auto with_sites = std::make_shared<cases::CaseBones>(*flap());
+    auto all = std::make_shared<reconstruct::Reconstruction>();
+    all->inputs.planes = {{Vec3(-0.04, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}},
+                          {Vec3(0.04, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}}};
+    all->donor.file = "donor.stl";
+    all->flap.sites = {{"facial vein", reconstruct::VesselKind::vein, Vec3(0.0)},
+                       {"facial artery", reconstruct::VesselKind::artery, Vec3(2.0, 0.0, site_z) * mm}};
+    cases::PlanStep step;
+    step.kind = cases::StepKind::reconstruct;
+    step.by = "command";
+    step.fragments = {0, 1, 2};
+    step.reconstruction = all;
+    cases::add_step(with_sites->plan, step);
+    Rig rig;
+    rig.node.asset("plan", with_sites).set("plan_site", "facial artery").set("site_at", "0 mm, 0 mm, 500 mm");
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    rig.node.prepare();
+    rig.node.run(1500);
+    const Vec3 root(0.0, 0.0, 79.5 * mm);
+    const double strain = glm::length(root - Vec3(2.0, 0.0, site_z) * mm) / (0.89 * 60.0 * mm) - 1.0;
+    CHECK(rig.node.last<double>("strain") == Approx(strain).margin(0.02));
+    rig.node.set("plan_site", "facial vein");
+    CHECK_THROWS_WITH(rig.node.prepare(), ContainsSubstring("is that of a vein"));
+    rig.node.set("plan_site", "lingual artery");
+    CHECK_THROWS_WITH(rig.node.prepare(), ContainsSubstring("it has: facial vein, facial artery"));
+    rig.node.asset("plan", flap());
+    CHECK_THROWS_WITH(rig.node.prepare(), ContainsSubstring("no reconstruction"));
+}
+
+TEST_CASE("a piece between two others keeps the one that it is put beside: its target does not jump to and fro") {
+    // In the plan all lie as scanned; in the scene the two neighbours have gone apart, so that each wants it elsewhere.
+    auto plan = std::make_shared<cases::CaseBones>();
+    plan->bones = {rod(0.0, 0.0, 30.0 * mm), rod(0.0, 34.0 * mm, 64.0 * mm), rod(0.0, 68.0 * mm, 98.0 * mm)};
+    for (const char* name : {"jaw-1", "segment-1", "jaw-2"}) plan->plan.fragments.push_back({name, name, 0, Vec3(1.0)});
+    NodeHarness shown("case_scene", {.period = flicks_per_second / 1000});
+    shown.asset("plan", std::shared_ptr<const cases::CaseBones>(plan)).disconnect_optional();
+    shown.prepare();
+    shown.run(1);
+    auto scene = shown.last<coupling::Scene>("scene");
+    scene.objects[0].pose.position.x -= 4.0 * mm;
+    scene.objects[2].pose.position.x += 4.0 * mm;
+    NodeHarness node("planned_place", {.period = flicks_per_second / 1000});
+    node.asset("plan", std::shared_ptr<const cases::CaseBones>(plan)).disconnect_optional();
+    node.set("meets", "6 mm").feed("scene", scene).feed<double>("held", 1.0).connect("pose");
+    node.prepare();
+    const Pose home = scene.objects[1].body.home;
+    int jumps = 0;
+    double before = -1.0;
+    const auto at = [&](double x) {
+        node.feed("pose", Pose{Vec3(x, 0.0, 0.0), upright} * home);
+        node.run(1);
+        const auto partner = node.last<double>("partner");
+        jumps += before >= 0.0 && partner != before;
+        before = partner;
+        return partner;
+    };
+    CHECK(at(-1.0 * mm) == 0.0);
+    // The hand trembles where both are equally near.
+    for (int n = 0; n < 200; ++n) at(0.3 * mm * std::sin(0.4 * n));
+    CHECK(jumps == 0);
+    CHECK(at(1.0 * mm) == 2.0);
+    CHECK(at(-0.2 * mm) == 2.0);
+    CHECK(at(-1.0 * mm) == 0.0);
+    CHECK(jumps == 2);
+    // Let go and taken again, it is the nearest one.
+    node.feed<double>("held", -1.0);
+    node.run(1);
+    node.feed<double>("held", 1.0);
+    CHECK(at(0.2 * mm) == 2.0);
 }
 
 TEST_CASE("a piece near its planned place is pulled to it, with the piece that it meets there") {

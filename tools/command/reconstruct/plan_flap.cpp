@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tactus plan plate, implant, vessel, site, margin: each changes the reconstruction of a plan by one step.
+// tactus plan plate, implant, vessel, site, margin, limits: each changes the reconstruction of a plan by one step.
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct FlapChoice : PlanChoice {
     fs::path file;
     bool remove = false, perforators = false;
     std::vector<double> at, axis;
-    std::optional<double> radius, margin;
+    std::optional<double> radius, margin, clearance, perforator, over, kink, twist;
     double diameter = 4.0, length = 14.0, height = 0.0, screw_length = 12.0;
     int screws = 2;
 };
@@ -122,8 +123,17 @@ int site(const FlapChoice& choice) {
             if (choice.name.empty()) throw Error("--at needs a name");
             return add_site(all.flap, choice, choice.name, in_metres(choice.at));
         }
-        for (const reconstruct::MarkedPoint& mark : reconstruct::read_marks(choice.file))
+        std::vector<std::string> names;
+        bool is_found = false;
+        for (const reconstruct::MarkedPoint& mark : reconstruct::read_marks(choice.file)) {
+            names.push_back(mark.name);
+            if (!choice.name.empty() && mark.name != choice.name) continue;
+            is_found = true;
             add_site(all.flap, choice, mark.name, mark.at);
+        }
+        if (!is_found)
+            throw Error(fmt::format("{}: has no mark '{}'{}", choice.file.string(), choice.name,
+                                    did_you_mean(choice.name, names)));
     });
 }
 
@@ -137,6 +147,19 @@ int margin(const FlapChoice& choice) {
         if (choice.margin) all.flap.margin = *choice.margin * mm;
         if (!choice.remove && choice.file.empty() && !choice.margin)
             throw Error("give the tumour's mesh, --margin, or --remove");
+    });
+}
+
+int limits(const FlapChoice& choice) {
+    if (!choice.clearance && !choice.perforator && !choice.over && !choice.kink && !choice.twist)
+        throw Error("give one of --clearance, --perforator, --over, --kink, --twist");
+    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
+        reconstruct::FlapLimits& to = all.flap.limits;
+        if (choice.clearance) to.clearance = *choice.clearance * mm;
+        if (choice.perforator) to.perforator_to_cut = *choice.perforator * mm;
+        if (choice.over) to.over_in_situ = *choice.over * 0.01;
+        if (choice.kink) to.kink = *choice.kink;
+        if (choice.twist) to.twist = *choice.twist * std::numbers::pi / 180.0;
     });
 }
 
@@ -197,7 +220,8 @@ Verb plan_site_verb() {
                 verb.add("name", choice->name, "name of the mark; one of that name is replaced");
                 verb.add("--at", choice->at, "X Y Z, mm; sites in the frame of the jaw, perforators in the donor's")
                     .count(3);
-                verb.add("--file", choice->file, "take all marks of a file of 3D Slicer (.mrk.json)");
+                verb.add("--file", choice->file,
+                         "take the mark of that name from a file of 3D Slicer (.mrk.json), or all of its marks");
                 verb.add("--kind", choice->kind, "default: as its name says").one_of({"artery", "vein"});
                 verb.flag("--perforator", choice->perforators, "perforators of the leg instead of sites of the neck");
                 verb.flag("--remove", choice->remove, "take it away");
@@ -212,6 +236,27 @@ Verb plan_margin_verb() {
                 verb.add("--margin", choice->margin, "mm").range(0.0, 100.0);
                 verb.flag("--remove", choice->remove, "take the tumour away");
                 return [choice] { return margin(*choice); };
+            }};
+}
+
+Verb plan_limits_verb() {
+    return {"limits", "set the thresholds of the flap's warnings", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb);
+                verb.add(
+                        "--clearance", choice->clearance,
+                        "mm between plates, screws, implants, cuts and vessels; at first 1 (BoneReconstructionPlanner)")
+                    .range(0.0, 100.0);
+                verb.add("--perforator", choice->perforator,
+                         "mm between a perforator and an osteotomy; at first 3, a placeholder")
+                    .range(0.0, 100.0);
+                verb.add("--over", choice->over,
+                         "% over its length in the leg at which a vessel no longer reaches; at first 10, a placeholder")
+                    .range(0.0, 100.0);
+                verb.add("--kink", choice->kink,
+                         "radii of a vessel below which a bend is a kink; at first 3, no source seen")
+                    .range(0.0, 100.0);
+                verb.add("--twist", choice->twist, "degrees; at first 90 (rat, Guven 2012)").range(0.0, 180.0);
+                return [choice] { return limits(*choice); };
             }};
 }
 

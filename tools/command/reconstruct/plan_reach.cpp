@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan reach: whether the vessels of a flap reach, what comes near to what, and which way is best.
 #include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/reconstruct/flap_text.hpp"
+#include "tools/study/planning/flap_candidate.hpp"
 #include "tools/study/planning/flap_study.hpp"
+#include "tools/study/planning/flap_words.hpp"
 
 #include <fmt/format.h>
+
+#include <string>
 
 namespace tactus::command {
 
@@ -13,9 +18,24 @@ namespace {
 
 struct ReachChoice : PlanChoice {
     bool rank = false;
+    int take = 0;
+    std::string alternative;
 };
 
+int take(const ReachChoice& choice) {
+    const std::string name = choice.alternative.empty() ? fmt::format("candidate-{}", choice.take) : choice.alternative;
+    const study::TakenCandidate taken = study::take_candidate(choice.plan, static_cast<std::size_t>(choice.take), name);
+    if (choice.json) return show_change(choice);
+    fmt::print("{}: alternative '{}': {}\n", choice.plan.string(), name, study::candidate_words(taken.candidate));
+    for (const reconstruct::FibulaWarning& w : taken.candidate.plan.warnings) fmt::print("warning: {}\n", w.text);
+    for (const reconstruct::FlapWarning& w : taken.candidate.measures.warnings) fmt::print("warning: {}\n", w.text);
+    fmt::print("for research, not a medical device\n");
+    return done;
+}
+
 int reach(const ReachChoice& choice) {
+    if (choice.take > 0) return take(choice);
+    if (!choice.alternative.empty()) throw Error("--alternative names what --take makes; give --take N, too");
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     study::FlapStudy study(plan, cases::state_of(plan), choice.plan.parent_path());
     const reconstruct::FlapMeasures measures = study.measures();
@@ -43,6 +63,10 @@ Verb plan_reach_verb() {
                 verb.flag(
                     "--rank", choice->rank,
                     "rank both legs, both ends for the pedicle and both faces; with the reasons of what cannot be");
+                verb.add("--take", choice->take,
+                         "make the candidate of that number in the ranking an alternative of the plan, with its pieces")
+                    .range(1, 8);
+                verb.add("--alternative", choice->alternative, "its name (default: candidate-N)");
                 return [choice] { return reach(*choice); };
             }};
 }

@@ -78,22 +78,42 @@ public:
     void add(const ReportTable& t) {
         if (t.head.empty()) return;
         constexpr double size = 7.5;
-        std::vector<double> widths(t.head.size(), 0.0);
-        const auto measure = [&](const std::vector<std::string>& row, double wider) {
-            for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c)
-                widths[c] = std::max(widths[c], std::min(wider * width_of(ansi(row[c]), size) + 8.0, 0.45 * inside));
+        std::vector<double> widths(t.head.size(), 0.0), least = widths;
+        const auto measure = [&](const std::vector<std::string>& row, double boldness) {
+            for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c) {
+                const double wide = boldness * width_of(ansi(row[c]), size) + 8.0;
+                widths[c] = std::max(widths[c], std::min(wide, 0.45 * inside));
+                for (const std::string& word : wrapped(row[c], size, 0.0))
+                    least[c] = std::max(least[c], boldness * width_of(word, size) + 8.0);
+            }
         };
         measure(t.head, bold);
         for (const auto& row : t.rows) measure(row, 1.0);
-        double whole = 0.0;
-        if (!t.marks.empty()) widths[0] = std::min(widths[0] + mark_width, inside);
-        for (const double w : widths) whole += w;
-        if (whole > inside)
-            for (double& w : widths) w *= inside / whole;
+        if (!t.marks.empty()) {
+            widths[0] = std::min(widths[0] + mark_width, inside);
+            least[0] += mark_width;
+        }
+        double whole = 0.0, needed = 0.0;
+        for (std::size_t c = 0; c < widths.size(); ++c) {
+            widths[c] = std::max(widths[c], least[c]);
+            whole += widths[c];
+            needed += least[c];
+        }
+        // What is too wide is broken between words, as long as the words fit.
+        const double share = whole > needed ? std::max(0.0, (inside - needed) / (whole - needed)) : 1.0;
+        for (std::size_t c = 0; c < widths.size(); ++c)
+            if (whole > inside)
+                widths[c] = (least[c] + share * (widths[c] - least[c])) * std::min(1.0, inside / needed);
+        // A head stands above its first rows, and again on each page.
+        room(5.0 * size);
         row_of(t.head, widths, size, true);
-        for (std::size_t n = 0; n < t.rows.size(); ++n)
+        for (std::size_t n = 0; n < t.rows.size(); ++n) {
+            const std::size_t page = pages_.size();
+            room(height_of(t.rows[n], widths, size, !t.marks.empty()));
+            if (pages_.size() != page) row_of(t.head, widths, size, true);
             row_of(t.rows[n], widths, size, false, n < t.marks.size() ? &t.marks[n] : nullptr,
                    n < t.warnings.size() && t.warnings[n]);
+        }
         y_ -= 6.0;
     }
 
@@ -207,13 +227,23 @@ private:
         y_ -= 3.0;
     }
 
+    static double height_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size,
+                            bool is_marked) {
+        std::size_t most = 1;
+        for (std::size_t c = 0; c < widths.size() && c < row.size(); ++c)
+            most = std::max(most,
+                            wrapped(row[c], size, widths[c] - 5.0 - (c == 0 && is_marked ? mark_width : 0.0)).size());
+        return 1.3 * size * static_cast<double>(most) + 3.0;
+    }
+
     void row_of(const std::vector<std::string>& row, const std::vector<double>& widths, double size, bool is_bold,
                 const Vec3* mark = nullptr, bool is_red = false) {
         std::vector<std::vector<std::string>> cells;
         std::size_t most = 1;
         const auto before = [&](std::size_t c) { return c == 0 && mark ? mark_width : 0.0; };
         for (std::size_t c = 0; c < widths.size(); ++c) {
-            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, widths[c] - 5.0 - before(c)));
+            const double wide = (widths[c] - 5.0 - before(c)) / (is_bold ? bold : 1.0);
+            cells.push_back(wrapped(c < row.size() ? row[c] : "", size, wide));
             most = std::max(most, cells.back().size());
         }
         const double high = 1.3 * size * static_cast<double>(most) + 3.0;
@@ -275,7 +305,8 @@ private:
             fmt::format("q {:.2f} 0 0 {:.2f} {:.2f} {:.2f} cm /I{} Do Q\n", wide, high, left, low, images_.size() - 1);
         for (const PictureText& t : over.texts) {
             const std::string shown = ansi(t.text);
-            const double size = std::max(t.size * scale, least_size), away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
+            const double size = std::max(t.size * scale, least_size),
+                         away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
             const double x = left + t.x * scale - (t.anchor == 's' ? 0.0 : away), y = top - t.y * scale;
             if (t.mark) square(*t.mark, x - 14.0 * scale, y, 10.0 * scale);
             text(x, y, shown, size, t.size > 13.0);

@@ -55,7 +55,7 @@ LabelledPicture jaw_picture(const cases::CasePlan& plan, const Measured& m, cons
         const bool is_segment = study::is_segment(fragment.name), is_resected = fragment.name.starts_with("resected");
         if (is_before ? is_segment : m.state.arrangement.is_hidden(piece)) continue;
         const geometry::TriangleSurface surface =
-            reconstruct::read_surface(cases::file_of(m.state.files[static_cast<std::size_t>(piece)].file, folder));
+            study::surface_of_piece(cases::file_of(m.state.files[static_cast<std::size_t>(piece)].file, folder));
         const Pose pose = is_before ? Pose{} : m.state.arrangement.pose(piece);
         const Vec3 colour = is_resected ? resected_colour : is_segment ? fragment.colour : Vec3(0.90, 0.86, 0.76);
         meshes.push_back(picture_mesh(surface, pose, {&colour, 1}));
@@ -132,6 +132,47 @@ ReportTable clearances(const Measured& m) {
         table.rows.back()[column] = c.other;
         table.rows.back()[column + 1] = mm(c.distance);
     }
+    return table;
+}
+
+/// What the warnings compare with, and where each number is from.
+ReportTable thresholds(const Measured& m) {
+    const reconstruct::FibulaInputs& in = m.study->inputs();
+    const reconstruct::Flap& flap = m.study->flap();
+    const char* placeholder = "a placeholder without a source";
+    ReportTable table{{"threshold or size", "value", "parameter", "from"}, {}};
+    const auto add = [&](const char* what, std::string value, const char* parameter, const char* source) {
+        table.rows.push_back({what, std::move(value), parameter, source});
+    };
+    add("bone between osteotomies", mm(in.between) + " mm", "between_space_mm", "BoneReconstructionPlanner");
+    add("bone left at the ankle", mm(in.distal_margin) + " mm", "distal_margin_mm", "BoneReconstructionPlanner");
+    add("bone left at the knee", mm(in.proximal_margin) + " mm", "proximal_margin_mm", placeholder);
+    add("kerf of the saw", mm(in.kerf) + " mm", "kerf_mm", placeholder);
+    add("short segment, very short segment", mm(in.short_segment) + " mm, " + mm(in.very_short_segment) + " mm", "–",
+        "a periosteal branch in 94 % and 83 % (Laugharne 2015)");
+    add("margin of the tumour", mm(flap.margin) + " mm", "plan margin --margin", placeholder);
+    add("clearance of plates, screws, implants", mm(flap.limits.clearance) + " mm", "plan limits --clearance",
+        "BoneReconstructionPlanner");
+    add("perforator to osteotomy", mm(flap.limits.perforator_to_cut) + " mm", "plan limits --perforator", placeholder);
+    add("a vessel no longer reaches over its length in the leg",
+        fmt::format("{:.0f} %", 100.0 * flap.limits.over_in_situ), "plan limits --over", placeholder);
+    add("kink, radii of the vessel", fmt::format("{:.1f}", flap.limits.kink), "plan limits --kink",
+        "remembered, no source seen");
+    add("twist", degrees(flap.limits.twist) + "°", "plan limits --twist", "flaps of rats (Güven 2012)");
+    for (const reconstruct::Plate& plate : flap.plates) {
+        add("plate, width and thickness", mm(plate.width) + " mm, " + mm(plate.thickness) + " mm", "plates",
+            "BoneReconstructionPlanner");
+        if (!plate.screws.empty())
+            add("its screws, length and diameter",
+                mm(plate.screws[0].length) + " mm, " + mm(plate.screws[0].diameter) + " mm",
+                "plan plate --screw-length", placeholder);
+    }
+    for (const reconstruct::DentalImplant& implant : flap.implants)
+        add("implant, diameter and length", mm(implant.diameter) + " mm, " + mm(implant.length) + " mm",
+            "plan implant --diameter, --length", "BoneReconstructionPlanner");
+    if (flap.paddle)
+        add("skin paddle, length and width", mm(flap.paddle->length) + " mm, " + mm(flap.paddle->width) + " mm",
+            "paddle", placeholder);
     return table;
 }
 
@@ -250,9 +291,8 @@ std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path
     std::vector<ReportBlock> out;
     out.emplace_back(Heading{"Reconstruction"});
     out.emplace_back(Paragraph{fmt::format(
-        "Alternative '{}': {} of the {} fibula{}, turned by {}° about its axis. Thresholds and their sources are in "
-        "the "
-        "how-to; placeholders are named there.",
+        "Alternative '{}': {} of the {} fibula{}, turned by {}° about its axis. The last table has the thresholds "
+        "of the warnings, with their sources; placeholders are named.",
         m.name, in.planes.size() == 2 ? "one segment" : fmt::format("{} segments", in.planes.size() - 1),
         in.leg == reconstruct::Leg::left ? "left" : "right", in.reversed ? ", reversed" : "", degrees(in.roll))});
     if (m.study->fibula().warnings.empty() && m.measures.warnings.empty()) out.emplace_back(Paragraph{"No warnings."});
@@ -288,6 +328,9 @@ std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path
         out.emplace_back(Heading{"Clearances"});
         out.emplace_back(clearances(m));
     }
+    if (m.measures.tumour_margin)
+        out.emplace_back(Paragraph{fmt::format("Tumour: {} mm to the nearest cut of the jaw; wanted: {} mm.",
+                                               mm(*m.measures.tumour_margin), mm(m.study->flap().margin))});
     if (all.size() > 1) {
         out.emplace_back(Heading{"Alternatives side by side"});
         out.emplace_back(side_by_side(all));
@@ -295,6 +338,8 @@ std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path
             out.emplace_back(
                 jaw_picture(plan, one, folder, false, from_front, fmt::format("Alternative '{}'", one.name)));
     }
+    out.emplace_back(Heading{"Thresholds and placeholders"});
+    out.emplace_back(thresholds(m));
     return out;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/flap_study.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "assets/bone/mesh_part.hpp"
 #include "assets/cases/mesh_unit.hpp"
+#include "assets/mesh/write_mesh.hpp"
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/flap_obstacle.hpp"
@@ -22,7 +24,11 @@ namespace {
 constexpr const char* no_reconstruction =
     "the plan has no reconstruction at this step: 'tactus plan reconstruct' makes a plan that has one";
 
+bool is_bone_file(const fs::path& file) { return bone::file_of_bone(file).extension() == ".vdb"; }
+
 std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& pose) {
+    if (is_bone_file(file))
+        return std::make_unique<BoneAsObstacle>(contact::make_voxmap(bone::load_bone(file).distance), pose);
     return std::make_unique<BoneAsObstacle>(
         contact::make_voxmap(bone::distance_of_mesh(
             {.input = file, .unit = cases::unit_of_file(file), .is_coarse = true, .within = {}, .run = on_threads()})),
@@ -30,6 +36,11 @@ std::unique_ptr<BoneAsObstacle> obstacle_of(const fs::path& file, const Pose& po
 }
 
 }  // namespace
+
+geometry::TriangleSurface surface_of_piece(const fs::path& file) {
+    if (!is_bone_file(file)) return reconstruct::read_surface(file);
+    return mesh::export_surface(bone::load_bone(file).distance);
+}
 
 bool is_segment(const std::string& name) { return name.starts_with("segment-"); }
 

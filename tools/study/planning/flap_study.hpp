@@ -58,6 +58,9 @@ private:
     std::vector<std::unique_ptr<BoneAsObstacle>> jaw_;
 };
 
+/// Of a piece of jaw or donor, a mesh or a bone file: m, in the frame of its file. Throws Error.
+geometry::TriangleSurface surface_of_piece(const std::filesystem::path& file);
+
 /// Whether a fragment's name is that of a segment, "segment-2" or "segment-2-ALTERNATIVE".
 bool is_segment(const std::string& name);
 

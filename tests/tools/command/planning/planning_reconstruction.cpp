@@ -66,7 +66,7 @@ TEST_CASE("render planning-reconstruction: every segment at its planned place, i
           "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "out", take = folder.path / "take";
-    const Outcome run = folder.tactus("render planning-reconstruction --seconds 23 --out " + out.string() +
+    const Outcome run = folder.tactus("render planning-reconstruction --seconds 24.5 --out " + out.string() +
                                       " --record " + take.string());
     INFO(run.err);
     REQUIRE(run.code == 0);
@@ -98,6 +98,17 @@ TEST_CASE("render planning-reconstruction: every segment at its planned place, i
     }
     CHECK(settled == 4);
     CHECK(joined == 2);
+
+    // Coming from the stump the hand is stopped where the plan's margin to the tumour ends, and nowhere else.
+    const auto stopped = rows_of(out / "margin.csv");
+    double pushed = 0.0, later = 0.0;
+    for (std::size_t n = 0; n < stopped.size(); ++n) {
+        double& most = n < 1700 ? pushed : later;
+        most = std::max(most, glm::length(Vec3(stopped[n][0], stopped[n][1], stopped[n][2])));
+    }
+    CHECK(pushed > 2.0);
+    CHECK(pushed <= 8.0);
+    CHECK(later == 0.0);
 
     // The artery reaches; while the hand pulls the jaw forward it is felt three times as strong as it is.
     CHECK(summary["artery"]["verdict"].get<double>() <= 1.0);

@@ -76,6 +76,16 @@ TEST_CASE(
     CHECK(made.change("site", "low --at 100 12 -110 --perforator").code == 0);
     CHECK(made.change("vessel", "second --kind vein --file " + (made.folder.path / "artery.csv").string()).code == 0);
     CHECK(made.change("margin", "--margin 5").code == 0);
+    // Of a file with several marks the one that is named.
+    const std::string marks = (made.folder.path / "sites.mrk.json").string();
+    CHECK(made.change("site", "'facial vein' --remove").code == 0);
+    CHECK(made.change("site", "'facial artery' --remove").code == 0);
+    CHECK(made.change("site", "'facial vein' --file " + marks).code == 0);
+    CHECK(made.shown()["sites"].size() == 2);
+    const test::Outcome unknown = made.change("site", "'facial nerve' --file " + marks);
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, ContainsSubstring("has no mark 'facial nerve'"));
+    for (int n = 0; n < 3; ++n) CHECK(made.change("undo", "").code == 0);
     now = made.shown();
     // Two segments of three screws, and three on each of two stumps.
     CHECK(now["plates"][0]["screws"] == 12);
@@ -125,6 +135,73 @@ TEST_CASE("plan reach tells what the vessels do, and ranks eight candidates", "[
     // A plan without a reconstruction is refused.
     for (int n = 0; n < 3; ++n) REQUIRE(made.folder.tactus("plan undo " + made.plan).code == 0);
     CHECK_THAT(made.folder.tactus("plan reach " + made.plan).err, ContainsSubstring("no reconstruction"));
+}
+
+TEST_CASE("thresholds of a flap are parameters of the plan, and a warning follows them", "[slow]") {
+    const FlapCase made;
+    json given = made.whole();
+    given["limits"] = {{"kink_radii", 0.0}, {"twist_deg", 180}, {"over_in_situ", 1.0}};
+    REQUIRE(made.run(given).code == 0);
+    REQUIRE(made.change("implant", "molar --at 0 -41 6 --axis 0 0 -1").code == 0);
+    const auto near_cut = [&] {
+        const json found = made.reach();
+        return std::ranges::count_if(found["warnings"], [](const json& w) { return w["code"] == "near-cut"; });
+    };
+    REQUIRE(made.change("limits", "--clearance 0").code == 0);
+    const auto none = near_cut();
+    REQUIRE(made.change("limits", "--clearance 60").code == 0);
+    CHECK(near_cut() == none + 1);
+    const json step = json::parse(test::slurp(made.plan))["steps"].back()["reconstruction"]["limits"];
+    CHECK(step["clearance_m"].get<double>() == Approx(0.06));
+    CHECK(step["kink_radii"] == 0.0);
+    CHECK(step["twist_rad"].get<double>() == Approx(3.14159265));
+    CHECK(made.change("limits", "").code == 2);
+    CHECK(made.change("limits", "--twist 200").code == 2);
+    given["limits"] = {{"clearance_mm", -1}};
+    CHECK_THAT(
+        made.folder.tactus("plan reconstruct other.json " + made.folder.write("bad.json", given.dump()).string()).err,
+        ContainsSubstring("negative 'clearance'"));
+}
+
+TEST_CASE("a candidate of the ranking becomes an alternative of the plan in one command", "[slow]") {
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    const json ranked = made.reach(" --rank")["candidates"];
+    int given = 0, mirrored = 0, excluded = 0;
+    for (int n = 1; n <= 8; ++n) {
+        const json& c = ranked[static_cast<std::size_t>(n - 1)];
+        if (!c["excluded"].is_null()) excluded = n;
+        else if (c["mirrored"] == true && mirrored == 0) mirrored = n;
+        else if (c["mirrored"] == false && c["as_given"] == false && given == 0) given = n;
+    }
+    const std::string before = test::slurp(made.plan);
+    if (excluded > 0) {
+        CHECK_THAT(made.change("reach", "--take " + std::to_string(excluded)).err, ContainsSubstring("cannot be"));
+        CHECK(test::slurp(made.plan) == before);
+    }
+    REQUIRE(given + mirrored > 0);
+    for (const int number : {given, mirrored}) {
+        if (number == 0) continue;
+        REQUIRE(made.folder.tactus("plan alternative " + made.plan + " main").code == 0);
+        const std::string name = number == given ? "candidate-" + std::to_string(number) : "other-leg";
+        const test::Outcome taken = made.change(
+            "reach", "--take " + std::to_string(number) + (number == given ? "" : " --alternative other-leg"));
+        INFO(taken.err);
+        REQUIRE(taken.code == 0);
+        const json& wanted = ranked[static_cast<std::size_t>(number - 1)];
+        const json now = made.shown(), found = made.reach();
+        CHECK(now["leg"] == wanted["leg"]);
+        CHECK(now["reversed"] == wanted["reversed"]);
+        CHECK(now["roll_deg"].get<double>() == Approx(wanted["roll_deg"].get<double>()));
+        // What the ranking said of it holds for the pieces.
+        REQUIRE(found["reaches"].size() == wanted["reaches"].size());
+        for (std::size_t n = 0; n < found["reaches"].size(); ++n)
+            CHECK(found["reaches"][n]["path_mm"].get<double>() ==
+                  Approx(wanted["reaches"][n]["path_mm"].get<double>()).margin(0.3));
+        CHECK(made.change("reach", "--take " + std::to_string(number) + " --alternative " + name).code == 2);
+    }
+    CHECK(made.change("reach", "--take 9").code == 2);
+    CHECK(made.change("reach", "--alternative x").code == 2);
 }
 
 TEST_CASE("a second reconstruction of a plan is an alternative with its own pieces, and the report shows both",

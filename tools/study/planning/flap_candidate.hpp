@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// A candidate of the ranking becomes an alternative of the plan.
+#pragma once
+
+#include "dsp/reconstruct/ranking.hpp"
+#include "tools/study/planning/plan_reconstruct.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace tactus::study {
+
+struct TakenCandidate {
+    MadeReconstruction made;
+    reconstruct::Candidate candidate;
+};
+
+/// Ranks the reconstruction of the plan's current state and makes the candidate of that `number` (from 1, best first)
+/// an alternative with pieces of its own, as make_reconstruction does. Of the mirrored leg the donor's surface is
+/// written to "NAME-ALTERNATIVE-donor.stl" beside the plan. Throws Error for a candidate that is excluded, for a file
+/// that exists, and as FlapStudy and make_reconstruction do; then nothing is left behind.
+TakenCandidate take_candidate(const std::filesystem::path& plan, std::size_t number, const std::string& alternative);
+
+}  // namespace tactus::study
