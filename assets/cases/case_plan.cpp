@@ -17,8 +17,8 @@ namespace tactus::cases {
 
 namespace {
 
-constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",    "lock",
-                                      "unlock", "hide",  "show", "mirror", "reconstruct"};
+constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",     "lock",
+                                      "unlock", "hide",  "show", "mirror", "reconstruct", "vessels"};
 
 [[noreturn]] void refuse(const PlanStep& step, const std::string& why) {
     throw Error(fmt::format("step '{}': {}", name_of(step.kind), why));
@@ -26,7 +26,7 @@ constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungr
 
 void check_fragments(const CasePlan& plan, const PlanStep& step) {
     if (step.fragments.empty() && step.kind != StepKind::ungroup && step.kind != StepKind::mirror &&
-        step.kind != StepKind::reconstruct)
+        step.kind != StepKind::reconstruct && step.kind != StepKind::vessels)
         refuse(step, "names no fragment");
     for (std::size_t n = 0; n < step.fragments.size(); ++n) {
         const int fragment = step.fragments[n];
@@ -149,6 +149,10 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
             state.mirror = step.mirror;
             break;
         case StepKind::reconstruct: reconstruct(plan, step, state); break;
+        case StepKind::vessels:
+            if (!step.vessels) refuse(step, "has no vessels");
+            state.vessels = step.vessels;
+            break;
     }
     forget_groups_that_are_gone(state);
 }
@@ -161,6 +165,7 @@ PlanState as_scanned(const CasePlan& plan) {
             std::vector<std::string>(arrangement.most_groups()),
             std::vector<std::optional<PlanFit>>(plan.fragments.size()),
             std::nullopt,
+            {},
             {},
             {}};
 }

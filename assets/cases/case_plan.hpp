@@ -17,8 +17,9 @@
 #include <vector>
 
 namespace tactus::reconstruct {
+struct FlapVessel;
 struct Reconstruction;
-}
+}  // namespace tactus::reconstruct
 
 namespace tactus::cases {
 
@@ -58,7 +59,8 @@ enum class StepKind : std::uint8_t {
     hide,
     show,
     mirror,
-    reconstruct
+    reconstruct,
+    vessels
 };
 std::string_view name_of(StepKind kind);
 
@@ -76,6 +78,8 @@ struct PlanStep {
     std::optional<MirrorTarget> mirror;
     /// The whole reconstruction of a jaw; `fragments` are its pieces.
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};
+    /// All vessels of the case from here on, where they were scanned.
+    std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 };
 
 /// A named path through the steps.
@@ -105,6 +109,8 @@ struct PlanState {
     std::optional<MirrorTarget> mirror;
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the last one; null: none
     std::vector<int> pieces{};  ///< the fragments of the reconstruction
+    /// Of the case, in the frame of the scan; null: none. Those of a reconstruction are its own.
+    std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;

@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/flap_json.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 
@@ -67,6 +68,7 @@ Json json_of(const CasePlan& plan, const PlanStep& step) {
     if (step.fit) json["fit"] = json_of(*step.fit);
     if (step.mirror) json["mirror"] = json_of(*step.mirror);
     if (step.reconstruction) json["reconstruction"] = reconstruct::json_of(*step.reconstruction);
+    if (step.vessels) json["vessels"] = reconstruct::json_of(*step.vessels);
     return json;
 }
 
@@ -87,6 +89,8 @@ public:
         throw Error(fmt::format("{}: {} {}", file_, where_.empty() ? "the plan" : where_, what));
     }
     bool has(const char* key) const { return json_.contains(key); }
+    const Json& json() const { return json_; }
+    std::string place() const { return fmt::format("{}: {}", file_, where_); }
     /// The place of a member, for messages.
     std::string place(const char* key) const { return fmt::format("{}: {}", file_, inside(key)); }
     const Json& at(const char* key) const {
@@ -168,7 +172,7 @@ MirrorTarget read_mirror(const Item& item) {
 
 StepKind read_kind(const Item& item) {
     const std::string name = item.text("kind");
-    for (int n = 0; n <= static_cast<int>(StepKind::reconstruct); ++n)
+    for (int n = 0; n <= static_cast<int>(StepKind::vessels); ++n)
         if (name == name_of(static_cast<StepKind>(n))) return static_cast<StepKind>(n);
     item.fail(fmt::format("has the unknown kind '{}'", name));
 }
@@ -200,6 +204,9 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
     if (item.has("reconstruction"))
         step.reconstruction = std::make_shared<reconstruct::Reconstruction>(
             reconstruct::reconstruction_of(item.at("reconstruction"), item.place("reconstruction")));
+    if (item.has("vessels"))
+        step.vessels =
+            std::make_shared<std::vector<reconstruct::FlapVessel>>(reconstruct::vessels_of(item.json(), item.place()));
     return step;
 }
 

@@ -8,11 +8,13 @@
 #include "dsp/fit/overlap.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 #include "tools/counted.hpp"
+#include "tools/picture/flap/flap_scene.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_picture.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_overlaps.hpp"
+#include "tools/study/planning/plan_vessels.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
@@ -57,11 +59,16 @@ struct Case {
     std::vector<study::CaseFragment> fragments;
     std::vector<mesh::Mesh> meshes;
     std::vector<std::optional<double>> to_healthy;
+    std::vector<study::VesselClearance> vessels;
 
     const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
     Pose pose(std::size_t n) const { return state.arrangement.pose(static_cast<int>(n)); }
     bool is_shown(std::size_t n) const { return !state.arrangement.is_hidden(static_cast<int>(n)); }
 };
+
+const Vec3& colour_of(const reconstruct::FlapVessel& vessel) {
+    return vessel.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+}
 
 std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState& state) {
     std::vector<display::PictureMesh> meshes;
@@ -69,6 +76,8 @@ std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState
         if (c.is_shown(n))
             meshes.push_back(
                 placed(c.meshes[n], state.arrangement.pose(static_cast<int>(n)), c.plan.fragments[n].colour));
+    for (const study::VesselClearance& v : c.vessels)
+        meshes.push_back(tube_mesh(v.vessel->points, v.vessel->radius, colour_of(*v.vessel)));
     return meshes;
 }
 
@@ -85,6 +94,8 @@ std::vector<PictureLabel> labels_of(const Case& c, const cases::PlanState& state
         if (c.is_shown(n))
             labels.push_back({c.name(n), state.arrangement.pose(static_cast<int>(n)).apply(middle_of(c, n)),
                               c.plan.fragments[n].colour});
+    for (const study::VesselClearance& v : c.vessels)
+        labels.push_back({v.vessel->name, v.vessel->points[v.vessel->points.size() / 2], colour_of(*v.vessel)});
     return labels;
 }
 
@@ -162,6 +173,29 @@ std::string fragments_table(const Case& c) {
         if (c.state.arrangement.is_hidden(number)) marks += " hidden";
         out += "<td>" + html::escaped(marks) + "</td></tr>\n";
     }
+    return out + "</table>\n";
+}
+
+std::string nearest_words(const Case& c, const study::VesselClearance::Nearest& nearest) {
+    if (nearest.fragment < 0) return "<td>–</td><td></td>";
+    return fmt::format("<td>{}</td><td class=\"n{}\">{:.1f}</td>",
+                       html::escaped(c.name(static_cast<std::size_t>(nearest.fragment))),
+                       nearest.gap < 0.0 ? " fail" : "", nearest.gap * 1e3);
+}
+
+std::string vessels_table(const Case& c) {
+    if (c.vessels.empty()) return "";
+    std::string out =
+        "<h2>Vessels</h2>\n<p>They stay where they were scanned. The gap is from the vessel's wall to the surface of "
+        "the "
+        "nearest fragment; below 0 bone lies in the vessel.</p>\n<table><tr><th>vessel</th><th>kind</th><th "
+        "class=\"n\">length, mm</th><th class=\"n\">radius, mm</th><th>nearest as scanned</th><th class=\"n\">gap, mm"
+        "</th><th>nearest as planned</th><th class=\"n\">gap, mm</th></tr>\n";
+    for (const study::VesselClearance& v : c.vessels)
+        out += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td>{}{}</tr>\n",
+            html::escaped(v.vessel->name), reconstruct::name_of(v.vessel->kind), study::length_of(*v.vessel) * 1e3,
+            v.vessel->radius * 1e3, nearest_words(c, v.scanned), nearest_words(c, v.planned));
     return out + "</table>\n";
 }
 
@@ -265,6 +299,8 @@ std::string steps(const Case& c) {
         std::string what(cases::name_of(step.kind));
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
+        if (step.vessels)
+            for (const reconstruct::FlapVessel& vessel : *step.vessels) what += " " + vessel.name;
         if (step.mirror)
             what += fmt::format(" {}, {:.2f} mm median residual", step.mirror->file, step.mirror->residual * 1e3);
         if (step.fit)
@@ -300,6 +336,11 @@ std::string warnings(const Case& c, const std::vector<std::string>& overlaps) {
         if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
             all.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
     all.insert(all.end(), overlaps.begin(), overlaps.end());
+    for (const study::VesselClearance& v : c.vessels)
+        if (v.planned.fragment >= 0 && v.planned.gap < 0.0)
+            all.push_back(fmt::format("'{}' reaches {:.1f} mm into the vessel '{}'",
+                                      c.name(static_cast<std::size_t>(v.planned.fragment)), -v.planned.gap * 1e3,
+                                      v.vessel->name));
     if (all.empty()) return "";
     return "<div class=\"fail\"><h2>Warnings</h2>\n" + list_of(all) + "</div>\n";
 }
@@ -328,6 +369,7 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
     c.fragments = std::move(fragments);
     c.to_healthy = std::move(to_healthy);
     c.to_healthy.resize(c.fragments.size());
+    c.vessels = study::vessel_clearances(c.state, c.fragments);
     for (const study::CaseFragment& fragment : c.fragments)
         c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
     std::string pages;
@@ -343,8 +385,8 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
         fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     counted(c.fragments.size(), "fragment")) +
-        first + warnings(c, overlaps) + connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) +
-        alternatives(c.plan);
+        first + warnings(c, overlaps) + connections(c) + fragments_table(c) + vessels_table(c) + mirror(c) + pages +
+        places(c) + steps(c) + alternatives(c.plan);
     return html::page(c.plan.title, body);
 }
 
