@@ -17,8 +17,8 @@ namespace tactus::cases {
 
 namespace {
 
-constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungroup",     "lock",
-                                      "unlock", "hide",  "show", "mirror", "reconstruct", "repaint"};
+constexpr std::string_view kinds[] = {"place", "group", "add",    "remove",      "ungroup", "lock",   "unlock",
+                                      "hide",  "show",  "mirror", "reconstruct", "repaint", "vessels"};
 
 [[noreturn]] void refuse(const PlanStep& step, const std::string& why) {
     throw Error(fmt::format("step '{}': {}", name_of(step.kind), why));
@@ -26,7 +26,7 @@ constexpr std::string_view kinds[] = {"place",  "group", "add",  "remove", "ungr
 
 void check_fragments(const CasePlan& plan, const PlanStep& step) {
     if (step.fragments.empty() && step.kind != StepKind::ungroup && step.kind != StepKind::mirror &&
-        step.kind != StepKind::reconstruct)
+        step.kind != StepKind::reconstruct && step.kind != StepKind::vessels)
         refuse(step, "names no fragment");
     for (std::size_t n = 0; n < step.fragments.size(); ++n) {
         const int fragment = step.fragments[n];
@@ -156,6 +156,10 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
             break;
         case StepKind::reconstruct: reconstruct(plan, step, state); break;
         case StepKind::repaint: repaint(step, state); break;
+        case StepKind::vessels:
+            if (!step.vessels) refuse(step, "has no vessels");
+            state.vessels = step.vessels;
+            break;
     }
     forget_groups_that_are_gone(state);
 }
@@ -172,7 +176,8 @@ PlanState as_scanned(const CasePlan& plan) {
             std::nullopt,
             {},
             {},
-            std::move(files)};
+            std::move(files),
+            {}};
 }
 
 }  // namespace

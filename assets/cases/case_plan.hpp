@@ -17,8 +17,9 @@
 #include <vector>
 
 namespace tactus::reconstruct {
+struct FlapVessel;
 struct Reconstruction;
-}
+}  // namespace tactus::reconstruct
 
 namespace tactus::cases {
 
@@ -59,7 +60,8 @@ enum class StepKind : std::uint8_t {
     show,
     mirror,
     reconstruct,
-    repaint
+    repaint,
+    vessels
 };
 std::string_view name_of(StepKind kind);
 
@@ -84,6 +86,8 @@ struct PlanStep {
     /// The whole reconstruction of a jaw; `fragments` are its pieces.
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};
     std::optional<HashedFile> painted{};  ///< for `repaint`: the file of the one fragment from here on
+    /// All vessels of the case from here on, where they were scanned.
+    std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 };
 
 /// A named path through the steps.
@@ -114,6 +118,8 @@ struct PlanState {
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the last one; null: none
     std::vector<int> pieces{};  ///< the fragments of the reconstruction
     std::vector<HashedFile> files{};  ///< per fragment: the plan's, or that of the last `repaint`
+    /// Of the case, in the frame of the scan; null: none. Those of a reconstruction are its own.
+    std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;

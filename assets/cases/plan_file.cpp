@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/flap_json.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 
@@ -68,6 +69,7 @@ Json json_of(const CasePlan& plan, const PlanStep& step) {
     if (step.mirror) json["mirror"] = json_of(*step.mirror);
     if (step.reconstruction) json["reconstruction"] = reconstruct::json_of(*step.reconstruction);
     if (step.painted) json["painted"] = {{"file", step.painted->file}, {"hash", hex(step.painted->hash)}};
+    if (step.vessels) json["vessels"] = reconstruct::json_of(*step.vessels);
     return json;
 }
 
@@ -88,6 +90,8 @@ public:
         throw Error(fmt::format("{}: {} {}", file_, where_.empty() ? "the plan" : where_, what));
     }
     bool has(const char* key) const { return json_.contains(key); }
+    const Json& json() const { return json_; }
+    std::string place() const { return fmt::format("{}: {}", file_, where_); }
     /// The place of a member, for messages.
     std::string place(const char* key) const { return fmt::format("{}: {}", file_, inside(key)); }
     const Json& at(const char* key) const {
@@ -169,7 +173,7 @@ MirrorTarget read_mirror(const Item& item) {
 
 StepKind read_kind(const Item& item) {
     const std::string name = item.text("kind");
-    for (int n = 0; n <= static_cast<int>(StepKind::repaint); ++n)
+    for (int n = 0; n <= static_cast<int>(StepKind::vessels); ++n)
         if (name == name_of(static_cast<StepKind>(n))) return static_cast<StepKind>(n);
     item.fail(fmt::format("has the unknown kind '{}'", name));
 }
@@ -205,6 +209,9 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
         const Item painted = item.item("painted");
         step.painted = HashedFile{painted.text("file"), painted.hash("hash")};
     }
+    if (item.has("vessels"))
+        step.vessels =
+            std::make_shared<std::vector<reconstruct::FlapVessel>>(reconstruct::vessels_of(item.json(), item.place()));
     return step;
 }
 

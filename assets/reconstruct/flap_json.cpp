@@ -215,14 +215,35 @@ std::optional<Members> Members::object(std::string_view key) const {
     return Members(at(key), fmt::format("{}: {}", where_, key), unit_);
 }
 
+std::vector<FlapVessel> vessels_in(const Members& all) {
+    std::vector<FlapVessel> vessels;
+    const FlapVessel usual;
+    for (const Members& item : all.list("vessels", most_things)) {
+        vessels.push_back(
+            {item.name(), kind_of(item), item.positive("radius", usual.radius), item.places("points", most_points)});
+        if (vessels.back().points.size() < 2) item.fail("needs at least two points");
+    }
+    check_names(all, vessels, "vessels");
+    return vessels;
+}
+
+std::vector<FlapVessel> vessels_of(const Json& json, const std::string& where) {
+    const Members item(json, where, in_metres);
+    if (!item.has("vessels")) item.fail("has no 'vessels'");
+    return vessels_in(item);
+}
+
+Json json_of(const std::vector<FlapVessel>& vessels) {
+    Json made = Json::array();
+    for (const FlapVessel& v : vessels)
+        made.push_back(
+            {{"name", v.name}, {"kind", name_of(v.kind)}, {"radius_m", v.radius}, {"points_m", json_of(v.points)}});
+    return made;
+}
+
 Flap flap_of(const Members& all) {
     Flap flap;
-    const FlapVessel vessel;
-    for (const Members& item : all.list("vessels", most_things)) {
-        flap.vessels.push_back(
-            {item.name(), kind_of(item), item.positive("radius", vessel.radius), item.places("points", most_points)});
-        if (flap.vessels.back().points.size() < 2) item.fail("needs at least two points");
-    }
+    flap.vessels = vessels_in(all);
     for (const Members& item : all.list("perforators", most_things))
         flap.perforators.push_back({item.name(), item.place("at")});
     for (const Members& item : all.list("sites", most_things))
@@ -239,7 +260,6 @@ Flap flap_of(const Members& all) {
     flap.margin = all.length("margin", flap.margin);
     if (flap.margin < 0.0) all.fail("has a negative margin");
     if (const auto item = all.object("limits")) flap.limits = limits_of(*item);
-    check_names(all, flap.vessels, "vessels");
     check_names(all, flap.perforators, "perforators");
     check_names(all, flap.sites, "sites");
     check_names(all, flap.plates, "plates");
@@ -253,10 +273,7 @@ void add_members(Json& json, const Flap& flap) {
         for (const auto& each : all) made.push_back(one(each));
         return made;
     };
-    json["vessels"] = list(flap.vessels, [](const FlapVessel& v) {
-        return Json{
-            {"name", v.name}, {"kind", name_of(v.kind)}, {"radius_m", v.radius}, {"points_m", json_of(v.points)}};
-    });
+    json["vessels"] = json_of(flap.vessels);
     json["perforators"] =
         list(flap.perforators, [](const Perforator& p) { return Json{{"name", p.name}, {"at_m", json_of(p.at)}}; });
     json["sites"] = list(flap.sites, [](const RecipientSite& s) {

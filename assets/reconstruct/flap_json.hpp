@@ -59,6 +59,11 @@ private:
 
 /// The members of a flap, all of which may be missing.
 Flap flap_of(const Members& all);
+/// The vessels of a flap alone.
+std::vector<FlapVessel> vessels_in(const Members& all);
+/// The same of an object with a list "vessels", in m; `where` begins messages. Throws Error, also without the list.
+std::vector<FlapVessel> vessels_of(const file::Json& json, const std::string& where);
+file::Json json_of(const std::vector<FlapVessel>& vessels);
 /// Adds them, in m.
 void add_members(file::Json& json, const Flap& flap);
 

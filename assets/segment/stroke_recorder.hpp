@@ -22,6 +22,13 @@ public:
     void lift() noexcept { is_open_ = false; }
 
     std::size_t strokes() const noexcept { return strokes_.size(); }
+    /// Of all strokes.
+    std::size_t points() const noexcept { return points_.size(); }
+    bool is_open() const noexcept { return is_open_; }
+    /// What was kept last, once there are points.
+    const Vec3& newest_point() const noexcept { return points_.back(); }
+    double newest_radius() const noexcept { return strokes_.back().radius; }
+    bool newest_erases() const noexcept { return strokes_.back().erases; }
     /// There was no room for everything.
     bool is_full() const noexcept { return is_full_; }
     /// What is left of the strokes where they were erased.

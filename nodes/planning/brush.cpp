@@ -26,6 +26,9 @@ struct Brush {
     Out<double> painted{"number of points labelled fracture"};
     Out<double> area{"surface area of these points", "m^2"};
     Out<double> distance{"from the centre of the brush to the nearest point, at most 20 mm", "m"};
+    Out<Vec3> kept{"newest point of its strokes as seeds.json keeps it, in the fragment's file frame", "m"};
+    Out<double> kept_radius{"of the brush at that point, negative: it erases; 0: the brush is lifted", "m"};
+    Out<double> kept_points{"number of points of all its strokes"};
     Asset<bone::Bone> bone{"the fragment"};
     Param radius{"1.5 mm", "0.1 mm", "50 mm", "of the brush"};
     Flag start_clean{false, "remove the paint of the file at the start"};
@@ -83,6 +86,11 @@ struct Brush {
 private:
     void publish(double away) noexcept {
         distance_ = away;
+        kept_points = static_cast<double>(strokes_->points());
+        if (strokes_->is_open()) {
+            kept = strokes_->newest_point();
+            kept_radius = strokes_->newest_erases() ? -strokes_->newest_radius() : strokes_->newest_radius();
+        } else kept_radius = 0.0;
         painted = static_cast<double>(brush_->labelled());
         area = brush_->area();
         distance = away;
@@ -97,7 +105,8 @@ private:
     double distance_ = 0.0;
 };
 
-TACTUS_NODE(Brush, tool, paint, erase, body, painted, area, distance, bone, radius, start_clean, label)
+TACTUS_NODE(Brush, tool, paint, erase, body, painted, area, distance, kept, kept_radius, kept_points, bone, radius,
+            start_clean, label)
 TACTUS_VISUALS(Brush)
 
 }  // namespace tactus::nodes

@@ -12,6 +12,7 @@
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/session/patch_choice.hpp"
 #include "tools/session/stop_signals.hpp"
 #include "tools/study/segment/segment_files.hpp"
 #include "tools/study/workers.hpp"
@@ -57,6 +58,12 @@ void check_outputs(const SegmentChoice& choice) {
             "give the seeds: --seeds SEEDS.json; --paint SEEDS.json opens a window to paint them, --propose SEEDS.json "
             "writes a first version of them");
     if (!choice.paint.script.empty() && !paints) throw Error("--view-script needs --paint");
+    if (!choice.paint.hand.empty()) {
+        if (!paints) throw Error("--hand needs --paint");
+        session::PatchChoice patch;
+        patch.patch = choice.paint.hand.string();
+        session::file_of(patch);
+    }
     if (!choice.plan.empty() && std::ranges::none_of(choice.out, is_bones))
         throw Error("--plan needs bones to refer to: -o BONES.vdb");
     if (!choice.plan.empty() && std::filesystem::exists(choice.plan))
@@ -181,11 +188,13 @@ int segment_bone(const SegmentChoice& given) {
         return done;
     }
     if (!choice.paint.seeds.empty()) {
-        if (const std::string lost = view::paint_view(scan, settings, choice.paint, session::stop_on_signals());
-            !lost.empty()) {
-            fmt::print(stderr, "tactus: {}; the last strokes are lost\n", lost);
+        const view::PaintViewEnd end = view::paint_view(scan, settings, choice.paint, session::stop_on_signals());
+        if (!choice.json && !end.hand_summary.empty()) fmt::print("{}", end.hand_summary);
+        if (!end.lost.empty()) {
+            fmt::print(stderr, "tactus: {}; the last strokes are lost\n", end.lost);
             return output_lost;
         }
+        if (!end.hand_failure.empty()) throw Error(end.hand_failure);
         seeds = painted(choice);
         choice.seeds = choice.paint.seeds;
         const bool is_enough = seeds.size() >= 2;
@@ -217,6 +226,10 @@ Action add(VerbOptions& verb) {
              "open a window to paint the seeds; they are kept in this file (.json) after every stroke, and continued "
              "when it "
              "exists");
+    verb.add(
+        "--hand", choice->paint.hand,
+        "with --paint: run this patch beside the window; what its 'brush' nodes paint becomes strokes, and the labels "
+        "follow");
     verb.add("--view-script", choice->paint.script, "with --paint: run the commands in this file in the window");
     verb.add("--view-scale", choice->paint.scale, "with --paint: scale of text and controls (default: the screen's)")
         .range(0.5, 4.0);

@@ -2,11 +2,13 @@
 // tactus plan show: the content of a plan as text or JSON.
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/json.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/command/reconstruct/flap_text.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
+#include "tools/study/planning/plan_vessels.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
@@ -82,6 +84,13 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
     for (const cases::PlanAlternative& a : plan.alternatives)
         json["alternatives"].push_back({{"name", a.name}, {"steps", fit::steps_to(before, a.place.head).size()}});
     if (state.reconstruction) json["reconstruction"] = reconstruction_json(*state.reconstruction);
+    json["vessels"] = Json::array();
+    if (state.vessels)
+        for (const reconstruct::FlapVessel& v : *state.vessels)
+            json["vessels"].push_back({{"name", v.name},
+                                       {"kind", reconstruct::name_of(v.kind)},
+                                       {"length_mm", study::length_of(v) * 1e3},
+                                       {"radius_mm", v.radius * 1e3}});
     if (state.mirror)
         json["mirror"] = {{"file", state.mirror->file},
                           {"plane_normal",
@@ -116,6 +125,10 @@ int show_plan(const PlanChoice& choice) {
         fmt::print("  {}: at {:.2f} {:.2f} {:.2f} mm, turned {:.2f}°{}\n", f.name, pose.position.x * 1e3,
                    pose.position.y * 1e3, pose.position.z * 1e3, study::angle_deg(pose), marks);
     }
+    if (state.vessels)
+        for (const reconstruct::FlapVessel& v : *state.vessels)
+            fmt::print("  {}: {}, {:.1f} mm long, radius {:.2f} mm\n", v.name, reconstruct::name_of(v.kind),
+                       study::length_of(v) * 1e3, v.radius * 1e3);
     if (state.reconstruction) print_reconstruction(*state.reconstruction);
     for (const std::string& line : study::connection_words(plan, state)) fmt::print("  {}\n", line);
     for (const std::string& problem : problems) fmt::print("! {}\n", problem);

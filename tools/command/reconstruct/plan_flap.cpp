@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// tactus plan plate, implant, vessel, site, margin, limits: each changes the reconstruction of a plan by one step.
+// tactus plan plate, implant, vessel, site, margin, limits: each changes the reconstruction of a plan by one step; vessel
+// also a plan without one.
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/flap_study.hpp"
+#include "tools/study/planning/plan_vessels.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -91,8 +93,8 @@ int implant(const FlapChoice& choice) {
 }
 
 int vessel(const FlapChoice& choice) {
-    return changed(choice, [&](Reconstruction& all, const cases::CasePlan&) {
-        if (choice.remove) return take_away(all.flap.vessels, choice.name, "vessel");
+    study::change_vessels(choice.plan, [&](std::vector<reconstruct::FlapVessel>& vessels) {
+        if (choice.remove) return take_away(vessels, choice.name, "vessel");
         if (choice.file.empty()) throw Error("a vessel needs --file, a table (.csv) or a curve (.mrk.json)");
         const auto kind = choice.kind.empty() ? reconstruct::kind_in(choice.name, "without --kind, the vessel's name")
                           : choice.kind == "vein" ? reconstruct::VesselKind::vein
@@ -100,8 +102,9 @@ int vessel(const FlapChoice& choice) {
         reconstruct::FlapVessel read = reconstruct::read_vessel(choice.file, kind);
         read.name = choice.name;
         if (choice.radius) read.radius = *choice.radius * mm;
-        put(all.flap.vessels, std::move(read));
+        put(vessels, std::move(read));
     });
+    return show_change(choice);
 }
 
 void add_site(Flap& flap, const FlapChoice& choice, const std::string& name, const Vec3& at) {
@@ -202,7 +205,8 @@ Verb plan_implant_verb() {
 }
 
 Verb plan_vessel_verb() {
-    return {"vessel", "add a vessel of the donor leg", [](VerbOptions& verb) -> Action {
+    return {"vessel", "add a vessel that 'tactus vessel' followed: of a reconstruction the donor's, else of the case",
+            [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb);
                 verb.add("name", choice->name, "name of the vessel; one of that name is replaced").required();
                 verb.add("--file", choice->file, "table of 'tactus vessel' (.csv) or curve of 3D Slicer (.mrk.json)");

@@ -9,11 +9,13 @@
 #include "dsp/fit/overlap.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 #include "tools/counted.hpp"
+#include "tools/picture/flap/flap_scene.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_picture.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_overlaps.hpp"
+#include "tools/study/planning/plan_vessels.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
@@ -60,11 +62,16 @@ struct Case {
     std::vector<study::CaseFragment> fragments;
     std::vector<mesh::Mesh> meshes;
     std::vector<std::optional<double>> to_healthy;
+    std::vector<study::VesselClearance> vessels;
 
     const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
     Pose pose(std::size_t n) const { return state.arrangement.pose(static_cast<int>(n)); }
     bool is_shown(std::size_t n) const { return !state.arrangement.is_hidden(static_cast<int>(n)); }
 };
+
+const Vec3& colour_of(const reconstruct::FlapVessel& vessel) {
+    return vessel.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+}
 
 std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState& state) {
     std::vector<display::PictureMesh> meshes;
@@ -72,6 +79,8 @@ std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState
         if (c.is_shown(n))
             meshes.push_back(
                 placed(c.meshes[n], state.arrangement.pose(static_cast<int>(n)), c.plan.fragments[n].colour));
+    for (const study::VesselClearance& v : c.vessels)
+        meshes.push_back(tube_mesh(v.vessel->points, v.vessel->radius, colour_of(*v.vessel)));
     return meshes;
 }
 
@@ -88,6 +97,8 @@ std::vector<PictureLabel> labels_of(const Case& c, const cases::PlanState& state
         if (c.is_shown(n))
             labels.push_back({c.name(n), state.arrangement.pose(static_cast<int>(n)).apply(middle_of(c, n)),
                               c.plan.fragments[n].colour});
+    for (const study::VesselClearance& v : c.vessels)
+        labels.push_back({v.vessel->name, v.vessel->points[v.vessel->points.size() / 2], colour_of(*v.vessel)});
     return labels;
 }
 
@@ -174,6 +185,31 @@ ReportTable fragments_table(const Case& c) {
         table.warnings.push_back(is_void);
     }
     return table;
+}
+
+void add_vessels(const Case& c, std::vector<ReportBlock>& out) {
+    if (c.vessels.empty()) return;
+    ReportTable table{{"vessel", "kind", "length, mm", "radius, mm", "nearest as scanned", "gap, mm",
+                       "nearest as planned", "gap as planned, mm"},
+                      {}};
+    for (const study::VesselClearance& v : c.vessels) {
+        std::vector<std::string> row{v.vessel->name, std::string(reconstruct::name_of(v.vessel->kind)),
+                                     fmt::format("{:.1f}", study::length_of(*v.vessel) * 1e3),
+                                     fmt::format("{:.2f}", v.vessel->radius * 1e3)};
+        for (const auto& nearest : {v.scanned, v.planned}) {
+            const bool is_none = nearest.fragment < 0;
+            row.push_back(is_none ? "–" : c.name(static_cast<std::size_t>(nearest.fragment)));
+            row.push_back(is_none ? "–" : fmt::format("{:.1f}", nearest.gap * 1e3));
+        }
+        table.rows.push_back(std::move(row));
+        table.marks.push_back(colour_of(*v.vessel));
+        table.warnings.push_back(v.planned.fragment >= 0 && v.planned.gap < 0.0);
+    }
+    out.emplace_back(Heading{"Vessels"});
+    out.emplace_back(
+        Paragraph{"They stay where they were scanned. The gap is from the vessel's wall to the surface of "
+                  "the nearest fragment; below 0 bone lies in the vessel."});
+    out.emplace_back(std::move(table));
 }
 
 /// Distances of the vertices of a fragment from the other one, each by its own normal: the two sides of thin bone do
@@ -275,6 +311,8 @@ void add_steps(const Case& c, std::vector<ReportBlock>& out) {
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
         if (step.painted) what += " as in " + step.painted->file;
+        if (step.vessels)
+            for (const reconstruct::FlapVessel& vessel : *step.vessels) what += " " + vessel.name;
         if (step.mirror)
             what += fmt::format(" {}, {:.2f} mm median residual", step.mirror->file, step.mirror->residual * 1e3);
         if (step.fit)
@@ -306,6 +344,11 @@ void add_warnings(const Case& c, const std::vector<std::string>& overlaps, std::
         if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
             all.items.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
     all.items.insert(all.items.end(), overlaps.begin(), overlaps.end());
+    for (const study::VesselClearance& v : c.vessels)
+        if (v.planned.fragment >= 0 && v.planned.gap < 0.0)
+            all.items.push_back(fmt::format("'{}' reaches {:.1f} mm into the vessel '{}'",
+                                            c.name(static_cast<std::size_t>(v.planned.fragment)), -v.planned.gap * 1e3,
+                                            v.vessel->name));
     if (all.items.empty()) return;
     out.emplace_back(Heading{"Warnings", true});
     out.emplace_back(std::move(all));
@@ -338,6 +381,7 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
     c.fragments = std::move(fragments);
     c.to_healthy = std::move(to_healthy);
     c.to_healthy.resize(c.fragments.size());
+    c.vessels = study::vessel_clearances(c.state, c.fragments);
     for (const study::CaseFragment& fragment : c.fragments)
         c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
     std::vector<ReportBlock> out, pictures;
@@ -356,6 +400,7 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
     add_connections(c, out);
     out.emplace_back(Heading{"Fragments"});
     out.emplace_back(fragments_table(c));
+    add_vessels(c, out);
     add_mirror(c, out);
     std::ranges::move(pictures, std::back_inserter(out));
     add_gaps(found, out);

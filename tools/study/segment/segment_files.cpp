@@ -70,7 +70,8 @@ void write_segmented(const ScanGraph& scan, const SegmentedScan& found, const Se
     else volume::write_labels(scan.scan, found.map.label, segments_of(found), path);
 }
 
-void write_plan_of(const std::filesystem::path& bones, const SegmentedScan& found, const std::filesystem::path& plan) {
+void write_plan_of(const std::filesystem::path& bones, const SegmentedScan& found, const std::filesystem::path& plan,
+                   const std::vector<reconstruct::FlapVessel>& vessels) {
     if (std::filesystem::exists(plan))
         throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", plan.string()));
     const cases::PlanLock lock(plan);
@@ -81,6 +82,14 @@ void write_plan_of(const std::filesystem::path& bones, const SegmentedScan& foun
         cases::add_fragment(made, label.name, bones.string() + "#" + bone_name_of(found, l), plan.parent_path(),
                             label.colour);
         load_fragment(made.fragments.back(), plan.parent_path());
+    }
+    if (!vessels.empty()) {
+        cases::PlanStep step;
+        step.kind = cases::StepKind::vessels;
+        step.by = "command";
+        step.time = cases::time_of_day();
+        step.vessels = std::make_shared<const std::vector<reconstruct::FlapVessel>>(vessels);
+        cases::add_step(made, std::move(step));
     }
     cases::save_case_plan(made, plan);
 }

@@ -11,9 +11,11 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <ctime>
+#include <limits>
 
 namespace tactus::study {
 
@@ -62,23 +64,6 @@ std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segmen
     return seed;
 }
 
-std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const std::uint8_t> label) {
-    const segment::GraphParts parts = segment::parts_of(scan.graph);
-    std::vector<UnseededIsland> of_part(parts.nodes.size());
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] != 0) continue;
-        UnseededIsland& island = of_part[static_cast<std::size_t>(parts.part[n])];
-        const auto at = scan.graph.place(n);
-        ++island.voxels;
-        island.centre += scan.box.position(at[0], at[1], at[2]);
-    }
-    std::erase_if(of_part, [](const UnseededIsland& island) { return island.voxels == 0; });
-    for (UnseededIsland& island : of_part) island.centre /= static_cast<double>(island.voxels);
-    std::stable_sort(of_part.begin(), of_part.end(),
-                     [](const UnseededIsland& a, const UnseededIsland& b) { return a.voxels > b.voxels; });
-    return of_part;
-}
-
 double share_below(std::vector<float> values, double share) {
     if (values.empty()) return 0.0;
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -100,6 +85,37 @@ std::vector<std::uint8_t> open_voxels(const ScanGraph& scan, const segment::Labe
 }
 
 }  // namespace
+
+std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const std::uint8_t> label) {
+    const segment::GraphParts parts = segment::parts_of(scan.graph);
+    std::vector<UnseededIsland> of_part(parts.nodes.size());
+    const auto position = [&](std::size_t n) {
+        const auto at = scan.graph.place(n);
+        return scan.box.position(at[0], at[1], at[2]);
+    };
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] != 0) continue;
+        UnseededIsland& island = of_part[static_cast<std::size_t>(parts.part[n])];
+        ++island.voxels;
+        island.centre += position(n);
+    }
+    for (UnseededIsland& island : of_part)
+        if (island.voxels > 0) island.centre /= static_cast<double>(island.voxels);
+    std::vector<double> least(of_part.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] != 0) continue;
+        const auto part = static_cast<std::size_t>(parts.part[n]);
+        const Vec3 away = position(n) - of_part[part].centre;
+        if (const double square = glm::dot(away, away); square < least[part]) {
+            least[part] = square;
+            of_part[part].inside = position(n);
+        }
+    }
+    std::erase_if(of_part, [](const UnseededIsland& island) { return island.voxels == 0; });
+    std::stable_sort(of_part.begin(), of_part.end(),
+                     [](const UnseededIsland& a, const UnseededIsland& b) { return a.voxels > b.voxels; });
+    return of_part;
+}
 
 std::unique_ptr<segment::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
                                                      segment::GapLaw& law) {

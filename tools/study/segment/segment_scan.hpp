@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,11 @@ struct SegmentedLabel {
 struct UnseededIsland {
     std::size_t voxels = 0;
     Vec3 centre{0.0};  ///< m, mean of its voxels
+    Vec3 inside{0.0};  ///< m, its voxel that is nearest to the centre
 };
+/// The parts of the bone that no seed reaches, largest first. `label`: per node, 0 where there is none.
+std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const std::uint8_t> label);
+
 struct UncertainPlace {
     std::size_t voxels = 0;
     Vec3 deepest{0.0};  ///< m

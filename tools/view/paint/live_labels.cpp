@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -35,6 +38,13 @@ std::vector<std::size_t> voxels_of(const std::vector<std::uint8_t>& label, std::
     for (const std::uint8_t l : label)
         if (l != 0) ++count[l - 1u];
     return count;
+}
+
+/// This thread, and those that it makes from now on, get the priority of background work.
+void let_others_go_first() noexcept {
+    constexpr int nice = 10;
+    // On Linux it is a value of the thread, and threads get that of the one that makes them.
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
 }
 
 }  // namespace
@@ -80,10 +90,8 @@ LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<seg
         out.voxels = voxels_of(out.label, labels.size());
         std::vector<float> of_labelled = out.certainty;
         for (std::size_t n = 0; n < out.label.size(); ++n)
-            if (out.label[n] == 0) {
-                ++out.unseeded;
-                of_labelled[n] = 1.0f;
-            }
+            if (out.label[n] == 0) of_labelled[n] = 1.0f;
+        out.islands = study::islands_of(scan, out.label);
         for (const segment::UncertainRegion& region : segment::uncertain_regions(scan.graph, of_labelled))
             out.uncertain.push_back(
                 {region.nodes, scan.box.position(region.deepest[0], region.deepest[1], region.deepest[2])});
@@ -129,6 +137,7 @@ void LiveLabels::show(LiveLabelling answer) {
 }
 
 void LiveLabels::work() {
+    let_others_go_first();
     constexpr double slow = 0.4;  // s; a hand does not wait for less
     std::optional<segment::Walks> before;
     double last = 0.0;

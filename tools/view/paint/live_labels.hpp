@@ -28,7 +28,7 @@ struct LiveLabelling {
     std::vector<float> certainty;
     std::vector<std::size_t> voxels;  ///< of each label
     std::vector<study::UncertainPlace> uncertain;  ///< below 0.4, largest first
-    std::size_t unseeded = 0;  ///< nodes that no seed reaches
+    std::vector<study::UnseededIsland> islands;    ///< that no seed reaches, largest first
     double residual = 0.0;
     int iterations = 0;
     double seconds = 0.0;  ///< from the start of the work to its end
@@ -41,7 +41,7 @@ LiveLabelling live_labelling(const study::ScanGraph& scan, const std::vector<seg
                              std::optional<segment::Walks>& before, const RunJobs& run,
                              const std::function<void(LiveLabelling)>& preview = {});
 
-/// Solves on a thread of its own. `scan` must outlive it. The newest question replaces one that waits; nothing waits for the
+/// Solves on a thread of its own, which lets others go first. `scan` must outlive it. The newest question replaces one that waits; nothing waits for the
 /// solver but the destructor. A preview is shown where the walks have nothing to begin with, or took over 0.4 s before.
 class LiveLabels {
 public:

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/paint/live_vessels.hpp"
 
+#include "assets/vessel/course_file.hpp"
 #include "assets/vessel/track_file.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <exception>
 #include <utility>
@@ -11,7 +13,40 @@
 namespace tactus::view {
 
 LiveVessels::LiveVessels(const volume::Grid& grid, vessel::TrackSettings settings, std::filesystem::path stem)
-    : grid_(grid), settings_(std::move(settings)), stem_(std::move(stem)), thread_([this] { work(); }) {}
+    : grid_(grid), settings_(std::move(settings)), stem_(std::move(stem)) {
+    for (int number = 1; std::filesystem::exists(file_of(number, ".csv")); ++number)
+        found_.push_back(std::make_shared<const LiveVessel>(read(number)));
+    thread_ = std::thread([this] { work(); });
+}
+
+std::filesystem::path LiveVessels::file_of(int number, const char* ending) const {
+    return fmt::format("{}-vessel-{}{}", stem_.string(), number, ending);
+}
+
+LiveVessel LiveVessels::read(int number) const {
+    LiveVessel out;
+    out.number = number;
+    out.is_from_before = true;
+    const std::filesystem::path file = file_of(number, ".csv");
+    try {
+        const vessel::Course course = vessel::load_course(file);
+        vessel::Branch branch;
+        for (std::size_t n = 0; n < course.points.size(); ++n) {
+            vessel::Node node;
+            node.position = course.points[n];
+            node.radius = course.radius[n];
+            if (n > 0) node.along = branch.nodes[n - 1].along + glm::length(course.points[n] - course.points[n - 1]);
+            branch.nodes.push_back(node);
+        }
+        out.seed = course.points.front();
+        out.track.branches.push_back(std::move(branch));
+        out.files.push_back(file);
+        out.words = fmt::format("{} is continued", file.string());
+    } catch (const std::exception& failure) {
+        out.words = failure.what();
+    }
+    return out;
+}
 
 LiveVessels::~LiveVessels() {
     {
@@ -52,16 +87,15 @@ LiveVessel LiveVessels::followed(const Vec3& seed) const {
         out.track = std::move(result.track);
         out.words = fmt::format("{} branch{}, {:.1f} mm in all", out.track.branches.size(),
                                 out.track.branches.size() == 1 ? "" : "es", out.track.length() * 1e3);
-        const auto name = [&](int number, const char* ending) {
-            return std::filesystem::path(fmt::format("{}-vessel-{}{}", stem_.string(), number, ending));
-        };
         int number = 1;
-        while (std::filesystem::exists(name(number, ".csv")) || std::filesystem::exists(name(number, ".mrk.json")))
+        while (std::filesystem::exists(file_of(number, ".csv")) ||
+               std::filesystem::exists(file_of(number, ".mrk.json")))
             ++number;
         for (const char* const ending : {".csv", ".mrk.json"}) {
-            vessel::write_track(out.track, name(number, ending));
-            out.files.push_back(name(number, ending));
+            vessel::write_track(out.track, file_of(number, ending));
+            out.files.push_back(file_of(number, ending));
         }
+        out.number = number;
         out.words += fmt::format("; written to {}", out.files.front().string());
     } catch (const std::exception& failure) {
         out.words = failure.what();
@@ -76,7 +110,7 @@ void LiveVessels::work() {
             std::unique_lock lock(mutex_);
             is_working_ = false;
             wake_.wait(lock, [&] { return ends_ || !waiting_.empty(); });
-            if (ends_) return;
+            if (waiting_.empty()) return;
             seed = waiting_.front();
             waiting_.pop_front();
             is_working_ = true;

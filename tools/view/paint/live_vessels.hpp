@@ -20,13 +20,16 @@ struct LiveVessel {
     vessel::Track track;       ///< without branches when nothing was found
     std::string words;         ///< what was found, or why not; one line
     std::vector<std::filesystem::path> files;
+    int number = 0;            ///< of its files; 0: there are none
+    bool is_from_before = false;  ///< its main branch was read from the file of an earlier session
 };
 
 class LiveVessels {
 public:
     /// `grid` must outlive it. `stem`: results are written as STEM-vessel-1.csv and .mrk.json, and on; numbers of files that
-    /// exist are left out.
+    /// exist are left out. Vessels in such tables are the first answers.
     LiveVessels(const volume::Grid& grid, vessel::TrackSettings settings, std::filesystem::path stem);
+    /// Follows what was asked for, so that its files are there.
     ~LiveVessels();
     LiveVessels(const LiveVessels&) = delete;
     LiveVessels& operator=(const LiveVessels&) = delete;
@@ -39,6 +42,8 @@ public:
 private:
     void work();
     LiveVessel followed(const Vec3& seed) const;
+    LiveVessel read(int number) const;
+    std::filesystem::path file_of(int number, const char* ending) const;
 
     const volume::Grid& grid_;
     vessel::TrackSettings settings_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/paint/paint_bench.hpp"
 
+#include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/segment/strokes.hpp"
 #include "tools/study/bones/vessel.hpp"
@@ -29,7 +30,8 @@ vessel::TrackSettings track_settings(const study::ScanGraph& scan) {
 
 /// Writes bones and plan under the first names that are free; returns what to tell.
 std::string written_plan(const study::ScanGraph& scan, const std::vector<segment::SeedLabel>& labels,
-                         const study::SegmentSettings& settings, const fs::path& seeds) {
+                         const std::vector<fs::path>& vessels, const study::SegmentSettings& settings,
+                         const fs::path& seeds) {
     const fs::path stem = stem_of_seeds(seeds);
     fs::path bones = stem.string() + ".vdb", plan = stem.string() + ".plan.json";
     for (int n = 2; fs::exists(bones) || fs::exists(plan); ++n) {
@@ -40,11 +42,27 @@ std::string written_plan(const study::ScanGraph& scan, const std::vector<segment
     for (const segment::SeedLabel& label : labels)
         if (!label.strokes.empty()) painted.push_back(label);
     if (painted.size() < 2) throw Error("paint a place of each fragment first: a plan needs at least two");
+    std::vector<reconstruct::FlapVessel> followed;
+    for (const fs::path& file : vessels)
+        followed.push_back(reconstruct::read_vessel(file, reconstruct::VesselKind::artery));
     const study::SegmentedScan found = study::segment_scan(scan, painted, settings, seeds.string());
     study::write_segmented(scan, found, settings, seeds.filename().string(), bones);
-    study::write_plan_of(bones, found, plan);
-    return fmt::format("{}: a plan of {} fragments, with {}", plan.string(), found.labels.size(),
+    study::write_plan_of(bones, found, plan, followed);
+    return fmt::format("{}: a plan of {} fragments{}, with {}", plan.string(), found.labels.size(),
+                       followed.empty()       ? std::string()
+                       : followed.size() == 1 ? std::string(" and a vessel")
+                                              : fmt::format(" and {} vessels", followed.size()),
                        bones.filename().string());
+}
+
+/// "; no seed in 2 islands, the larger with 40 voxels" is told with the place, so that it is found without the window, too.
+std::string island_words(const std::vector<study::UnseededIsland>& islands) {
+    if (islands.empty()) return "";
+    const Vec3 p = islands.front().inside * 1e3;
+    const std::string place =
+        fmt::format("{} voxels about {:.1f} {:.1f} {:.1f} mm", islands.front().voxels, p.x, p.y, p.z);
+    if (islands.size() == 1) return fmt::format("; no seed in an island of {}", place);
+    return fmt::format("; no seed in {} islands, the largest of {}", islands.size(), place);
 }
 
 }  // namespace
@@ -94,9 +112,7 @@ void PaintBench::tend() {
         else if (labels_->is_preview) tell("these labels are a preview; the random walks are being computed");
         else
             tell(fmt::format("{:.2f} s; residual {:.0e}; {} voxels below certainty 0.4{}", labels_->seconds,
-                             labels_->residual, unsure,
-                             labels_->unseeded > 0 ? fmt::format("; {} in islands without a seed", labels_->unseeded)
-                                                   : std::string()));
+                             labels_->residual, unsure, island_words(labels_->islands)));
     }
     if (told_problems_ != painting_.problems()) {
         told_problems_ = painting_.problems();
@@ -104,7 +120,9 @@ void PaintBench::tend() {
     }
     const std::size_t before = vessels_.size();
     vessels_ = followers_.found();
-    if (vessels_.size() > before) tell(vessels_.back()->words, vessels_.back()->track.branches.empty());
+    if (vessels_.size() > before && (!vessels_.back()->is_from_before || vessels_.back()->track.branches.empty()))
+        tell(vessels_.back()->words, vessels_.back()->track.branches.empty());
+    begin_plan();
     if (plan_.valid() && plan_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         try {
             tell(plan_.get());
@@ -146,6 +164,25 @@ bool PaintBench::look_here() {
     return true;
 }
 
+bool PaintBench::look_at_island() {
+    if (!labels_ || labels_->is_preview || labels_->islands.empty()) {
+        tell(labels_ && !labels_->is_preview && labels_->problem.empty() ? "every piece of bone has a seed"
+                                                                         : "there are no labels yet");
+        return false;
+    }
+    if (labels_->number != island_answer_) {
+        island_answer_ = labels_->number;
+        next_island_ = 0;
+    }
+    const auto& islands = labels_->islands;
+    const study::UnseededIsland& island = islands[next_island_ % islands.size()];
+    move_cursor(island.inside);
+    tell(fmt::format("island {} of {} without a seed: {} voxels; paint it, or it has no label",
+                     next_island_ % islands.size() + 1, islands.size(), island.voxels));
+    ++next_island_;
+    return true;
+}
+
 void PaintBench::follow_vessel(const Vec3& seed) {
     followers_.ask(seed);
     tell("the vessel is being followed");
@@ -167,11 +204,28 @@ bool PaintBench::follow_vessel_on(const Vec3& from, const Vec3& direction) {
     return true;
 }
 
+void PaintBench::take_vessel(std::size_t vessel, bool takes) {
+    if (takes) left_out_.erase(vessel);
+    else left_out_.insert(vessel);
+}
+
 void PaintBench::make_plan() {
-    if (plan_.valid()) return;
-    tell("the plan is being written");
-    plan_ =
-        std::async(std::launch::async, written_plan, std::cref(scan_), painting_.labels(), settings_, painting_.file());
+    if (makes_plan()) return;
+    wants_plan_ = true;
+    tell(followers_.is_busy() ? "the plan is written when the vessel has been followed" : "the plan is being written");
+    begin_plan();
+}
+
+/// As soon as no vessel is being followed.
+void PaintBench::begin_plan() {
+    if (!wants_plan_ || followers_.is_busy()) return;
+    wants_plan_ = false;
+    vessels_ = followers_.found();
+    std::vector<fs::path> vessels;
+    for (std::size_t n = 0; n < vessels_.size(); ++n)
+        if (takes_vessel(n) && !vessels_[n]->files.empty()) vessels.push_back(vessels_[n]->files.front());
+    plan_ = std::async(std::launch::async, written_plan, std::cref(scan_), painting_.labels(), std::move(vessels),
+                       settings_, painting_.file());
 }
 
 bool PaintBench::first_bone(const Vec3& from, const Vec3& direction, Vec3& found) const {

@@ -9,6 +9,7 @@
 
 #include <future>
 #include <memory>
+#include <set>
 #include <string>
 
 namespace tactus::view {
@@ -28,6 +29,8 @@ public:
     Vec3 cursor{0.0};      ///< m; where the three slices meet
     GreyWindow window;
     bool shows_certainty = true;
+    std::vector<segment::Stroke> open_by_hand;  ///< what haptic hands paint now
+    std::string hand_words;                     ///< one line about their run; empty: there is none
 
     const study::ScanGraph& scan() const { return scan_; }
     Painting& painting() { return painting_; }
@@ -40,17 +43,22 @@ public:
         return live_.is_busy() || labels_version() != painting_.version() || (labels_ && labels_->is_preview) ||
                followers_.is_busy();
     }
-    bool makes_plan() const { return plan_.valid(); }
+    /// Whether a plan that is made gets this one of vessels(). It does from the start.
+    bool takes_vessel(std::size_t vessel) const { return !left_out_.contains(vessel); }
+    void take_vessel(std::size_t vessel, bool takes);
+    bool makes_plan() const { return wants_plan_ || plan_.valid(); }
     std::vector<std::array<std::uint8_t, 3>> colours() const;
 
     /// Moves the cursor into the scan.
     void move_cursor(const Vec3& to);
     /// The cursor jumps to the deepest place of the largest region of low certainty. False: there is none.
     bool look_here();
+    /// The cursor jumps to the next island without a seed, the largest first. False: there is none.
+    bool look_at_island();
     void follow_vessel(const Vec3& seed);
     /// The first vessel on a line of sight, see first_on_ray. False: there is none, or bone lies before it; message() says which.
     bool follow_vessel_on(const Vec3& from, const Vec3& direction);
-    /// Starts to write a bone per label and a plan of them beside the seeds, on a thread of its own.
+    /// Starts to write a bone per label and a plan of them and of the vessels beside the seeds, on a thread of its own.
     void make_plan();
     /// What happened last; one line.
     const std::string& message() const { return message_; }
@@ -69,8 +77,12 @@ private:
     LiveVessels followers_;
     std::shared_ptr<const LiveLabelling> labels_;
     std::vector<std::shared_ptr<const LiveVessel>> vessels_;
+    std::set<std::size_t> left_out_;
+    void begin_plan();
+    bool wants_plan_ = false;
     std::future<std::string> plan_;
-    int asked_ = -1, told_problems_ = 0;
+    int asked_ = -1, told_problems_ = 0, island_answer_ = 0;
+    std::size_t next_island_ = 0;
     std::string message_;
     bool is_problem_ = false;
 };

@@ -47,12 +47,14 @@ void PaintDesk::shortcuts() {
     if (io.KeyCtrl) {
         if (pressed('Z')) io.KeyShift ? bench_.painting().redo() : bench_.painting().undo();
         if (pressed('Y')) bench_.painting().redo();
+        if (pressed('Q')) window_.close();
         return;
     }
     if (pressed('P')) bench_.tool = Tool::paint;
     if (pressed('E')) bench_.tool = Tool::erase;
     if (pressed('V')) bench_.tool = Tool::vessel;
     if (pressed('L')) bench_.look_here();
+    if (pressed('I')) bench_.look_at_island();
     for (int key = 1; key <= 9; ++key)
         if (pressed(static_cast<char>('0' + key)) && static_cast<std::size_t>(key) <= bench_.painting().labels().size())
             bench_.painting().active = static_cast<std::size_t>(key) - 1;
@@ -77,6 +79,13 @@ void PaintDesk::draw_tools() {
     if (button("Look here")) bench_.look_here();
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("the slices go to the largest region that is not sure: paint there next");
+    if (const LiveLabelling* const found = bench_.labels().get(); found && !found->islands.empty()) {
+        if (button("Next island")) bench_.look_at_island();
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("the slices go to the next piece of bone without a seed; it has no label");
+        ImGui::SameLine();
+        ImGui::TextDisabled("%zu without a seed", found->islands.size());
+    }
 }
 
 void PaintDesk::draw_labels() {
@@ -84,6 +93,7 @@ void PaintDesk::draw_labels() {
     const LiveLabelling* const found = bench_.labels().get();
     const Vec3& h = bench_.scan().box.spacing;
     int removed = -1;
+    std::size_t merged = 0, merged_into = 0;
     for (std::size_t l = 0; l < painting.labels().size(); ++l) {
         const segment::SeedLabel& label = painting.labels()[l];
         ImGui::PushID(static_cast<int>(l));
@@ -126,7 +136,18 @@ void PaintDesk::draw_labels() {
                 }
             }
             mark_spot("label " + label.name);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\ndouble click: another name", label.name.c_str());
+            if (ImGui::IsItemHovered())
+                ImGui::SetTooltip("%s\ndouble click: another name; right click: merge", label.name.c_str());
+            if (ImGui::BeginPopupContextItem("merge")) {
+                for (std::size_t into = 0; into < painting.labels().size(); ++into)
+                    if (into != l &&
+                        ImGui::MenuItem(
+                            fmt::format("merge into {}###{}", painting.labels()[into].name, into).c_str())) {
+                        merged = l;
+                        merged_into = into;
+                    }
+                ImGui::EndPopup();
+            }
         }
         ImGui::SameLine();
         if (ImGui::SmallButton("x")) removed = static_cast<int>(l);
@@ -137,8 +158,40 @@ void PaintDesk::draw_labels() {
         else ImGui::TextDisabled("   %zu strokes", label.strokes.size());
         ImGui::PopID();
     }
+    if (merged != merged_into) painting.merge(merged, merged_into);
     if (removed >= 0) painting.remove_label(static_cast<std::size_t>(removed));
     if (button("Add a fragment")) painting.add_label();
+}
+
+void PaintDesk::draw_vessels() {
+    const auto& vessels = bench_.vessels();
+    for (std::size_t n = 0; n < vessels.size(); ++n) {
+        const LiveVessel& vessel = *vessels[n];
+        if (vessel.number == 0 || vessel.track.branches.empty()) continue;
+        bool is_taken = bench_.takes_vessel(n);
+        const std::string name = fmt::format("vessel {}", vessel.number);
+        if (ImGui::Checkbox(fmt::format("{}, {:.0f} mm###{}", name, vessel.track.length() * 1e3, name).c_str(),
+                            &is_taken))
+            bench_.take_vessel(n, is_taken);
+        mark_spot(name);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\nchecked: a plan that is made gets it", vessel.words.c_str());
+    }
+    if (!vessels.empty()) ImGui::Separator();
+}
+
+/// Closing would lose strokes that no file holds.
+void PaintDesk::ask_leaving() {
+    constexpr const char* title = "The strokes are not in the file";
+    if (leaving == Leaving::asks && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    ImGui::TextUnformatted(bench_.painting().problem().c_str());
+    if (button("Try again") && bench_.painting().save()) leaving = Leaving::leaves;
+    ImGui::SameLine();
+    if (button("Go on painting")) leaving = Leaving::none;
+    ImGui::SameLine();
+    if (button("Close and lose them")) leaving = Leaving::leaves;
+    if (leaving != Leaving::asks) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
 }
 
 void PaintDesk::draw_window() {
@@ -151,13 +204,16 @@ void PaintDesk::draw_window() {
     ImGui::Checkbox("show what is not sure", &bench_.shows_certainty);
     ImGui::Spacing();
     if (button("Make a plan") && !bench_.makes_plan()) bench_.make_plan();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("writes a bone per fragment, and a plan of them, beside the seeds");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("writes a bone per fragment, and a plan of them and of the vessels, beside the seeds");
     ImGui::Spacing();
     ImGui::PushStyleColor(ImGuiCol_Text, tone::dim);
     ImGui::TextWrapped(
         "left: paint; wheel: slice; ctrl + wheel: zoom; middle, or shift + left: move; right: grey values. P, E, V: "
         "tools; "
-        "1 to 9: fragments; L: look here; ctrl + Z: undo");
+        "1 to 9: fragments; L: look here; I: next island; ctrl + Z: undo");
+    if (!bench_.hand_words.empty()) ImGui::TextWrapped("%s", bench_.hand_words.c_str());
+    for (const std::string& note : bench_.scan().notes) ImGui::TextWrapped("%s", note.c_str());
     ImGui::PopStyleColor();
 }
 
@@ -191,11 +247,13 @@ void PaintDesk::draw() {
     ImGui::Separator();
     draw_labels();
     ImGui::Separator();
+    draw_vessels();
     draw_window();
     ImGui::EndChild();
     ImGui::PushStyleColor(ImGuiCol_Text, bench_.is_problem() ? tone::bad : bench_.is_busy() ? tone::warm : tone::dim);
     ImGui::TextUnformatted(bench_.message().c_str());
     ImGui::PopStyleColor();
+    ask_leaving();
     ImGui::End();
     ImGui::PopFont();
 }

@@ -17,6 +17,9 @@ public:
     /// Draws one frame, between Window::begin and Window::end.
     void draw();
 
+    /// The question whether to close while strokes are in no file.
+    enum class Leaving { none, asks, leaves } leaving = Leaving::none;
+
     PaintBench& bench() { return bench_; }
     BonePanel& bone() { return bone_; }
     SliceSight& sight() { return sight_; }
@@ -26,7 +29,9 @@ private:
     void shortcuts();
     void draw_tools();
     void draw_labels();
+    void draw_vessels();
     void draw_window();
+    void ask_leaving();
     bool button(const char* label, bool is_on = false);
 
     Window& window_;

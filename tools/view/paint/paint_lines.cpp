@@ -26,7 +26,8 @@ constexpr std::array commands{
     Command{"look", 0, 0},   Command{"vessel", 0, 3},     Command{"plan", 0, 0},         Command{"until", 1, 0},
     Command{"press", 1, 0},  Command{"drag", 0, 4},       Command{"wheel", 0, 3},        Command{"size", 0, 2},
     Command{"wait", 0, 1},   Command{"screenshot", 1, 0}, Command{"frames", 0, 1},       Command{"close", 0, 0},
-    Command{"tool", 1, 0},   Command{"click_bone", 0, 3},
+    Command{"tool", 1, 0},   Command{"click_bone", 0, 3}, Command{"merge", 2, 0},        Command{"island", 0, 0},
+    Command{"spots", 1, 0},  Command{"shut", 0, 0},
 };
 
 void check(const ScriptLine& line) {

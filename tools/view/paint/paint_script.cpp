@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/view/paint/paint_desk.hpp"
 #include "tools/view/paint/paint_lines.hpp"
+#include "tools/view/spot_list.hpp"
 #include "tools/view/spots.hpp"
 
 #include <fmt/format.h>
@@ -91,6 +92,8 @@ bool PaintScript::perform(const ScriptLine& line, PaintDesk& desk, Window& windo
     }
     if (what == "size") window.resize(static_cast<int>(line.number(1)), static_cast<int>(line.number(2)));
     else if (what == "close") closes_ = true;
+    else if (what == "shut") window.close();
+    else if (what == "spots") file::write_whole_file(line.word(1), spot_list());
     else {
         bool is_refused = false;
         try {
@@ -101,7 +104,9 @@ bool PaintScript::perform(const ScriptLine& line, PaintDesk& desk, Window& windo
         }
         const std::string& why = bench.painting().problem();
         if (is_refused && !line.is_refused)
-            throw Error(line.where, what == "look" ? bench.message() : why.empty() ? "nothing has changed" : why);
+            throw Error(line.where, what == "look" || what == "island" ? bench.message()
+                                    : why.empty()                      ? "nothing has changed"
+                                                                       : why);
         if (!is_refused && line.is_refused) throw Error(line.where, fmt::format("'{}' was not refused", what));
     }
     return true;
@@ -132,6 +137,7 @@ bool PaintScript::edit(const ScriptLine& line, PaintDesk& desk) {
         return painting.end();
     } else if (what == "remove") return painting.remove_label(label_named(line.word(1)));
     else if (what == "rename") return painting.rename(label_named(line.word(1)), line.word(2));
+    else if (what == "merge") return painting.merge(label_named(line.word(1)), label_named(line.word(2)));
     else if (what == "undo") return painting.undo();
     else if (what == "redo") return painting.redo();
     else if (what == "cursor") bench.move_cursor(position(1));
@@ -141,6 +147,7 @@ bool PaintScript::edit(const ScriptLine& line, PaintDesk& desk) {
         desk.sight().middle = bench.cursor;
     } else if (what == "from") desk.bone().look_from(*display::view_of_name(line.word(1)));
     else if (what == "look") return bench.look_here();
+    else if (what == "island") return bench.look_at_island();
     else if (what == "tool")
         bench.tool = line.word(1) == "paint"   ? PaintBench::Tool::paint
                      : line.word(1) == "erase" ? PaintBench::Tool::erase

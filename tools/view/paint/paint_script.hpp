@@ -21,9 +21,10 @@ class Window;
 ///     brush MM              radius
 ///     stroke X Y Z ...      paints along the positions; one position is a dab
 ///     erase X Y Z ...
-///     remove NAME, rename NAME NEW, undo, redo
+///     remove NAME, rename NAME NEW, merge NAME INTO, undo, redo
 ///     cursor X Y Z, grey LOW HIGH, zoom FACTOR, from VIEW
 ///     look                  look here
+///     island                next island without a seed
 ///     tool NAME             paint, erase or vessel
 ///     vessel X Y Z          follows a vessel
 ///     click_bone X Y Z      a click on the bone's picture, at the pixel of this place
@@ -31,6 +32,8 @@ class Window;
 ///     until solved          waits until nothing is being computed, at most 300 s
 ///     until there FILE      waits for a file
 ///     press NAME, drag X Y X Y, wheel X Y TURNS   with the mouse; NAME: of a button or panel
+///     spots FILE            writes where the controls are
+///     shut                  closes the window as its button does
 ///     size W H, frames N, wait S, screenshot FILE, close
 class PaintScript {
 public:

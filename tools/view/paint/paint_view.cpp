@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_lock.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/view/paint/hand_paint.hpp"
 #include "tools/view/paint/paint_desk.hpp"
 #include "tools/view/paint/paint_script.hpp"
 
@@ -14,8 +15,8 @@
 
 namespace tactus::view {
 
-std::string paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
-                       const PaintViewChoice& choice, const std::atomic<bool>& interrupted) {
+PaintViewEnd paint_view(const study::ScanGraph& scan, const study::SegmentSettings& settings,
+                        const PaintViewChoice& choice, const std::atomic<bool>& interrupted) {
     using Clock = std::chrono::steady_clock;
     constexpr auto picture_time = std::chrono::microseconds(16'667);
     std::optional<PaintScript> script;
@@ -31,8 +32,21 @@ std::string paint_view(const study::ScanGraph& scan, const study::SegmentSetting
     PaintBench bench(scan, settings, choice.seeds);
     Window window(fmt::format("{} - Tactus", settings.scan.filename().string()), 1600, 1000, choice.scale);
     PaintDesk desk(window, bench);
-    while (!interrupted && !window.wants_to_close() && !(script && script->wants_to_close())) {
+    std::optional<HandPaint> hand;
+    if (!choice.hand.empty()) hand.emplace(choice.hand);
+    // Whether the window may close; asks where strokes would be lost.
+    const auto may_close = [&] {
+        using Leaving = PaintDesk::Leaving;
+        if (!window.wants_to_close() && desk.leaving != Leaving::leaves) return false;
+        bench.painting().end();
+        if (desk.leaving == Leaving::leaves || bench.painting().is_kept() || bench.painting().save()) return true;
+        window.keep_open();
+        desk.leaving = Leaving::asks;
+        return false;
+    };
+    while (!interrupted && !(script && script->wants_to_close()) && !may_close()) {
         const auto begin = Clock::now();
+        if (hand) hand->tend(bench);
         if (window.begin()) {
             if (script) script->move_mouse();
             desk.draw();
@@ -43,7 +57,14 @@ std::string paint_view(const study::ScanGraph& scan, const study::SegmentSetting
     }
     // A stroke that is being drawn while the window closes is kept, too.
     bench.painting().end();
-    return bench.painting().is_kept() || bench.painting().save() ? std::string() : bench.painting().problem();
+    PaintViewEnd end;
+    if (hand) {
+        hand->end(bench);
+        end.hand_summary = hand->summary();
+        end.hand_failure = hand->failure();
+    }
+    if (!bench.painting().is_kept() && !bench.painting().save()) end.lost = bench.painting().problem();
+    return end;
 }
 
 }  // namespace tactus::view

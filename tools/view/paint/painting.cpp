@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 namespace tactus::view {
@@ -67,29 +68,49 @@ void Painting::extend(const Vec3& point) {
 
 bool Painting::end() {
     if (!std::exchange(is_open_, false)) return false;
+    if (!erases_) return paint(active, open_);
     problem_.clear();
     Labels next = labels_;
-    if (erases_) {
-        if (!segment::erase_strokes(next, open_)) {
-            refuse("there is no stroke at that place: nothing was erased");
-            return false;
-        }
-        // What is left of a stroke beside the bone would make the file one that is refused.
-        for (std::size_t l = 0; l < next.size(); ++l)
-            std::erase_if(next[l].strokes, [&](const segment::Stroke& stroke) {
-                const auto is_same = [&](const segment::Stroke& old) { return old.points == stroke.points; };
-                return std::ranges::none_of(labels_[l].strokes, is_same) && !touches_(stroke);
-            });
-    } else {
-        if (active >= next.size()) return false;
-        if (!touches_(open_)) {
-            refuse("there is no bone at that place: nothing was painted");
-            return false;
-        }
-        next[active].strokes.push_back(open_);
+    if (!segment::erase_strokes(next, open_)) {
+        refuse("there is no stroke at that place: nothing was erased");
+        return false;
     }
+    drop_beside_bone(next);
     change(std::move(next));
     return true;
+}
+
+bool Painting::paint(std::size_t label, const segment::Stroke& stroke) {
+    problem_.clear();
+    if (label >= labels_.size()) return false;
+    if (!touches_(stroke)) {
+        refuse("there is no bone at that place: nothing was painted");
+        return false;
+    }
+    Labels next = labels_;
+    next[label].strokes.push_back(stroke);
+    change(std::move(next));
+    return true;
+}
+
+bool Painting::erase_of(std::size_t label, const segment::Stroke& eraser) {
+    if (label >= labels_.size()) return false;
+    Labels one{labels_[label]};
+    if (!segment::erase_strokes(one, eraser)) return false;
+    Labels next = labels_;
+    next[label] = std::move(one.front());
+    drop_beside_bone(next);
+    change(std::move(next));
+    return true;
+}
+
+/// What is left of a stroke beside the bone would make the file one that is refused.
+void Painting::drop_beside_bone(Labels& next) const {
+    for (std::size_t l = 0; l < next.size(); ++l)
+        std::erase_if(next[l].strokes, [&](const segment::Stroke& stroke) {
+            const auto is_same = [&](const segment::Stroke& old) { return old.points == stroke.points; };
+            return std::ranges::none_of(labels_[l].strokes, is_same) && !touches_(stroke);
+        });
 }
 
 bool Painting::add_label(const std::string& name) {
@@ -116,6 +137,19 @@ bool Painting::remove_label(std::size_t label) {
     change(std::move(next));
     if (active > label) --active;
     active = std::min(active, labels_.size() - 1);
+    return true;
+}
+
+bool Painting::merge(std::size_t label, std::size_t into) {
+    if (label >= labels_.size() || into >= labels_.size() || label == into) {
+        refuse("a fragment is merged into another one");
+        return false;
+    }
+    Labels next = labels_;
+    std::ranges::copy(labels_[label].strokes, std::back_inserter(next[into].strokes));
+    next.erase(next.begin() + static_cast<std::ptrdiff_t>(label));
+    change(std::move(next));
+    active = into > label ? into - 1 : into;
     return true;
 }
 

@@ -50,10 +50,17 @@ public:
     bool is_erasing() const { return is_open_ && erases_; }
     const segment::Stroke& open_stroke() const { return open_; }
 
+    /// A whole stroke of another hand; false when it meets no bone. A stroke that is open stays open.
+    bool paint(std::size_t label, const segment::Stroke& stroke);
+    /// Takes away what the eraser meets of this label alone. False: there is nothing of it.
+    bool erase_of(std::size_t label, const segment::Stroke& eraser);
+
     /// A label with a colour that no other has; it becomes active. `name` empty: one that is free. False: there are too
     /// many, or as rename().
     bool add_label(const std::string& name = "");
     bool remove_label(std::size_t label);
+    /// The strokes of `label` become those of `into`, which keeps its name and colour. False: they are one, or not there.
+    bool merge(std::size_t label, std::size_t into);
     /// False for names that the file cannot hold, or that another label has.
     bool rename(std::size_t label, const std::string& name);
     void recolour(std::size_t label, const Vec3& colour);
@@ -67,6 +74,7 @@ public:
 
 private:
     void change(Labels labels);
+    void drop_beside_bone(Labels& next) const;
     void refuse(std::string why);
     bool may_be_named(const std::string& name);
 

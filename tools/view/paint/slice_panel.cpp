@@ -119,6 +119,8 @@ void SlicePanel::draw_marks(const Painter& paint, const SlicePlane& plane, Point
     if (painting.is_open())
         for (const Vec3& p : painting.open_stroke().points)
             ring(p, painting.open_stroke().radius, painting.is_erasing() ? tone::bad : ink_of(painting.active), 2.0f);
+    for (const segment::Stroke& stroke : bench_.open_by_hand)
+        for (const Vec3& p : stroke.points) ring(p, stroke.radius, tone::text, 2.0f);
     if (ImGui::IsItemHovered() && bench_.tool != PaintBench::Tool::vessel)
         paint.list()->AddCircle(ImGui::GetIO().MousePos, static_cast<float>(bench_.brush * plane.pixels_per_m),
                                 bench_.tool == PaintBench::Tool::erase ? tone::bad : ink_of(painting.active), 0, 1.5f);

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/planning/plan_vessels.hpp"
+
+#include "dsp/reconstruct/flap.hpp"
+#include "tools/study/planning/flap_study.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace tactus::study {
+
+using reconstruct::FlapVessel;
+
+namespace {
+
+/// The nearest fragment, with the poses that `pose` gives.
+template <class PoseOf>
+VesselClearance::Nearest nearest(const FlapVessel& vessel, const cases::PlanState& state,
+                                 const std::vector<CaseFragment>& fragments, const PoseOf& pose) {
+    VesselClearance::Nearest found;
+    found.gap = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < fragments.size(); ++n) {
+        if (state.arrangement.is_hidden(static_cast<int>(n))) continue;
+        const Pose back = pose(static_cast<int>(n)).inverse();
+        for (const Vec3& point : vessel.points) {
+            const Vec3 at = back.apply(point);
+            double least = std::numeric_limits<double>::infinity();
+            for (const contact::SurfacePoint& p : fragments[n].bone.points) {
+                const Vec3 away = p.position - at;
+                least = std::min(least, glm::dot(away, away));
+            }
+            const double distance = std::sqrt(least), side = fragments[n].map.sample(at).value < 0.0 ? -1.0 : 1.0;
+            if (const double gap = side * distance - vessel.radius; gap < found.gap) found = {static_cast<int>(n), gap};
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+double length_of(const FlapVessel& vessel) {
+    double length = 0.0;
+    for (std::size_t n = 1; n < vessel.points.size(); ++n)
+        length += glm::length(vessel.points[n] - vessel.points[n - 1]);
+    return length;
+}
+
+void change_vessels(const std::filesystem::path& path, const std::function<void(std::vector<FlapVessel>&)>& change) {
+    if (cases::state_of(cases::load_case_plan(path)).reconstruction)
+        return change_reconstruction(
+            path, [&](reconstruct::Reconstruction& all, const cases::CasePlan&) { change(all.flap.vessels); });
+    OpenPlan open(path);
+    const cases::PlanState state = cases::state_of(open.plan);
+    auto changed = std::make_shared<std::vector<FlapVessel>>();
+    if (state.vessels) *changed = *state.vessels;
+    change(*changed);
+    reconstruct::Flap flap;
+    flap.vessels = *changed;
+    reconstruct::check(flap, "the changed plan");
+    cases::PlanStep step;
+    step.kind = cases::StepKind::vessels;
+    step.by = "command";
+    step.vessels = std::move(changed);
+    do_step(open.plan, std::move(step), path);
+}
+
+std::vector<VesselClearance> vessel_clearances(const cases::PlanState& state,
+                                               const std::vector<CaseFragment>& fragments) {
+    std::vector<VesselClearance> all;
+    if (!state.vessels) return all;
+    for (const FlapVessel& vessel : *state.vessels) {
+        VesselClearance one;
+        one.vessel = &vessel;
+        one.scanned = nearest(vessel, state, fragments, [](int) { return Pose{}; });
+        one.planned = nearest(vessel, state, fragments, [&](int n) { return state.arrangement.pose(n); });
+        all.push_back(one);
+    }
+    return all;
+}
+
+}  // namespace tactus::study
