@@ -84,9 +84,15 @@ public:
     }
     /// Carries the held fragment until its middle and its rotation are nearly these.
     void carry(const Vec3& to, const Quat& rotation, double within_m, double within_rad) {
-        for (int i = 0; i < 24; ++i) {
+        for (int i = 0; i < 30; ++i) {
             const auto now = eyes_.held();
             REQUIRE(now);
+            // A busy machine's window lets go of what is held when it is silent for 1 s.
+            if (!walk_.shows("grasp is held")) {
+                reach(now->position);
+                press("grasp");
+                Person::wait(1.0);
+            }
             const Vec3 turn = rotation_between(now->orientation, rotation), way = to - now->position;
             UNSCOPED_INFO("off by " << 1e3 * glm::length(way) << " mm, " << glm::length(turn) * 57.3 << " deg");
             if (glm::length(way) < within_m && glm::length(turn) < within_rad) return;

@@ -46,6 +46,7 @@ void PlanPanel::hand_buttons() {
         if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
         const bool pressed = button(named.label, true, named.tip, is_first);
         if (is_held) ImGui::PopStyleColor();
+        if (is_held) mark_spot(std::string(named.label) + " is held");
         if (pressed) scene_.hand().hold(*number, !is_held);
         is_first = false;
     }
