@@ -80,12 +80,12 @@ std::string block_of(const fs::path& page, const std::string& file) {
 
 TEST_CASE("a newcomer builds the ball patch of the README on an empty canvas, hears it and saves it elsewhere",
           "[display][live]") {
-    for (const WalkWindow& window : walk_windows(dense_window)) {
+    for (const WalkWindow& window : walk_windows(usual_window)) {
         Walk walk(window, "ball");
         if (!walk.is_possible()) return;
         Person& person = walk.person;
         fs::create_directories(walk.folder.path / "elsewhere");
-        walk.start("view", 280.0);
+        walk.start("view", 480.0);
         REQUIRE(walk.waits_for("New patch"));
         walk.keep("start");
         walk.press("New patch");
@@ -179,7 +179,7 @@ TEST_CASE("a newcomer builds the ball patch of the README on an empty canvas, he
 }
 
 TEST_CASE("a newcomer opens a take and goes to the instant of its largest force", "[display]") {
-    for (const WalkWindow& window : walk_windows(small_window)) {
+    for (const WalkWindow& window : walk_windows(dense_window)) {
         Walk walk(window, "take");
         if (!walk.is_possible()) return;
         REQUIRE(on(walk.display, walk.folder, "render touch-sphere --seconds 3 --record monday --out out").code == 0);

@@ -171,9 +171,9 @@ TEST_CASE("a person with a mouse puts three fragments together, groups them, und
         if (!walk.is_possible()) return;
         Person& person = walk.person;
         walk.start(
-            "run planning-trauma --view --layout plan --set hand.device=mouse --audio none --out out --seconds 280 "
+            "run planning-trauma --view --layout plan --set hand.device=mouse --audio none --out out --seconds 480 "
             "--json",
-            280.0);
+            480.0);
         // Not before a run that ticks and has written its plan: the hand is seen for a moment while all is loaded.
         REQUIRE(walk.waits_for("part fragment_02"));
         REQUIRE(sees([&] { return fs::exists(walk.folder.path / "out/case.plan.json"); }));

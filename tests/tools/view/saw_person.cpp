@@ -44,7 +44,7 @@ TEST_CASE("a trainee with a mouse saws the jaw through and reads the score", "[d
         Walk walk(window, "saw");
         if (!walk.is_possible()) return;
         Person& person = walk.person;
-        walk.start("run saw-task --view --layout train --set hand.device=mouse --audio none --out out --json", 240.0);
+        walk.start("run saw-task --view --layout train --set hand.device=mouse --audio none --out out --json", 480.0);
         REQUIRE(walk.waits_for("trigger (T)"));
         Person::wait(3.0);
         walk.keep("begin");

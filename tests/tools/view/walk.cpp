@@ -38,7 +38,10 @@ bool Walk::is_possible() const {
 
 void Walk::start(const std::string& arguments, double seconds) {
     std::string script;
-    for (int i = 0; i < static_cast<int>(5.0 * seconds); ++i) script += "wait 0.2\nspots spots.txt\ntext shown.toml\n";
+    for (int i = 0; i < static_cast<int>(5.0 * seconds); ++i) {
+        script += "wait 0.2\nspots spots.txt\n";
+        if (i % 4 == 3) script += "text shown.toml\n";
+    }
     start_script(arguments, script + "close\n", seconds);
 }
 
@@ -46,7 +49,7 @@ void Walk::start_script(const std::string& arguments, const std::string& script,
     folder.write("script", fmt::format("size {} {}\n", window.width, window.height) + script);
     done_ = std::async(std::launch::async, [this, arguments, seconds] {
         return on(display, folder, fmt::format("{} --view-scale {} --view-script script", arguments, window.scale),
-                  static_cast<int>(seconds) + 60);
+                  static_cast<int>(seconds) + 30);
     });
     REQUIRE(person.sees_window("Tactus", 60.0));
 }
