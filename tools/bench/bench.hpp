@@ -25,6 +25,7 @@ Verb nodes_verb();
 Verb contact_verb();
 Verb view_verb();
 Verb pictures_verb();
+Verb lateness_verb();
 Verb scrub_verb();
 Verb snap_verb();
 Verb passivity_verb();

@@ -145,7 +145,15 @@ std::vector<Command> Desk::all_commands() {
         for (const StartItem& item : *list)
             all.push_back({"open", "Open " + item.title, "", "file recent take plan",
                            [this, path = item.path] { wishes.open = path; }});
+    scene_.add_commands(all);
     if (take_) return all;
+    plan_.add_commands(all);
+    for (const session::HandForces& forces : bench_.status()->forces)
+        if (forces.state == control::ForceState::by_hand && !forces.node.empty())
+            all.push_back(
+                {"run", "Let forces return", "", "recover fault " + forces.device, [this, node = forces.node] {
+                     if (bench_.running()) bench_.running()->recover(node);
+                 }});
     for (const NodeType* type : nodes::catalogue())
         all.push_back({"add", "Add " + type->name, "", std::string(type->about), [this, name = type->name] {
                            if (const std::string made = bench_.add_node(name, bench_.lane_for(name)); !made.empty())

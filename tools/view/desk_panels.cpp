@@ -21,6 +21,8 @@ public:
         const ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar;
         ImGui::BeginChild(id, vec({0.0, height}), false,
                           ImGuiWindowFlags_AlwaysUseWindowPadding | (scrolls ? ImGuiWindowFlags_None : still));
+        const Point at = point(ImGui::GetWindowPos()), far = at + point(ImGui::GetWindowSize());
+        set_spot(std::string("panel ") + id, {at.x, at.y, far.x, far.y});
         // Of the panel, not of what pops up from it.
         ImGui::PopStyleVar();
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec(spacing));
@@ -57,8 +59,12 @@ double Desk::splitter(const std::string& id, bool upright, double height) {
 
 PanelRoom Desk::room_of(Panel panel) {
     switch (panel) {
-        case Panel::patch:
-        case Panel::node: return PanelRoom::full;
+        case Panel::patch: return PanelRoom::full;
+        case Panel::node: {
+            // Where no patch is shown, nobody can click a node of it.
+            const bool is_idle = layout == Layout::plan && patch_.selected.empty() && !nodes_.wants_catalogue;
+            return is_idle ? PanelRoom::none : PanelRoom::full;
+        }
         case Panel::scopes: return scopes_.list().empty() ? PanelRoom::line : PanelRoom::full;
         case Panel::scene: return scene_.is_empty() ? PanelRoom::none : PanelRoom::full;
         case Panel::tree: return scene_.is_empty() ? PanelRoom::none : PanelRoom::full;

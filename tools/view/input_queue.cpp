@@ -52,9 +52,12 @@ void InputQueue::take(const InputEvent& event) {
 namespace {
 
 // Of GLFW: Enter, arrows, modifiers, …
-constexpr int first_control_key = 256, left_control = 341, right_control = 345;
+constexpr int first_control_key = 256, left_control = 341, left_alt = 342, right_control = 345;
 
-bool has_control(const InputState& state) { return state.key[left_control] || state.key[right_control]; }
+/// The other Alt writes letters on many keyboards.
+bool has_control(const InputState& state) {
+    return state.key[left_control] || state.key[right_control] || state.key[left_alt];
+}
 
 }  // namespace
 

@@ -59,6 +59,8 @@ void state_banner(Workbench& bench, const Fonts& fonts) {
         ImGui::PopStyleColor();
     }
     ImGui::PopTextWrapPos();
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    set_spot("state of forces", {at.x, at.y, at.x + size.x, at.y + size.y});
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();

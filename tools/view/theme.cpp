@@ -6,15 +6,15 @@
 namespace tactus::view {
 
 std::uint32_t colour_of(const ValueType* type) {
-    if (!type) return colour(0xb9c4d4);
-    if (type == &value::pose) return colour(0x5ab0ff);
-    if (type == &value::wrench) return colour(0xff7171);
-    if (type == &value::twist) return colour(0xc08bff);
-    if (type == &value::vector) return colour(0xf28bc4);
-    if (type == &value::number) return colour(0xb9c4d4);
-    if (type == &value::boolean) return colour(0x4fd1c5);
+    if (!type) return tone::text;
+    if (type == &value::pose) return colour(0x0a92ff);
+    if (type == &value::wrench) return colour(0xe65b53);
+    if (type == &value::twist) return colour(0x707bbb);
+    if (type == &value::vector) return colour(0xd47291);
+    if (type == &value::number) return colour(0xbac7ff);
+    if (type == &value::boolean) return colour(0x86fae7);
     if (type == &value::signal) return colour(0xf5a742);
-    return colour(0x69d08a);
+    return colour(0x89efa4);
 }
 
 std::uint32_t colour_named(std::string_view name) {

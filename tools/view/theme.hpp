@@ -23,11 +23,12 @@ inline constexpr std::uint32_t ground = colour(0x12161d), lane = colour(0x1a202a
                                chosen = colour(0xf2b84b), text = colour(0xe8edf4), dim = colour(0x93a1b5),
                                grid = colour(0x2a3342), bad = colour(0xff5c5c), good = colour(0x46d39a),
                                warm = colour(0xf2b84b);
-inline constexpr std::uint32_t curves[] = {colour(0x5ab0ff), colour(0xff9f5a), colour(0x6fe3a5), colour(0xd591ff),
-                                           colour(0xffe06b), colour(0xff7b93), colour(0x78e0e6), colour(0xb9c4d4)};
+/// Told apart by people who confuse red and green, too.
+inline constexpr std::uint32_t curves[] = {colour(0x2fa7ff), colour(0xe28643), colour(0xb0ffa1), colour(0xc2599f),
+                                           colour(0xfedd46), colour(0xf16f85), colour(0xc5ffe3), colour(0xbed9ff)};
 }  // namespace tone
 
-/// Colour of a wire by its type; null: any type.
+/// Colour of a wire by its type; null: any type. Told apart by people who confuse red and green, too.
 std::uint32_t colour_of(const ValueType* type);
 
 /// Colour of a node or comment by its name in the patch; grey for unknown names.

@@ -194,10 +194,7 @@ bool Workbench::cut_at(const Vec3& site) {
 }
 
 bool Workbench::can_cut() const {
-    return plan_ && std::ranges::any_of(plan_->nodes, [](const auto& node) {
-               const std::string_view type = node.type->name;
-               return type == "workspace" || type == "carve";
-           });
+    return plan_ && std::ranges::any_of(plan_->nodes, [](const auto& node) { return node.type->name == "carve"; });
 }
 
 bool Workbench::add(const edit::NewNode& node) {

@@ -13,7 +13,8 @@ namespace tactus::test {
 
 class Display {
 public:
-    Display() {
+    explicit Display(int width = 1800, int height = 1200) {
+        const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
         int ends[2];
         if (::pipe(ends) != 0) return;
         process_ = ::fork();
@@ -22,7 +23,7 @@ public:
             ::dup2(ends[1], 3);
             for (int other = 4; other < 64; ++other) ::close(other);
             if (!::freopen("/dev/null", "w", stderr)) ::_exit(127);
-            ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "1800x1200x24", "-nolisten", "tcp", nullptr);
+            ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", screen.c_str(), "-nolisten", "tcp", nullptr);
             ::_exit(127);
         }
         ::close(ends[1]);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Somebody without a mouse.
+#include "assets/cases/plan_file.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/view/eyes.hpp"
 
+#include <cmath>
 #include <future>
 
 using namespace tactus::test;
@@ -119,4 +121,122 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     const Outcome outcome = done.get();
     INFO(outcome.err);
     CHECK(outcome.code == 0);
+}
+
+TEST_CASE("the keyboard alone goes to other places in a list of files", "[display]") {
+    NEEDS_PERSON(person, display)
+    const Folder folder;
+    fs::create_directories(folder.path / "inner");
+    folder.write("inner/deep.toml", "");
+    folder.write("script", watching_script("size 1000 700\n", 60.0));
+    auto done = std::async(std::launch::async,
+                           [&] { return on(display, folder, "view --view-scale 1 --view-script script", 150); });
+    REQUIRE(person.sees_window("Tactus", 30.0));
+    const Eyes eyes{folder.path};
+    const auto shows = [&](const std::string& control) { return sees([&] { return eyes.spots().contains(control); }); };
+    REQUIRE(shows("New patch"));
+    person.move(1500.0, 1100.0);
+    person.chord({"Control_L"}, "o");
+    REQUIRE(shows("file inner"));
+    // The third place is the library, the second the folder where the command works.
+    person.chord({"Alt_L"}, "3");
+    CHECK(shows("file touch-sphere.toml"));
+    keep(person, "keyboard-8-places");
+    person.chord({"Alt_L"}, "2");
+    REQUIRE(shows("file inner"));
+    person.type("inner");
+    person.tap("Return");
+    CHECK(shows("file deep.toml"));
+    person.chord({"Alt_L"}, "Up");
+    CHECK(shows("file inner"));
+    person.tap("Escape");
+    CHECK(sees([&] { return !eyes.spots().contains("file name"); }));
+    interrupt(folder.path);
+    done.wait();
+}
+
+TEST_CASE("the keyboard alone moves and turns the hand, wherever the pointer is", "[display]") {
+    NEEDS_PERSON(person, display)
+    const Folder folder;
+    folder.write("touch.toml", R"(wires = ["hand.pose -> ball.pose", "ball.wrench -> out.wrench", "hand.pose -> log.in"]
+[devices.mouse]
+driver = "mouse"
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+[nodes.ball]
+type = "sphere_contact"
+rate = "1 kHz"
+[nodes.out]
+type = "device_output"
+rate = "1 kHz"
+[nodes.log]
+type = "record"
+rate = "1 kHz"
+file = "hand.csv"
+)");
+    folder.write("script", watching_script("size 1000 700\n", 90.0));
+    auto done = std::async(std::launch::async, [&] {
+        return on(display, folder, "run touch.toml --view --view-scale 1 --view-script script --audio none --out out",
+                  150);
+    });
+    REQUIRE(person.sees_window("Tactus", 60.0));
+    const Eyes eyes{folder.path};
+    REQUIRE(sees([&] { return eyes.spots().contains("trigger (T)"); }));
+    person.move(1500.0, 1100.0);
+    const auto hand = [&] { return eyes.last_row("out/hand.csv"); };
+    REQUIRE(sees([&] { return hand().size() >= 8; }));
+    Person::wait(3.0);
+    const std::vector<double> before = hand();
+    const auto moved = [&] {
+        const std::vector<double> now = hand();
+        return std::hypot(now[1] - before[1], now[2] - before[2], now[3] - before[3]);
+    };
+    const auto is_turned = [&] {
+        const std::vector<double> now = hand();
+        double same = 0.0;
+        for (std::size_t i = 4; i < 8; ++i) same += now[i] * before[i];
+        return std::abs(same) < 0.9995;
+    };
+    // Half a millimetre each.
+    for (int i = 0; i < 10; ++i) person.tap("Up");
+    CHECK(sees([&] { return moved() > 4e-3; }));
+    CHECK(moved() < 8e-3);
+    CHECK_FALSE(is_turned());
+    person.key("Shift_L", true);
+    for (int i = 0; i < 10; ++i) person.tap("Left");
+    person.key("Shift_L", false);
+    CHECK(sees(is_turned));
+    keep(person, "keyboard-9-hand");
+    interrupt(folder.path);
+    done.wait();
+}
+
+TEST_CASE("the keyboard alone chooses fragments of a plan and groups them", "[display]") {
+    NEEDS_PERSON(person, display)
+    const Folder folder;
+    folder.write("script", watching_script("size 1000 700\n", 90.0));
+    auto done = std::async(std::launch::async, [&] {
+        return on(display, folder,
+                  "run planning-trauma --view --layout plan --view-scale 1 --view-script script --set "
+                  "hand.device=mouse --audio none --out out",
+                  150);
+    });
+    REQUIRE(person.sees_window("Tactus", 60.0));
+    const Eyes eyes{folder.path};
+    REQUIRE(sees([&] { return eyes.spots().contains("part fragment_02"); }));
+    REQUIRE(sees([&] { return fs::exists(folder.path / "out/case.plan.json"); }));
+    person.move(1500.0, 1100.0);
+    command(person, "choose fragment_07");
+    command(person, "choose fragment_02");
+    Person::wait(1.0);
+    keep(person, "keyboard-10-chosen");
+    command(person, "group the chosen");
+    CHECK(sees([&] {
+        return tactus::cases::state_of(tactus::cases::load_case_plan(folder.path / "out/case.plan.json"))
+            .arrangement.move_together(1, 6);
+    }));
+    keep(person, "keyboard-11-grouped");
+    interrupt(folder.path);
+    done.wait();
 }

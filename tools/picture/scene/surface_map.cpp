@@ -42,7 +42,7 @@ std::vector<contact::SurfacePoint> vertices_of(const observe::SeenBody& body) {
 }  // namespace
 
 SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
-                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies) {
+                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies, std::stop_token stop) {
     const cases::PlanState state = cases::state_of(plan);
     const std::size_t count = std::min(bodies.size(), plan.fragments.size());
     std::vector<study::CaseFragment> fragments;
@@ -52,7 +52,7 @@ SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, 
     else throw Error("the plan has no healthy side; make one by 'tactus plan mirror'");
     SurfaceMap map;
     map.kind = kind;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count && !stop.stop_requested(); ++i) {
         // Of fragments with one content the first is drawn.
         if (!bodies[i] || map.distance.contains(bodies[i]->content_hash)) continue;
         const int mine = static_cast<int>(i);
@@ -68,7 +68,7 @@ SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, 
         }
         if (state.arrangement.is_hidden(mine)) continue;
         for (int other = 0; other < static_cast<int>(fragments.size()); ++other) {
-            if (other == mine || state.arrangement.is_hidden(other)) continue;
+            if (other == mine || state.arrangement.is_hidden(other) || stop.stop_requested()) continue;
             const fit::SurfaceGap gap = fit::gap_between(points, at, fragments[static_cast<std::size_t>(other)].map,
                                                          state.arrangement.pose(other));
             for (std::size_t n = 0; n < points.size(); ++n)

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace tactus::picture {
@@ -27,9 +28,10 @@ struct SurfaceMap {
 
 /// Of the fragments where the plan's state has them; hidden ones face nothing. `bodies`: of each fragment, in the order
 /// of the plan; null ones are left out. Takes seconds. Throws Error for a file that is missing or has changed, and
-/// without a healthy side where one is asked for.
+/// without a healthy side where one is asked for. `stop`: leaves out the fragments that are still to come.
 SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
-                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies);
+                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies,
+                            std::stop_token stop = {});
 
 /// sRGB at a finite distance, full at `range` (m): from light to red for a gap or a distance, to blue for an overlap.
 Vec3 map_colour(double distance, double range);

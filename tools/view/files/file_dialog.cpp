@@ -5,6 +5,7 @@
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
+#include <fmt/format.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -34,12 +35,19 @@ void FileDialog::refuse(const std::string& why) {
 }
 
 void FileDialog::places() {
+    int number = 0;
     const auto place = [&](const char* name, const fs::path& folder) {
         std::error_code ignored;
         if (folder.empty() || !fs::is_directory(folder, ignored)) return;
-        if (ImGui::Selectable(name)) chooser_->go_to(folder);
+        // Letters and arrows belong to the name.
+        ++number;
+        const bool is_pressed = ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed('0' + number, false);
+        if (ImGui::Selectable(name) || is_pressed) chooser_->go_to(folder);
         mark_spot(std::string("place ") + name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", folder.c_str());
+        const std::string keys = fmt::format("Alt+{}", number);
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(keys.c_str()).x);
+        ImGui::TextDisabled("%s", keys.c_str());
     };
     const char* const home = std::getenv("HOME");
     std::error_code ignored;
@@ -85,6 +93,7 @@ bool FileDialog::name() {
     // A field in which one types keeps its own text, which only its callback may change.
     std::string typed = chooser_->name;
     const auto step = [](ImGuiInputTextCallbackData* field) {
+        if (ImGui::GetIO().KeyAlt) return 0;
         FileChooser& chooser = *static_cast<FileChooser*>(field->UserData);
         chooser.name = field->Buf;
         chooser.step(field->EventKey == ImGuiKey_DownArrow ? 1 : -1);
@@ -124,10 +133,13 @@ void FileDialog::draw(const Fonts& fonts) {
     if (!chooser_) return leave();
     if (ImGui::SmallButton("up")) chooser_->go_up();
     mark_spot("folder up");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the folder above (Alt+Up)");
+    if (ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow), false))
+        chooser_->go_to(chooser_->folder().parent_path());
     ImGui::SameLine();
     ImGui::TextUnformatted(chooser_->folder().c_str());
     const float below = 2.0f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
-    ImGui::BeginChild("places", ImVec2(9.0f * ImGui::GetFontSize(), -below));
+    ImGui::BeginChild("places", ImVec2(11.0f * ImGui::GetFontSize(), -below));
     places();
     ImGui::EndChild();
     ImGui::SameLine();

@@ -212,7 +212,11 @@ void CommandList::draw(const std::vector<Command>& commands, const Fonts& fonts)
         row("wheel", "nearer and farther");
         row("in the scene", "");
         row("1 to 7", "seven sides");
+        row("Alt+arrows, Alt+Page Up, Page Down", "turn the view; nearer and farther");
         row("H; T, Y, U, I", "mouse for the hand or the view; buttons of the hand");
+        row("arrows, Page Up, Page Down", "move the hand in small steps; with Shift: turn it");
+        row("in a list of files", "");
+        row("Up, Down; Alt+Up; Alt+1 to Alt+5", "choose a file; the folder above; the places on the left");
         row("in a menu or a question", "");
         row("arrows, Enter, Esc", "go to an item, press it, leave");
         row("in a field", "");

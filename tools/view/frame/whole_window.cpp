@@ -6,11 +6,16 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace tactus::view {
 
 void begin_whole_window(const char* name, const Fonts& fonts) {
     forget_spots();
     use_keys_in_popups();
+    // A double click takes four pictures, and slow ones must not make two single clicks of it.
+    ImGuiIO& io = ImGui::GetIO();
+    io.MouseDoubleClickTime = std::clamp(6.0f * io.DeltaTime, 0.3f, 2.0f);
     ImGui::NewFrame();
     ImGui::PushFont(fonts.body);
     const ImGuiViewport* viewport = ImGui::GetMainViewport();

@@ -2,6 +2,7 @@
 // Mouse interaction with the picture of the patch.
 #include "tools/view/patch/patch_panel.hpp"
 
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
@@ -244,11 +245,13 @@ void PatchPanel::menus() {
         const TypePorts* ports =
             menu_.index < 0 ? nullptr : ports_of_type(picture.nodes[static_cast<std::size_t>(menu_.index)].type);
         if (ports)
-            for (const auto& [name, unit] : ports->params)
-                if (ImGui::MenuItem(name.c_str(), unit.c_str())) {
-                    bench_.connect(new_name_, node + "." + name);
-                    break;
-                }
+            for (const auto& [name, unit] : ports->params) {
+                const bool is_chosen = ImGui::MenuItem(name.c_str(), unit.c_str());
+                mark_spot("drive " + name);
+                if (!is_chosen) continue;
+                bench_.connect(new_name_, node + "." + name);
+                break;
+            }
         ImGui::EndPopup();
     }
 }

@@ -12,22 +12,33 @@ void PlanMap::show(std::optional<Kind> kind) {
     if (kind == kind_) return;
     kind_ = kind;
     made_.reset();
-    scene_.use_map(nullptr, range_);
+    scene_.use_map(nullptr, drawn_range_ = range_);
 }
 
 void PlanMap::set_range(double range) {
     range_ = range;
-    scene_.set_map_range(range);
+    ranged_at_ = std::chrono::steady_clock::now();
+}
+
+/// New colours for all fragments take longer than a picture: while the range is dragged they come now and then.
+void PlanMap::draw_range() {
+    using namespace std::chrono_literals;
+    if (range_ == drawn_range_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - ranged_at_ < 150ms && now - drawn_at_ < 700ms) return;
+    drawn_at_ = now;
+    scene_.set_map_range(drawn_range_ = range_);
 }
 
 void PlanMap::tend() {
     // Nobody could take the colours away.
     if (!run_.is_there()) show({});
+    draw_range();
     if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         try {
             auto map = std::make_shared<const picture::SurfaceMap>(making_.get());
             // What was asked for may have changed meanwhile.
-            if (kind_ == map->kind) scene_.use_map(std::move(map), range_);
+            if (kind_ == map->kind) scene_.use_map(std::move(map), drawn_range_ = range_);
         } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
             if (made_ == kind_) show({});
@@ -41,8 +52,8 @@ void PlanMap::tend() {
     seen_ = seen;
     of_ = run_.written();
     making_ = std::async(std::launch::async, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
-                                              bodies = std::move(bodies)] {
-        return picture::make_surface_map(kind, plan, folder, bodies);
+                                              bodies = std::move(bodies), stop = stop_.get_token()] {
+        return picture::make_surface_map(kind, plan, folder, bodies, stop);
     });
 }
 

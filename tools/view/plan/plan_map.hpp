@@ -7,10 +7,12 @@
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <future>
 #include <memory>
 #include <optional>
+#include <stop_token>
 
 namespace tactus::view {
 
@@ -19,6 +21,10 @@ public:
     using Kind = picture::SurfaceMap::Kind;
 
     PlanMap(Workbench& bench, CaseRun& run, ScenePanel& scene) : bench_(bench), run_(run), scene_(scene) {}
+    /// What is being computed is given up.
+    ~PlanMap() { stop_.request_stop(); }
+    PlanMap(const PlanMap&) = delete;
+    PlanMap& operator=(const PlanMap&) = delete;
 
     /// Once per picture.
     void tend();
@@ -31,6 +37,8 @@ public:
     void set_range(double range);
 
 private:
+    void draw_range();
+
     Workbench& bench_;
     CaseRun& run_;
     ScenePanel& scene_;
@@ -38,7 +46,10 @@ private:
     double range_ = 1e-3;
     std::filesystem::file_time_type of_{};
     std::size_t seen_ = 0;  ///< bodies that were drawn when it was made
+    std::stop_source stop_;
     std::future<picture::SurfaceMap> making_;
+    double drawn_range_ = 1e-3;
+    std::chrono::steady_clock::time_point ranged_at_{}, drawn_at_{};  ///< the range was changed; was drawn
 };
 
 }  // namespace tactus::view

@@ -46,6 +46,7 @@ void PlanPanel::hand_buttons() {
         if (is_held) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::good, 0.5));
         const bool pressed = button(named.label, true, named.tip, is_first);
         if (is_held) ImGui::PopStyleColor();
+        if (is_held) mark_spot(std::string(named.label) + " is held");
         if (pressed) scene_.hand().hold(*number, !is_held);
         is_first = false;
     }
@@ -74,7 +75,6 @@ void PlanPanel::fit_line() const {
 /// On the fragments that are chosen in the scene, or the one held last.
 void PlanPanel::fragment_buttons() {
     const std::vector<int> chosen = scene_.chosen_places();
-    const int first = chosen.empty() ? -1 : chosen.front();
     const bool is_some = !chosen.empty();
     if (button("group", case_.can_press("join") && chosen.size() != 1,
                "the chosen fragments move together from now on (Ctrl and click chooses several); with none chosen: the "
@@ -84,10 +84,7 @@ void PlanPanel::fragment_buttons() {
         else case_.press("join");
     }
     const auto each = [&](const char* label, const char* input, const char* tip) {
-        if (!button(label, case_.can_press(input), tip)) return;
-        if (is_some)
-            for (const int place : chosen) case_.press(input, place);
-        else case_.press(input, first);
+        if (button(label, case_.can_press(input), tip)) on_chosen(input);
     };
     each("split", "split", "the chosen fragments, or the one held last, leave their groups");
     each("lock", "lock", "lock or unlock the chosen fragments, or the one held last");

@@ -2,6 +2,7 @@
 // The steps of a plan that the patch changes, with undo and redo, and what can be done to the held or chosen fragments.
 #pragma once
 
+#include "tools/view/frame/commands.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/plan/plan_map.hpp"
@@ -11,7 +12,8 @@ namespace tactus::view {
 
 class PlanPanel {
 public:
-    PlanPanel(Workbench& bench, ScenePanel& scene) : case_(bench), scene_(scene), map_(bench, case_, scene) {}
+    PlanPanel(Workbench& bench, ScenePanel& scene)
+        : bench_(bench), case_(bench), scene_(scene), map_(bench, case_, scene) {}
 
     CaseRun& case_run() { return case_; }
     /// Once per picture, also while it is not drawn: the scene keeps the colours of a map.
@@ -20,8 +22,11 @@ public:
         map_.tend();
     }
     void draw(const Fonts& fonts);
+    /// What its buttons do, by name.
+    void add_commands(std::vector<Command>& all);
 
 private:
+    void on_chosen(const char* input);
     void hand_buttons();
     void fit_line() const;
     void fragment_buttons();
@@ -29,6 +34,7 @@ private:
     void maps();
     void step_list();
 
+    Workbench& bench_;
     CaseRun case_;
     ScenePanel& scene_;
     PlanMap map_;

@@ -23,7 +23,7 @@ constexpr int first_pictures = 6, fewest_pictures = 2;
 // A driver that has heard nothing for 10 s takes the window for lost: where pictures take long, fewer must do.
 constexpr std::int64_t longest_wait_ns = 2'000'000'000;
 constexpr double radians_per_pixel = 0.006;
-constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3;
+constexpr double wheel_step_m = 1e-3, key_step_m = 0.5e-3, key_turn_rad = 0.03;
 
 /// Bits of DeviceSample::buttons; bit 1 marks gaps of recordings.
 struct HandButton {
@@ -130,7 +130,8 @@ void SceneHand::tools() {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
             "left button: move; with Shift, or the wheel: nearer and farther\nright button: turn; with Shift: roll\n"
-            "middle button: turn the view\narrows, Page Up, Page Down: small steps\nH: mouse for the hand or the view");
+            "middle button: turn the view\narrows, Page Up, Page Down: small steps; with Shift: turns\nH: mouse for "
+            "the hand or the view");
     for (std::size_t i = 0; i < hand_buttons.size(); ++i) {
         const float end = ImGui::GetItemRectMax().x + 2.0f * ImGui::GetStyle().ItemSpacing.x +
                           ImGui::CalcTextSize(hand_buttons[i].name).x;
@@ -175,11 +176,13 @@ bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
     if (!is_there_) return false;
     press_keys();
     is_hovered_ = ImGui::IsItemHovered() || ImGui::IsItemActive();
-    if (!is_on_ || !is_hovered_) return false;
+    if (!is_on_) return false;
     const ImGuiIO& io = ImGui::GetIO();
     const HandPlace place = this->place();
     const Vec3 right = camera.orientation * Vec3(1.0, 0.0, 0.0), up = camera.orientation * Vec3(0.0, 1.0, 0.0),
                forward = camera.orientation * Vec3(0.0, 0.0, -1.0);
+    step_by_keys(right, up, forward, place);
+    if (!is_hovered_) return false;
     // A pixel at the depth of the hand.
     const double depth = std::max(glm::dot(place.handle - camera.eye(), forward), 1e-3);
     const double per_pixel = 2.0 * depth * std::tan(0.5 * camera.vertical_field_of_view_rad) / std::max(height, 1);
@@ -194,16 +197,24 @@ bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
         else cursor_.turn((up * by.x + right * by.y) * radians_per_pixel, place);
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) return false;
     if (io.MouseWheel != 0.0f) cursor_.move(forward * (static_cast<double>(io.MouseWheel) * wheel_step_m), place);
-    const auto step = [&](ImGuiKey key, const Vec3& along) {
-        if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(key))) cursor_.move(along * key_step_m, place);
-    };
-    step(ImGuiKey_LeftArrow, -right);
-    step(ImGuiKey_RightArrow, right);
-    step(ImGuiKey_UpArrow, up);
-    step(ImGuiKey_DownArrow, -up);
-    step(ImGuiKey_PageUp, forward);
-    step(ImGuiKey_PageDown, -forward);
     return true;
+}
+
+/// Wherever the pointer is: who has no mouse moves the hand, too.
+void SceneHand::step_by_keys(const Vec3& right, const Vec3& up, const Vec3& forward, const HandPlace& place) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || io.KeyCtrl || io.KeyAlt || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
+    const auto step = [&](ImGuiKey key, const Vec3& along, const Vec3& about) {
+        if (!ImGui::IsKeyPressed(ImGui::GetKeyIndex(key))) return;
+        if (io.KeyShift) cursor_.turn(about * key_turn_rad, place);
+        else cursor_.move(along * key_step_m, place);
+    };
+    step(ImGuiKey_LeftArrow, -right, -up);
+    step(ImGuiKey_RightArrow, right, up);
+    step(ImGuiKey_UpArrow, up, -right);
+    step(ImGuiKey_DownArrow, -up, right);
+    step(ImGuiKey_PageUp, forward, forward);
+    step(ImGuiKey_PageDown, -forward, -forward);
 }
 
 void SceneHand::draw(const Painter& paint, const Box& picture,

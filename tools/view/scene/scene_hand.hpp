@@ -56,6 +56,7 @@ private:
     HandPlace place() const;
     std::int64_t held_buttons() const;
     void press_keys();
+    void step_by_keys(const Vec3& right, const Vec3& up, const Vec3& forward, const HandPlace& place);
 
     HandPulse pulse_;
     std::shared_ptr<observe::Observer> observer_;

@@ -177,11 +177,11 @@ void ScenePanel::tend_screens() {
 
 void ScenePanel::steer(int width, int height) {
     const bool is_hand = hand_.steer(camera, height);
-    if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
+    steer_by_keys(ImGui::IsItemHovered() || ImGui::IsItemActive());
+    if (is_hand || (!ImGui::IsItemHovered() && !ImGui::IsItemActive())) return;
     const ImGuiIO& io = ImGui::GetIO();
     const Point by = point(io.MouseDelta);
     const display::OrbitCamera before = camera;
-    if (is_hand) return steer_by_keys();
     if (hand_.has_mouse() && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 2.0f))
         camera.orbit(-by.x * 2.0 * std::numbers::pi / width, by.y * std::numbers::pi / height);
     else if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f) && !io.KeyShift)
@@ -194,18 +194,27 @@ void ScenePanel::steer(int width, int height) {
     // Who moves the view before all of the scene has come has aimed it.
     if (camera.distance != before.distance || camera.target != before.target)
         is_aimed_ = is_aimed_ || !model_->bounds().empty();
-    steer_by_keys();
     needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
 }
 
-void ScenePanel::steer_by_keys() {
+/// Sides and turns wherever the pointer is, for those who have none. `is_pointed_at`: letters that other panels have, too.
+void ScenePanel::steer_by_keys(bool is_pointed_at) {
     const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || io.KeyCtrl || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
     const display::OrbitCamera before = camera;
-    if (!io.WantTextInput)
-        for (int key = 1; key <= 7; ++key)
-            if (ImGui::IsKeyPressed('0' + key, false)) look_from(*display::view_of_number(key));
-    if (!io.WantTextInput && ImGui::IsKeyPressed('F', false)) fit();
-    if (!io.WantTextInput && ImGui::IsKeyPressed('R', false)) reset();
+    for (int key = 1; key <= 7; ++key)
+        if (ImGui::IsKeyPressed('0' + key, false)) look_from(*display::view_of_number(key));
+    if (is_pointed_at && ImGui::IsKeyPressed('F', false)) fit();
+    if (is_pointed_at && ImGui::IsKeyPressed('R', false)) reset();
+    constexpr double turn_rad = 0.1, nearer = 1.15;
+    const auto pressed = [&](ImGuiKey key) { return io.KeyAlt && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    if (pressed(ImGuiKey_LeftArrow)) camera.orbit(-turn_rad, 0.0);
+    if (pressed(ImGuiKey_RightArrow)) camera.orbit(turn_rad, 0.0);
+    if (pressed(ImGuiKey_UpArrow)) camera.orbit(0.0, turn_rad);
+    if (pressed(ImGuiKey_DownArrow)) camera.orbit(0.0, -turn_rad);
+    if (pressed(ImGuiKey_PageUp)) camera.zoom(nearer);
+    if (pressed(ImGuiKey_PageDown)) camera.zoom(1.0 / nearer);
+    if (camera.distance != before.distance) is_aimed_ = is_aimed_ || !model_->bounds().empty();
     needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
 }
 
@@ -339,9 +348,6 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         if (is_clicked && is_siting) move_site(clicked);
         else if (is_clicked && is_measuring) measure(clicked);
         else if (is_clicked) choose(clicked);
-        // A double click takes four pictures, and slow ones must not make two single clicks of it.
-        ImGuiIO& io = ImGui::GetIO();
-        io.MouseDoubleClickTime = std::clamp(6.0f * io.DeltaTime, 0.3f, 2.0f);
         if (hand_.has_mouse() && ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
             lead_hand(clicked);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);

@@ -8,6 +8,7 @@
 #include "tools/picture/scene/markups.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
+#include "tools/view/frame/commands.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/scene/scene_hand.hpp"
 #include "tools/view/scene/scene_motion.hpp"
@@ -37,6 +38,8 @@ public:
 
     /// The bones and bodies as a list.
     void draw_tree();
+    /// What can be done to it, by name.
+    void add_commands(std::vector<Command>& all);
 
     /// The hand that the mouse moves, in runs with the driver 'mouse'.
     SceneHand& hand() { return hand_; }
@@ -83,7 +86,7 @@ private:
     void tools();
     void sight_tools();
     void steer(int width, int height);
-    void steer_by_keys();
+    void steer_by_keys(bool is_pointed_at);
     void render(int width, int height);
     void tend_screens();
     void watch_sight();

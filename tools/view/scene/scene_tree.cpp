@@ -16,13 +16,16 @@ void ScenePanel::draw_tree() {
         for (const SceneModel::Part& part : model_->parts()) model_->show_part(part.name, wanted);
         needs_picture_ = true;
     };
+    const auto tell = [] {
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("in the picture only: the run goes on with all");
+    };
     if (ImGui::SmallButton("show all")) show_all(true);
     mark_spot("show all");
+    tell();
     ImGui::SameLine();
     if (ImGui::SmallButton("hide all")) show_all(false);
     mark_spot("hide all");
-    ImGui::SameLine();
-    ImGui::TextDisabled("a picture only: the run goes on with all");
+    tell();
     if (bench_.can_cut()) {
         if (ImGui::SmallButton(is_siting ? "click on the bone" : "cut here...")) is_siting = !is_siting;
         if (ImGui::IsItemHovered())
