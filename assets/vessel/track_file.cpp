@@ -4,12 +4,14 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/vessel/track_warnings.hpp"
 #include "dsp/vessel/tube_surface.hpp"
 
 #include <fmt/format.h>
 
 #include <functional>
 #include <iterator>
+#include <utility>
 
 namespace tactus::vessel {
 
@@ -53,15 +55,38 @@ std::string csv(const Track& track) {
     return text;
 }
 
-std::string vtp(const Track& track) {
+/// VTK's strings are bytes that end with a 0.
+std::string field_data(const std::vector<TrackWarning>& warnings) {
+    if (warnings.empty()) return {};
+    std::string text =
+        fmt::format("<FieldData>\n<Array type=\"String\" Name=\"warnings\" NumberOfTuples=\"{}\" format=\"ascii\">\n",
+                    warnings.size());
+    for (const TrackWarning& warning : warnings) {
+        for (const char byte : warning.text)
+            fmt::format_to(std::back_inserter(text), "{} ", static_cast<unsigned>(static_cast<unsigned char>(byte)));
+        text += "0\n";
+    }
+    return text + "</Array>\n</FieldData>\n";
+}
+
+/// Those of the whole vessel hold at its first node.
+std::vector<TrackWarning> all_warnings(const Track& track, std::span<const std::string> whole) {
+    std::vector<TrackWarning> all;
+    for (const std::string& text : whole) all.push_back({0, 0, text});
+    for (TrackWarning& warning : warnings_of(track)) all.push_back(std::move(warning));
+    return all;
+}
+
+std::string vtp(const Track& track, const std::vector<TrackWarning>& warnings) {
     const std::vector<std::size_t> rows = first_rows(track);
     std::size_t points = 0;
     for (const Branch& branch : track.branches) points += branch.nodes.size();
     std::string text = fmt::format(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\">\n<PolyData>\n{}"
         "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
         "NumberOfPolys=\"0\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
-        points, track.branches.size());
+        field_data(warnings), points, track.branches.size());
     const auto out = std::back_inserter(text);
     const auto each = [&](const std::function<void(std::size_t, std::size_t, const Node&)>& write) {
         for (std::size_t b = 0; b < track.branches.size(); ++b)
@@ -95,7 +120,15 @@ std::string vtp(const Track& track) {
     return text + "</PointData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
-std::string markups(const Track& track) {
+std::string markups(const Track& track, const std::vector<TrackWarning>& warnings) {
+    const auto description = [&](std::size_t branch, std::size_t n) {
+        const Node& node = track.branches[branch].nodes[n];
+        std::string text =
+            fmt::format("radius {:.3f} mm{}", node.radius * 1e3, node.is_lost ? ", without contrast" : "");
+        for (const TrackWarning& warning : warnings)
+            if (warning.branch == branch && warning.node == n) text += "; warning: " + warning.text;
+        return text;
+    };
     Json curves = Json::array();
     for (std::size_t b = 0; b < track.branches.size(); ++b) {
         Json points = Json::array();
@@ -103,8 +136,7 @@ std::string markups(const Track& track) {
             const Node& node = track.branches[b].nodes[n];
             points.push_back({{"id", fmt::format("{}", n + 1)},
                               {"label", fmt::format("B{}-{}", b, n + 1)},
-                              {"description", fmt::format("radius {:.3f} mm{}", node.radius * 1e3,
-                                                          node.is_lost ? ", without contrast" : "")},
+                              {"description", description(b, n)},
                               {"position", {node.position.x * 1e3, node.position.y * 1e3, node.position.z * 1e3}},
                               {"selected", true},
                               {"locked", false},
@@ -142,11 +174,12 @@ bool is_track_file(const std::filesystem::path& path) {
     return false;
 }
 
-void write_track(const Track& track, const std::filesystem::path& path) {
+void write_track(const Track& track, const std::filesystem::path& path, std::span<const std::string> warnings) {
     if (track.branches.empty()) throw Error("there is no vessel to write to " + path.string());
     if (ends_with(path, ".csv")) return file::write_whole_file(path, csv(track));
-    if (ends_with(path, ".vtp")) return file::write_whole_file(path, vtp(track));
-    if (ends_with(path, ".mrk.json")) return file::write_whole_file(path, markups(track));
+    if (ends_with(path, ".vtp")) return file::write_whole_file(path, vtp(track, all_warnings(track, warnings)));
+    if (ends_with(path, ".mrk.json"))
+        return file::write_whole_file(path, markups(track, all_warnings(track, warnings)));
     if (!is_track_file(path))
         throw Error(path.string() + ": a vessel is written as .csv, .vtp, .mrk.json, .stl or .ply");
     std::vector<mesh::ColouredSurface> tubes;

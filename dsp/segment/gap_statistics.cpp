@@ -12,30 +12,52 @@ namespace tactus::segment {
 namespace {
 
 /// The value below which `share` of the sorted values lie. Equal values count as spread evenly about their value: the
-/// distribution is linear between the middles of the groups of equal values.
-double quantile(const std::vector<float>& sorted, double share) {
+/// distribution is linear between the middles of the groups of equal values. Values up to `rounding` apart are equal: whole
+/// numbers that were scaled differ in their last bits where they did not before.
+double quantile(const std::vector<float>& sorted, double share, double rounding) {
     if (sorted.empty()) return 0.0;
     const double wanted = share * static_cast<double>(sorted.size());
-    const auto middle = [&](float value) {
-        const auto [low, high] = std::equal_range(sorted.begin(), sorted.end(), value);
-        return 0.5 * static_cast<double>((low - sorted.begin()) + (high - sorted.begin()));
+    const auto first_of = [&](double value) {
+        return std::lower_bound(sorted.begin(), sorted.end(), static_cast<float>(value - rounding));
+    };
+    const auto behind = [&](double value) {
+        return std::upper_bound(sorted.begin(), sorted.end(), static_cast<float>(value + rounding));
+    };
+    const auto middle = [&](double value) {
+        return 0.5 * static_cast<double>((first_of(value) - sorted.begin()) + (behind(value) - sorted.begin()));
     };
     const std::size_t at = std::min(static_cast<std::size_t>(wanted), sorted.size() - 1);
-    const float here = sorted[at];
+    const auto here = static_cast<double>(sorted[at]);
     const double here_middle = middle(here);
     // The neighbouring group on the side of the wanted count.
+    double other = here;
     if (wanted < here_middle) {
-        const auto low = std::lower_bound(sorted.begin(), sorted.end(), here);
-        if (low == sorted.begin()) return static_cast<double>(here);
-        const float other = *(low - 1);
-        const double t = (here_middle - wanted) / (here_middle - middle(other));
-        return static_cast<double>(here) + t * (static_cast<double>(other) - static_cast<double>(here));
-    }
-    const auto high = std::upper_bound(sorted.begin(), sorted.end(), here);
-    if (high == sorted.end()) return static_cast<double>(here);
-    const double t = (wanted - here_middle) / (middle(*high) - here_middle);
-    return static_cast<double>(here) + t * (static_cast<double>(*high) - static_cast<double>(here));
+        if (const auto low = first_of(here); low != sorted.begin()) other = static_cast<double>(*(low - 1));
+    } else if (const auto high = behind(here); high != sorted.end()) other = static_cast<double>(*high);
+    const double apart = middle(other) - here_middle;
+    return apart == 0.0 ? here : here + (wanted - here_middle) / apart * (other - here);
 }
+
+/// What rounding to floats changes in sums of a few of these values, with room.
+double rounding_of(const std::vector<float>& sorted) {
+    if (sorted.empty()) return 0.0;
+    const double most =
+        std::max(std::abs(static_cast<double>(sorted.front())), std::abs(static_cast<double>(sorted.back())));
+    return 1e-5 * most;
+}
+
+/// Least distance of two values that differ; 0: there is but one.
+double step_of(const std::vector<float>& sorted, double rounding) {
+    double least = 0.0;
+    for (std::size_t n = 1; n < sorted.size(); ++n) {
+        const double apart = static_cast<double>(sorted[n]) - static_cast<double>(sorted[n - 1]);
+        if (apart > rounding && (least == 0.0 || apart < least)) least = apart;
+    }
+    return least;
+}
+
+/// Rounding to steps adds a twelfth of the squared step to the variance (Sheppard 1898).
+double without_steps(double noise, double step) { return std::sqrt(std::max(0.0, noise * noise - step * step / 12.0)); }
 
 }  // namespace
 
@@ -71,7 +93,9 @@ GapStatistics gap_statistics(const volume::Grid& values, std::span<const std::ui
             }
     std::sort(residues.begin(), residues.end());
     constexpr double median_of_normal = 0.67449;
-    return {quantile(sorted, 0.05), quantile(sorted, 0.6), quantile(residues, 0.5) / 6.0 / median_of_normal};
+    const double rounding = rounding_of(sorted);
+    return {quantile(sorted, 0.05, rounding), quantile(sorted, 0.6, rounding),
+            without_steps(quantile(residues, 0.5, rounding) / 6.0 / median_of_normal, step_of(sorted, rounding))};
 }
 
 GapLaw gap_law(const GapStatistics& statistics) {
@@ -92,7 +116,7 @@ GapLaw law_of_seeds(const GapLaw& law, const VoxelGraph& graph, const volume::Gr
     for (std::vector<float>& of_label : painted) {
         if (of_label.empty()) continue;
         std::sort(of_label.begin(), of_label.end());
-        out.bright = std::min(out.bright, quantile(of_label, 0.9));
+        out.bright = std::min(out.bright, quantile(of_label, 0.9, rounding_of(of_label)));
     }
     return out;
 }

@@ -19,7 +19,8 @@ struct GapStatistics {
 
 /// Quantiles are interpolated between the values that occur, so that a coarse quantisation moves them little. The noise
 /// is the median absolute value of Immerkær's operator in each layer (Computer Vision and Image Understanding 64, 1996,
-/// with a median in place of the mean, because bone has texture). All scale with the values.
+/// with a median in place of the mean, because bone has texture), without what the steps of the values add. All scale with
+/// the values, within rounding.
 GapStatistics gap_statistics(const volume::Grid& values, std::span<const std::uint8_t> inside);
 
 /// Conducts fully at `bright`; falls to 1/e over twice the noise, at least over 5 % of the range from dark to bright. The

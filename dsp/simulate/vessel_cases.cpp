@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -72,7 +73,18 @@ VesselCase branch_case(double radius, double angle_deg, double ratio, std::uint6
 }
 
 VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, double noise) {
-    VesselPhantom phantom({40, 40, 90}, voxel);
+    constexpr double margin = 20.0, whole = 74.0;  // samples
+    std::array<int, 3> size{40, 40, 90};
+    std::vector<Vec3> line = oblique(8, 82);
+    Vec3 side(1.0, 0.0, 0.0);
+    if (const auto& direction = stenosis.direction) {
+        const Vec3 start = Vec3(margin) * (1.0 - *direction) + Vec3(8.2, 8.1, 8.0) * *direction;
+        for (int axis = 0; axis < 3; ++axis)
+            size[static_cast<std::size_t>(axis)] = static_cast<int>(2.0 * start[axis] + whole * (*direction)[axis]) + 1;
+        line = straight(start * voxel, (start + whole * *direction) * voxel, fine);
+        side = glm::normalize(side - direction->x * *direction);
+    }
+    VesselPhantom phantom(size, voxel);
     const double radius = stenosis.radius * voxel;
     VesselCase made{
         fmt::format("stenosis {} % over {} R, R {} voxels", stenosis.percent, stenosis.length, stenosis.radius),
@@ -81,7 +93,7 @@ VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, doubl
         {},
         radius,
         {}};
-    made.lines = {oblique(8, 82)};
+    made.lines = {std::move(line)};
     const double length = glm::length(made.lines[0].back() - made.lines[0].front());
     const auto lost = [&](double s) {  // of the radius
         const double x = std::abs(s - 0.6) * length / (stenosis.length * radius);
@@ -92,7 +104,7 @@ VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, doubl
     };
     phantom.add_lumen(
         made.lines[0], [&](double s) { return radius * (1.0 - lost(s)); }, 1.0,
-        [&](double s) { return Vec3(stenosis.aside * radius * lost(s), 0.0, 0.0); });
+        [&](double s) { return stenosis.aside * radius * lost(s) * side; });
     made.seed = made.lines[0][made.lines[0].size() / 4];
     made.scan = phantom.scan(0.0, noise, seed);
     return made;

@@ -36,6 +36,8 @@ struct TrueStenosis {
     double length = 4.0;  ///< radii, from end to end
     enum class Shape { cosine, flat } shape = Shape::cosine;  ///< flat: even, with shoulders of a quarter of the length
     double aside = 0.0;  ///< share of what is lost that is lost on one side alone: 0 round, 1 wholly
+    std::optional<Vec3> direction =
+        std::nullopt;  ///< unit, of the vessel; 0 to 0.9 in x, 0 or more in y and z; none: near z
 };
 VesselCase stenosis_case(const TrueStenosis& stenosis, std::uint64_t seed, double noise = 0.2);
 /// Interrupted over two radii.

@@ -78,6 +78,34 @@ TEST_CASE("a track as VTK counts points and lines") {
     CHECK(text.find("\n21 42 \n") != std::string::npos);
 }
 
+TEST_CASE("warnings stand in the files that have a place for them") {
+    vessel::Track track = forked();
+    track.branches[1].stenosis = vessel::Stenosis{7, 0.4e-3, 1e-3, 60.0, 4.0, true};
+    track.branches[0].start = track.branches[0].end = track.branches[1].end = vessel::End::border;
+    for (const std::size_t n : {4u, 5u, 6u}) track.branches[0].nodes[n].is_lost = true;
+    const std::vector<std::string> whole{"the peroneal artery was not found"};
+    const auto written = [&](const char* name) {
+        vessel::write_track(track, place(name), whole);
+        return file::read_whole_file(place(name));
+    };
+    const file::Json json = file::Json::parse(written("warned.mrk.json"));
+    const auto text = [&](std::size_t curve, std::size_t point) {
+        return json["markups"][curve]["controlPoints"][point]["description"].as_text();
+    };
+    CHECK(text(0, 0) == "radius 2.000 mm; warning: the peroneal artery was not found");
+    CHECK(text(0, 4) ==
+          "radius 2.000 mm, without contrast; warning: branch 0 has no contrast from 4.0 to 6.0 mm along it, which is "
+          "bridged: it may be closed there, or be another vessel");
+    CHECK(text(0, 5) == "radius 2.000 mm, without contrast");
+    CHECK(text(1, 7) ==
+          "radius 1.000 mm; warning: branch 1 is narrowed by 60 ± 4 % against 1.00 mm at 17.0, -20.0, 8.3, uncertain");
+    CHECK(text(1, 8) == "radius 1.000 mm");
+    const std::string vtp = written("warned.vtp");
+    CHECK(vtp.find("Name=\"warnings\" NumberOfTuples=\"3\"") != std::string::npos);
+    CHECK(vtp.find("\n116 104 101 32 112 ") != std::string::npos);  // "the p"
+    CHECK(written("warned.csv").find("warning") == std::string::npos);
+}
+
 TEST_CASE("tubes of a track are closed and look outwards") {
     vessel::write_track(forked(), place("tubes.stl"));
     const mesh::Mesh tubes = mesh::load_mesh(place("tubes.stl"), 1e-3);

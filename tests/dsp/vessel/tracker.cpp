@@ -4,10 +4,12 @@
 #include "dsp/core/random.hpp"
 #include "dsp/simulate/vessel_cases.hpp"
 #include "dsp/simulate/vessel_phantom.hpp"
+#include "dsp/vessel/track_warnings.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -122,6 +124,20 @@ TEST_CASE("a narrowing of two to four radii is measured within ten points or cal
         CHECK(off < 3.0 * stenosis->error_percent + 6.0);
         if (row.is_certain) CHECK_FALSE(stenosis->is_uncertain);
     }
+}
+
+TEST_CASE("a narrowing that ends a track is warned of") {
+    using Shape = simulate::TrueStenosis::Shape;
+    const VesselCase one = simulate::stenosis_case({3, 90, 4, Shape::flat}, 5);
+    const vessel::Track track = vessel::follow(one.scan, one.seed).track;
+    REQUIRE(track.branches.size() == 1);
+    const vessel::Branch& branch = track.branches[0];
+    const Vec3 at = one.lines[0][one.lines[0].size() * 6 / 10];
+    const auto warnings = vessel::warnings_of(track);
+    const bool is_said = std::ranges::any_of(warnings, [&](const vessel::TrackWarning& warning) {
+        return glm::length(branch.nodes[warning.node].position - at) < 4.0 * one.radius;
+    });
+    CHECK(is_said);
 }
 
 TEST_CASE("an even vessel is not narrowed", "[slow]") {

@@ -7,28 +7,44 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 namespace tactus::bench {
 
 namespace {
 
+// The Laplacian of a scan is the same for all seedings: it is made once.
 constexpr const char* script = R"py(
-import sys, time, warnings
+import os, sys, time, warnings
 import numpy as np
-from skimage.segmentation import random_walker
+import skimage.segmentation.random_walker_segmentation as rw
 warnings.simplefilter("ignore")
 folder = sys.argv[1]
 size = [int(n) for n in sys.argv[2:5]]
 spacing = [float(h) for h in sys.argv[5:8]]
 values = np.fromfile(folder + "/values", "<f4").reshape(size).astype(float)
-seeds = np.fromfile(folder + "/seeds", "u1").reshape(size).astype(int)
-seeds[seeds == 255] = -1
-begin = time.process_time()
-found = random_walker(values, seeds, beta=130, mode="cg_j", tol=1e-3, spacing=spacing)
-np.maximum(found, 0).astype("u1").tofile(folder + "/labels")
-print(time.process_time() - begin)
+build = rw._build_laplacian
+kept = {}
+def build_once(data, spacing, mask, **rest):
+    key = None if mask is None else mask.tobytes()
+    if key not in kept:
+        kept.clear()
+        kept[key] = build(data, spacing, mask, **rest)
+    return kept[key]
+rw._build_laplacian = build_once
+for name in open(folder + "/names").read().split():
+    seeds = np.fromfile(folder + "/" + name + ".seeds", "u1").reshape(size).astype(int)
+    inside = seeds != 255
+    seeds[~inside] = -1
+    begin = time.process_time()
+    found = rw.random_walker(values, seeds, beta=130, mode="cg_j", tol=1e-3, spacing=spacing)
+    seconds = time.process_time() - begin
+    with open(folder + "/" + name + ".part", "wb") as out:
+        out.write(b"%.3f\n" % seconds + np.maximum(found, 0).astype("u1")[inside].tobytes())
+    os.rename(folder + "/" + name + ".part", folder + "/" + name)
 )py";
 
 template <class Value>
@@ -38,11 +54,40 @@ void write(const std::filesystem::path& path, const std::vector<Value>& values) 
                static_cast<std::streamsize>(values.size() * sizeof(Value)));
 }
 
+/// FNV-1a (Fowler, Noll and Vo).
+class Hash {
+public:
+    template <class Value>
+    void add(const std::vector<Value>& values) {
+        add(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+    }
+    void add(const char* bytes, std::size_t count) {
+        for (std::size_t n = 0; n < count; ++n) {
+            hash_ ^= static_cast<unsigned char>(bytes[n]);
+            hash_ *= 0x100000001b3u;
+        }
+    }
+    std::string text() const { return fmt::format("{:016x}", hash_); }
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+/// A file of the cache: the seconds in a line, then a byte per node.
+std::optional<PeerLabels> kept(const std::filesystem::path& path, std::size_t nodes) {
+    std::ifstream in(path, std::ios::binary);
+    PeerLabels peer;
+    if (!(in >> peer.seconds) || in.get() != '\n') return {};
+    peer.label.resize(nodes);
+    in.read(reinterpret_cast<char*>(peer.label.data()), static_cast<std::streamsize>(nodes));
+    if (in.gcount() != static_cast<std::streamsize>(nodes)) return {};
+    return peer;
+}
+
 }  // namespace
 
-std::optional<PeerLabels> peer_labels(const SeededCase& real, const std::vector<std::uint8_t>& seed) {
-    const auto folder = std::filesystem::temp_directory_path() / fmt::format("tactus_random_walker_{}", ::getpid());
-    std::filesystem::create_directories(folder);
+std::vector<PeerLabels> peer_labels(const SeededCase& real, const std::vector<std::vector<std::uint8_t>>& seeds,
+                                    const std::filesystem::path& cache) {
     float low = real.grid.values[real.graph.voxel[0]], high = low;
     for (const std::uint32_t v : real.graph.voxel) {
         low = std::min(low, real.grid.values[v]);
@@ -51,27 +96,49 @@ std::optional<PeerLabels> peer_labels(const SeededCase& real, const std::vector<
     std::vector<float> values(real.grid.count());
     for (std::size_t v = 0; v < values.size(); ++v)
         values[v] = std::clamp((real.grid.values[v] - low) / (high - low), 0.0f, 1.0f);
-    std::vector<std::uint8_t> seeds(real.grid.count(), 255);
-    for (std::size_t n = 0; n < seed.size(); ++n) seeds[real.graph.voxel[n]] = seed[n];
-    write(folder / "values", values);
-    write(folder / "seeds", seeds);
-    std::ofstream(folder / "peer.py") << script;
     const Vec3 h = real.grid.spacing / std::min({real.grid.spacing.x, real.grid.spacing.y, real.grid.spacing.z});
-    const std::string command =
-        fmt::format("python3 {0}/peer.py {0} {1} {2} {3} {4} {5} {6} >{0}/seconds 2>/dev/null", folder.string(),
-                    real.grid.size[2], real.grid.size[1], real.grid.size[0], h.z, h.y, h.x);
-    std::optional<PeerLabels> peer;
-    if (std::system(command.c_str()) == 0) {
-        peer.emplace();
-        std::ifstream(folder / "seconds") >> peer->seconds;
-        std::vector<char> labels(real.grid.count());
-        std::ifstream(folder / "labels", std::ios::binary)
-            .read(labels.data(), static_cast<std::streamsize>(labels.size()));
-        for (const std::uint32_t v : real.graph.voxel) peer->label.push_back(static_cast<std::uint8_t>(labels[v]));
+    const std::string arguments =
+        fmt::format("{} {} {} {} {} {}", real.grid.size[2], real.grid.size[1], real.grid.size[0], h.z, h.y, h.x);
+    Hash common;
+    common.add(values);
+    common.add(arguments.data(), arguments.size());
+    common.add(script, std::strlen(script));
+
+    const auto own = std::filesystem::temp_directory_path() / fmt::format("tactus_random_walker_{}", ::getpid());
+    const std::filesystem::path folder = cache.empty() ? own : cache;
+    std::filesystem::create_directories(folder);
+    std::vector<std::string> names;
+    std::string wanted;
+    for (const std::vector<std::uint8_t>& seed : seeds) {
+        std::vector<std::uint8_t> of_voxel(real.grid.count(), 255);
+        for (std::size_t n = 0; n < seed.size(); ++n) of_voxel[real.graph.voxel[n]] = seed[n];
+        Hash hash = common;
+        hash.add(of_voxel);
+        names.push_back(hash.text());
+        if (kept(folder / names.back(), seed.size())) continue;
+        write(folder / (names.back() + ".seeds"), of_voxel);
+        wanted += names.back() + "\n";
     }
-    if (!peer) fmt::print(stderr, "scikit-image is left out: python3 cannot import it, or it failed\n");
-    std::filesystem::remove_all(folder);
-    return peer;
+    if (!wanted.empty()) {
+        write(folder / "values", values);
+        std::ofstream(folder / "names") << wanted;
+        std::ofstream(folder / "peer.py") << script;
+        // One thread: the walks beside it have one.
+        const std::string command =
+            fmt::format("OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python3 '{0}/peer.py' '{0}' {1} 2>/dev/null",
+                        folder.string(), arguments);
+        if (std::system(command.c_str()) != 0)
+            fmt::print(stderr, "scikit-image is left out: python3 cannot import it, or it failed\n");
+    }
+    for (const std::string& name : names) std::filesystem::remove(folder / (name + ".seeds"));
+    std::vector<PeerLabels> peers;
+    for (std::size_t n = 0; n < seeds.size(); ++n) {
+        auto peer = kept(folder / names[n], seeds[n].size());
+        if (!peer) break;
+        peers.push_back(std::move(*peer));
+    }
+    if (cache.empty()) std::filesystem::remove_all(own);
+    return peers;
 }
 
 }  // namespace tactus::bench

@@ -41,11 +41,14 @@ segment::VoxelGraph graph_of_seeds(const SeededCase& real, const std::vector<std
 double mean_dice(const SeededCase& real, const std::vector<std::uint8_t>& label);
 
 /// Labels by scikit-image's random_walker (beta 130, Jacobi conjugate gradients, tolerance 1e-3) on values scaled to 0
-/// to 1, and its processor time; none when python3 cannot import it.
+/// to 1, and its processor time without that of its Laplacian, which several seedings share.
 struct PeerLabels {
     std::vector<std::uint8_t> label;
     double seconds = 0.0;
 };
-std::optional<PeerLabels> peer_labels(const SeededCase& real, const std::vector<std::uint8_t>& seed);
+/// Of each seeding; fewer when python3 cannot import it or fails. `cache`: a folder that keeps what was found for the same
+/// values and seeds; empty: none.
+std::vector<PeerLabels> peer_labels(const SeededCase& real, const std::vector<std::vector<std::uint8_t>>& seeds,
+                                    const std::filesystem::path& cache);
 
 }  // namespace tactus::bench

@@ -7,6 +7,7 @@
 #include "dsp/vessel/tracker.hpp"
 #include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/vessels/narrowing_search.hpp"
 #include "tools/bench/vessels/ridge_tracker.hpp"
 #include "tools/bench/vessels/vessel_real.hpp"
 #include "tools/picture/report/straightened_picture.hpp"
@@ -26,7 +27,7 @@ using simulate::VesselCase;
 
 struct VesselBenchChoice {
     std::vector<std::string> cases;
-    int repeats = 3, volumes = 100;
+    int repeats = 3, volumes = 100, draws = 300;
     std::filesystem::path data, pictures;
     bool json = false;
 };
@@ -177,6 +178,10 @@ int bench_vessel(const VesselBenchChoice& choice) {
         picture::write_picture(vessel::straightened(one.scan, track.branches.at(0), 2.5 * one.radius), track.background,
                                track.contrast, choice.pictures / "stenosis.png");
     }
+    if (is_chosen("search")) {
+        rows.push_back(narrowing_search(choice.draws));
+        if (!choice.json) print_search(rows.back());
+    }
     if (is_chosen("noise")) {
         Json row = noise_row(choice.volumes);
         if (!choice.json)
@@ -199,10 +204,11 @@ int bench_vessel(const VesselBenchChoice& choice) {
 Action add_options(VerbOptions& verb) {
     const auto choice = std::make_shared<VesselBenchChoice>();
     verb.add("--case", choice->cases,
-             "only these: helix, ends, y, stenosis, gap, bone, noise, real; separated by commas")
+             "only these: helix, ends, y, stenosis, search, gap, bone, noise, real; separated by commas")
         .separated_by(',');
     verb.add("--repeats", choice->repeats, "noises per phantom; the worst counts").shows_default().range(1, 1000);
     verb.add("--volumes", choice->volumes, "volumes of noise").shows_default().range(1, 100000);
+    verb.add("--draws", choice->draws, "narrowings of the search").shows_default().range(1, 1000000);
     verb.add("--data", choice->data, "folder with vessels/*.nrrd (default: TACTUS_SHARED_DATA)");
     verb.add("--pictures", choice->pictures,
              "folder for pictures: a stenosis pulled straight, region and track of the real scans");

@@ -3,6 +3,7 @@
 #include "tools/study/bones/vessel.hpp"
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/vessel/track_warnings.hpp"
 #include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
@@ -85,13 +86,6 @@ const Node* narrowest(const Branch& branch) {
     return found;
 }
 
-std::string text_of(const Branch& branch, const vessel::Stenosis& stenosis) {
-    const Vec3 at = branch.nodes[stenosis.node].position * 1e3;
-    return fmt::format("narrowed by {:.0f}{} % against {:.2f} mm at {:.1f}, {:.1f}, {:.1f}{}", stenosis.percent,
-                       stenosis.error_percent > 0.0 ? fmt::format(" ± {:.0f}", stenosis.error_percent) : "",
-                       stenosis.reference_radius * 1e3, at.x, at.y, at.z, stenosis.is_uncertain ? ", uncertain" : "");
-}
-
 Json json_of(const Branch& branch) {
     double contrast = 0.0, confidence = 0.0, radius = 0.0;
     for (const Node& node : branch.nodes) {
@@ -142,24 +136,6 @@ Json json_of(const vessel::RunOff& run_off) {
     return json;
 }
 
-/// What whoever plans must know.
-std::vector<std::string> warnings_of(const study::FoundVessel& result) {
-    std::vector<std::string> warnings;
-    if (result.run_off) warnings = result.run_off->warnings;
-    for (std::size_t n = 0; n < result.found.track.branches.size(); ++n) {
-        const Branch& branch = result.found.track.branches[n];
-        if (branch.stenosis && branch.stenosis->percent >= 50.0)
-            warnings.push_back(fmt::format("branch {} is {}", n, text_of(branch, *branch.stenosis)));
-        for (const vessel::LostStretch& stretch : branch.lost())
-            warnings.push_back(
-                fmt::format("branch {} has no contrast from {:.1f} to {:.1f} mm along it, which is bridged: it may be "
-                            "closed there, "
-                            "or be another vessel",
-                            n, stretch.from * 1e3, stretch.to * 1e3));
-    }
-    return warnings;
-}
-
 Json json_of(const study::FoundVessel& result, const VesselChoice& choice) {
     const vessel::Track& track = result.found.track;
     Json json{{"found", !track.branches.empty()}, {"seed_mm", in_mm(choice.settings.seed)}};
@@ -174,7 +150,7 @@ Json json_of(const study::FoundVessel& result, const VesselChoice& choice) {
     json["branches"] = branches;
     if (result.run_off) json["run_off"] = json_of(*result.run_off);
     json["notes"] = result.notes;
-    json["warnings"] = warnings_of(result);
+    json["warnings"] = result.warnings;
     return json;
 }
 
@@ -187,7 +163,7 @@ void print_branch(std::size_t index, const Branch& branch) {
         fmt::print("  least radius {:.2f} mm at {:.1f}, {:.1f}, {:.1f}{}\n", node->radius * 1e3, node->position.x * 1e3,
                    node->position.y * 1e3, node->position.z * 1e3, node->is_radius_uncertain ? ", uncertain" : "");
     if (const auto& stenosis = branch.stenosis; stenosis && stenosis->percent >= 20.0)
-        fmt::print("  {}\n", text_of(branch, *stenosis));
+        fmt::print("  {}\n", vessel::text_of(branch, *stenosis));
     for (const vessel::LostStretch& stretch : branch.lost())
         fmt::print("  no contrast from {:.1f} to {:.1f} mm along it: bridged\n", stretch.from * 1e3, stretch.to * 1e3);
 }
@@ -200,7 +176,6 @@ void print_run_off(const vessel::RunOff& run_off) {
                    : artery.reaches_foot ? fmt::format("seen down to level {:.2f}", artery.to)
                                          : fmt::format("seen down to level {:.2f} only", artery.to));
     }
-    for (const std::string& warning : run_off.warnings) fmt::print("warning: {}\n", warning);
 }
 
 int follow(const VesselChoice& given) {
@@ -222,6 +197,7 @@ int follow(const VesselChoice& given) {
     const vessel::Track& track = result.found.track;
     if (result.straightened)
         picture::write_picture(*result.straightened, track.background, track.contrast, choice.straightened);
+    for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (choice.json) {
         fmt::print("{}\n", json_of(result, choice).dump(2));
         return track.branches.empty() ? answer_is_no : done;

@@ -5,6 +5,7 @@
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/processor_time.hpp"
+#include "dsp/vessel/track_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -60,8 +61,10 @@ FoundVessel follow_vessel(const VesselSettings& settings) {
     result.seconds = thread_seconds() - before;
     const vessel::Track& track = result.found.track;
     if (settings.leg) result.run_off = vessel::run_off(track, *settings.leg);
+    if (result.run_off) result.warnings = result.run_off->warnings;
     if (track.branches.empty()) return result;
-    for (const std::filesystem::path& path : settings.out) vessel::write_track(track, path);
+    for (const std::filesystem::path& path : settings.out) vessel::write_track(track, path, result.warnings);
+    for (const vessel::TrackWarning& warning : vessel::warnings_of(track)) result.warnings.push_back(warning.text);
     if (!settings.straightened.empty()) {
         const vessel::Branch& main = track.branches.front();
         double widest = 0.0;

@@ -31,6 +31,8 @@ struct FoundVessel {
     std::optional<vessel::RunOff> run_off;
     std::optional<vessel::Straightened> straightened;
     std::vector<std::string> notes;  ///< on how the scan was read
+    std::vector<std::string>
+        warnings;  ///< of the run-off, then of the track; also in the files that have a place for them
     double seconds = 0.0;  ///< processor time of the tracking
 };
 
