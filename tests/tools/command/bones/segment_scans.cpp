@@ -141,7 +141,7 @@ TEST_CASE("scans that cannot be segmented are refused with one line that says wh
     const Folder folder;
     write_seeds(folder);
     const WrittenVolume good = scan_of(Vec3(1.0));
-    // One that is cut, one whose samples are not compressed as it says, one without spacing, one of a single voxel layer.
+    // One that is cut, one without spacing, one of eight voxels.
     const auto damaged = [&](const std::string& name, const auto& damage) {
         write_dicom_folder(good, folder.path / name);
         std::filesystem::path first;
@@ -152,17 +152,10 @@ TEST_CASE("scans that cannot be segmented are refused with one line that says wh
         return segment(folder, name);
     };
     check_refused(folder, damaged("cut", [](const std::string& all) { return all.substr(0, all.size() / 2); }), "cut");
-    check_refused(
-        folder,
-        damaged("packed",
-                [](const std::string& all) { return replaced(all, "1.2.840.10008.1.2.1", "1.2.840.10008.1.2.5"); }),
-        "cannot be decoded");
     check_refused(folder,
                   damaged("flat",
                           [](const std::string& all) {
                               const std::string plain = "1\\1 ";
-                              const auto at = all.find("DS\x04");
-                              REQUIRE(at != std::string::npos);
                               return replaced(all, plain, "0\\0 ");
                           }),
                   "no pixel spacing");

@@ -156,11 +156,12 @@ TEST_CASE("a person leads from a DICOM folder to a plan with mouse and keyboard"
     NEEDS_PERSON(person, display)
     const Folder folder;
     write_scan(folder.path / "ct");
-    folder.write("script", watching_script("size 1000 700\n", 40.0));
+    folder.write("script", watching_script("", 25.0));
     auto done = std::async(std::launch::async, [&] {
         return on(display, folder, "segment ct --threshold 500 --paint case.seeds.json --view-script script");
     });
     REQUIRE(person.sees_window("ct - Tactus", 30.0));
+    Person::wait(2.0);
     const Eyes eyes{folder.path};
     const Spot axial = eyes.spot("axial");
     // The slice shows the bone, 70 mm wide, on 92 % of its panel; its middle is that of the bone.
