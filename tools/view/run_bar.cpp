@@ -152,7 +152,10 @@ void take_line(Workbench& bench, TakeBench& take) {
     ImGui::SameLine();
     constexpr std::size_t room = 34;
     const std::string note = take.scene_note();
-    words(note.size() > room ? note.substr(0, room) + "..." : note, tone::dim);
+    // Not within a letter.
+    std::size_t end = std::min(room, note.size());
+    while (end < note.size() && end > 0 && (static_cast<unsigned char>(note[end]) & 0xC0) == 0x80) --end;
+    words(end < note.size() ? note.substr(0, end) + "..." : note, tone::dim);
     if (note.size() > room && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", note.c_str());
     ImGui::NewLine();
 }

@@ -188,12 +188,12 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
         REQUIRE(peak);
         CHECK(peak->value > 0.5);
         std::string script;
-        for (int i = 0; i < 10; ++i) script += "frames 10\nspots spots.txt\n";
+        for (int i = 0; i < 10; ++i) script += "frames 3\nspots spots.txt\n";
         walk.start_script("view",
                           script + fmt::format("instant {:.4f}\nframes 20\nspots spots.txt\nscreenshot found.png\n"
                                                "close\n",
                                                peak->when),
-                          120.0);
+                          200.0);
         REQUIRE(walk.waits_for("takes here monday"));
         walk.keep("start");
         walk.press("takes here monday");
@@ -202,7 +202,7 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
         walk.keep("open");
         walk.person.tap("m");
         walk.keep("found");
-        const Outcome outcome = walk.end(100.0);
+        const Outcome outcome = walk.end(180.0);
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
         CHECK(walk.shows("scope 0 plot"));
