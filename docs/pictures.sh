@@ -39,7 +39,7 @@ picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --
 
 # The stages of the tutorial on reconstruction.
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" reconstruction "* ]]; then
-    "$tactus" render planning-reconstruction --seconds 20.5 --frames 41 --size 900x600 --no-legend --view-from iso \
+    "$tactus" render planning-reconstruction --seconds 21 --frames 42 --size 900x600 --no-legend --view-from iso \
         --out "$folder/reconstruction" >/dev/null
     stage=0
     for frame in 2 8 17 25 34 40; do

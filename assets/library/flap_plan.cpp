@@ -132,12 +132,15 @@ void write_script(FlapPieces& pieces, const std::vector<Vec3>& middle, const Pla
     Hand hand(pieces);
     const Vec3 front(0.0, -1.0, 0.0);
     hand.wait(0.3, "");
-    // From the stump towards the tumour, until the margin stops it; back, and round to the front.
+    const Vec3 level = glm::normalize(glm::cross(Vec3(0.0, 0.0, 1.0), wall.normal)),
+               out = glm::dot(level, front) > 0.0 ? level : -level;
+    // From the stump towards the tumour, until the margin stops it; back, and round to the front, clear of the limb.
     hand.go(0.4, wall.origin + 8.0 * mm * wall.normal);
     hand.go(0.5, wall.origin - 5.0 * mm * wall.normal);
     hand.wait(0.1, "");
     hand.go(0.3, wall.origin + 8.0 * mm * wall.normal);
-    hand.go(0.4, middle[resected] + 40.0 * mm * front);
+    hand.go(0.3, wall.origin + 8.0 * mm * wall.normal + 45.0 * mm * out);
+    hand.go(0.4, middle[resected] + 45.0 * mm * glm::normalize(middle[resected]));
     // The resected piece comes out to the front, and is laid down beside.
     hand.take(resected, middle[resected]);
     hand.carry(0.3, {});

@@ -40,7 +40,8 @@ std::vector<Plane> margin_walls(const FibulaInputs& inputs, std::span<const Vec3
 
 double OneWayWall::depth(const Vec3& place, bool is_active) noexcept {
     const double height = glm::dot(plane.normal, place - plane.origin);
-    if (!(height < 0.0)) {
+    const bool has_jumped = !(glm::length(place - before_) <= radius);
+    if (!(height < 0.0) || has_jumped) {
         holds_ = false;
     } else if (was_in_front_) {
         const double before = glm::dot(plane.normal, before_ - plane.origin);

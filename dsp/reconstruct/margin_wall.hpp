@@ -21,7 +21,8 @@ double margin_behind(const Plane& plane, std::span<const Vec3> tumour);
 std::vector<Plane> margin_walls(const FibulaInputs& inputs, std::span<const Vec3> tumour, double margin);
 
 /// A wall that holds only whoever comes through it: it begins within `radius` of its point, and then reaches as far as
-/// the plane until the point is in front of it again. A hand that came another way is free. So a plane across one limb
+/// the plane until the point is in front of it again. A hand that came another way is free, and so is
+/// one that has jumped by more than `radius` since the last call. So a plane across one limb
 /// of a jaw stops no hand at the other one.
 class OneWayWall {
 public:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/reconstruct/reconstruction.hpp"
+#include "dsp/contact/sample_surface.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/reconstruct/margin_wall.hpp"
 #include "graph/node/assets.hpp"
@@ -37,7 +38,8 @@ struct TumourMargin {
     Out<Pose> tumour_at{"of the tumour from its file: it goes with its piece", "m"};
     Asset<cases::CaseBones> plan{"the plan, whose reconstruction has the planes of the jaw and the margin"};
     Asset<bone::Bone> tumour{"its surface, in the frame of the jaw's scan"};
-    Text piece{"resected", "name of the piece that the tumour lies in"};
+    Text piece{"",
+               "name of the piece that the tumour lies in; empty: the plan's first, as 'plan reconstruct' makes it"};
     Param margin{structural, "0 mm", "0 mm", "100 mm", "between tumour and walls; 0: that of the plan"};
     Param radius{"25 mm", "1 mm", "200 mm", "a hand that passes the plane farther from the limb's axis is free"};
     Param moved{"2 mm", "0.1 mm", "100 mm", "a piece that has moved so far is out"};
@@ -49,7 +51,8 @@ struct TumourMargin {
 
     void prepare(const Setup& setup) {
         const auto& fragments = plan->plan.fragments;
-        const auto found = std::ranges::find(fragments, piece.value, &cases::PlanFragment::name);
+        const auto found = piece.value.empty() ? fragments.begin()
+                                               : std::ranges::find(fragments, piece.value, &cases::PlanFragment::name);
         if (found == fragments.end())
             setup.fail("plan '" + plan.name + "' has no piece '" + piece.value + "', in which the tumour would lie");
         piece_ = static_cast<std::size_t>(found - fragments.begin());
@@ -57,7 +60,9 @@ struct TumourMargin {
         if (!state.reconstruction)
             setup.fail("plan '" + plan.name + "' has no reconstruction: 'tactus plan reconstruct' makes one");
         std::vector<Vec3> surface;
-        for (const contact::SurfacePoint& p : tumour->points) surface.push_back(p.position);
+        const std::vector<contact::SurfacePoint> sampled =
+            tumour->points.empty() ? contact::sample_surface(tumour->distance, {}) : tumour->points;
+        for (const contact::SurfacePoint& p : sampled) surface.push_back(p.position);
         if (surface.empty()) setup.fail("the tumour '" + tumour.name + "' has no surface");
         const reconstruct::Reconstruction& all = *state.reconstruction;
         walls_.clear();

@@ -318,6 +318,8 @@ const std::map<std::string, std::string>& without_contact() {
         {"join_wrench", "puts a force and a torque together"},
         {"dial", "a torque of an angle; tests/nodes/guide drives it"},
         {"viscosity", "drag of a velocity; tests/nodes/guide drives it"},
+        {"tumour_margin",
+         "walls that hold who comes through them; tests/nodes/planning drives it on simulated devices"},
         {"vessel", "a rope that pulls; tests/nodes/planning drives it on simulated devices"},
         {"wrench_sum", "adds forces"},
         {"spring", "between two poses, without contact"},

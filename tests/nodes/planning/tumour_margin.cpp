@@ -75,6 +75,7 @@ struct Rig {
         node.asset("tumour", std::make_shared<const bone::Bone>(ball(Vec3(0.0), 6.0 * mm)));
         node.disconnect_optional();
         node.set("max_force", "50 N").feed("scene", scene);
+        node.feed("pose", Pose{Vec3(0.0, -60.0, 0.0) * mm, upright});
     }
     Vec3 at(const Vec3& place) {
         node.feed("pose", Pose{place, upright});

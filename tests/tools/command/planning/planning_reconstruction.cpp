@@ -66,7 +66,7 @@ TEST_CASE("render planning-reconstruction: every segment at its planned place, i
           "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "out", take = folder.path / "take";
-    const Outcome run = folder.tactus("render planning-reconstruction --seconds 24.5 --out " + out.string() +
+    const Outcome run = folder.tactus("render planning-reconstruction --seconds 25 --out " + out.string() +
                                       " --record " + take.string());
     INFO(run.err);
     REQUIRE(run.code == 0);
