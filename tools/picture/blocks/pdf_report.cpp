@@ -275,7 +275,8 @@ private:
             fmt::format("q {:.2f} 0 0 {:.2f} {:.2f} {:.2f} cm /I{} Do Q\n", wide, high, left, low, images_.size() - 1);
         for (const PictureText& t : over.texts) {
             const std::string shown = ansi(t.text);
-            const double size = std::max(t.size * scale, least_size), away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
+            const double size = std::max(t.size * scale, least_size),
+                         away = width_of(shown, size) * (t.anchor == 'm' ? 0.5 : 1.0);
             const double x = left + t.x * scale - (t.anchor == 's' ? 0.0 : away), y = top - t.y * scale;
             if (t.mark) square(*t.mark, x - 14.0 * scale, y, 10.0 * scale);
             text(x, y, shown, size, t.size > 13.0);
