@@ -6,6 +6,7 @@
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/flap/flap_report.hpp"
 #include "tools/picture/report/plan_page.hpp"
+#include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
 #include <fmt/format.h>
@@ -36,8 +37,9 @@ int report(const ReportChoice& choice) {
     if (!choice.pdf.empty() && flap.empty())
         throw Error(
             "--pdf: the plan has no reconstruction of a jaw at this step; the page as HTML has all of the plan");
-    file::write_whole_file(
-        out, picture::plan_page(plan, std::move(fragments), std::move(residuals), picture::html_of(flap, "flap")));
+    const std::optional<fit::RegistrationTarget> healthy = study::healthy_side(cases::state_of(plan), folder);
+    file::write_whole_file(out, picture::plan_page(plan, std::move(fragments), std::move(residuals),
+                                                   picture::html_of(flap, "flap"), healthy ? &*healthy : nullptr));
     if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, picture::pdf_of(plan.title, flap));
     file::Json written{{"report", out.string()}};
     if (!choice.pdf.empty()) written["pdf"] = choice.pdf.string();

@@ -10,6 +10,7 @@
 #include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_picture.hpp"
+#include "tools/picture/scene/surface_map.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_overlaps.hpp"
@@ -212,6 +213,35 @@ std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::Surf
     return plan_picture({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
 }
 
+std::string css_colour(const Vec3& colour) {
+    const Vec3 c = 255.0 * colour;
+    return fmt::format("rgb({:.0f},{:.0f},{:.0f})", c.x, c.y, c.z);
+}
+
+/// All fragments as planned, coloured by their distance from the healthy side.
+std::string mirror_maps(const Case& c, const fit::RegistrationTarget& healthy) {
+    constexpr double range = 3e-3;  // m, of the fullest colour
+    std::vector<display::PictureMesh> meshes;
+    for (std::size_t n = 0; n < c.meshes.size(); ++n) {
+        if (!c.is_shown(n)) continue;
+        meshes.push_back(placed(c.meshes[n], c.pose(n), Vec3(0.0)));
+        std::vector<float>& colours = meshes.back().colours;
+        for (std::size_t v = 0; v < c.meshes[n].vertices.size(); ++v) {
+            const Vec3 colour = map_colour(healthy.distance(c.pose(n).apply(c.meshes[n].vertices[v])), range);
+            for (int axis = 0; axis < 3; ++axis)
+                colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
+        }
+    }
+    return fmt::format(
+               "<h2>Distance from the healthy side</h2>\n<p class=\"small\">0 mm <span "
+               "style=\"display:inline-block;width:12rem;height:.8rem;background:linear-gradient(90deg,{},{})\"></"
+               "span> "
+               "{:g} mm or more, from the mirrored healthy side</p>\n<div class=\"two\">\n",
+               css_colour(map_colour(0.0, range)), css_colour(map_colour(range, range)), range * 1e3) +
+           plan_picture(meshes, Vec3(0.25, 1.0, -0.35), "Distance from the healthy side, from the front") +
+           plan_picture(meshes, Vec3(-0.35, -1.0, -0.3), "Distance from the healthy side, from behind") + "</div>\n";
+}
+
 struct Gaps {
     std::string html;
     std::vector<std::string> warnings;  ///< of fragments that lie in each other
@@ -321,7 +351,8 @@ std::string mirror(const Case& c) {
 }  // namespace
 
 std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy, const std::string& first) {
+                      std::vector<std::optional<double>> to_healthy, const std::string& first,
+                      const fit::RegistrationTarget* healthy) {
     Case c;
     c.plan = plan;
     c.state = cases::state_of(c.plan);
@@ -334,7 +365,7 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
     std::vector<std::string> overlaps;
     try {
         Gaps found = gaps(c);
-        pages = pictures(c) + found.html;
+        pages = pictures(c) + found.html + (healthy ? mirror_maps(c, *healthy) : "");
         overlaps = std::move(found.warnings);
     } catch (const Error& error) {
         throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
