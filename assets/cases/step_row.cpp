@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace tactus::cases {
 
@@ -23,6 +25,14 @@ int whole(double value, double low, double high, const char* what) {
     if (!(value >= low && value <= high) || value != std::floor(value))
         throw Error(fmt::format("steps of the run: {} is not a valid {}", value, what));
     return static_cast<int>(value);
+}
+
+/// "alternative 2", or the next free number.
+std::string free_alternative_name(const CasePlan& plan) {
+    for (std::size_t n = plan.alternatives.size() + 1;; ++n) {
+        std::string name = fmt::format("alternative {}", n);
+        if (std::ranges::find(plan.alternatives, name, &PlanAlternative::name) == plan.alternatives.end()) return name;
+    }
 }
 
 PlanStep step_of(const CasePlan& plan, const PlanState& state, std::span<const StepRow> rows, double second) {
@@ -75,6 +85,29 @@ void RunSteps::go(int head) {
     plan_.place() = {head, tip};
 }
 
+void RunSteps::switch_to(double place) {
+    const auto count = plan_.alternatives.size();
+    const int n = whole(place, 0.0, static_cast<double>(count), "alternative");
+    if (n == static_cast<int>(count))
+        plan_.alternatives.push_back({free_alternative_name(plan_), fit::after_step(plan_.place().head)});
+    plan_.current = n;
+    state_ = state_of(plan_);
+}
+
+void RunSteps::drop(double place) {
+    const int n = whole(place, 0.0, static_cast<double>(plan_.alternatives.size()) - 1.0, "alternative");
+    if (n == plan_.current) throw Error("steps of the run: the current alternative is not dropped");
+    dropped_ = plan_.alternatives[static_cast<std::size_t>(n)];
+    plan_.alternatives.erase(plan_.alternatives.begin() + n);
+    plan_.current -= n < plan_.current;
+}
+
+void RunSteps::undrop() {
+    if (!dropped_) return;
+    plan_.alternatives.push_back(*std::move(dropped_));
+    dropped_.reset();
+}
+
 void RunSteps::finish_step(double second) {
     // Successors of a step that is left out follow its predecessor.
     numbers_.push_back(plan_.place().head);
@@ -88,6 +121,9 @@ void RunSteps::add(const StepRow& row, double second) {
     // A step with a lost row is dropped.
     if (!rows_.empty() && (row.step != rows_.back().step || row.left != rows_.back().left - 1.0)) rows_.clear();
     if (row.kind == row_goes_to) return go(head_of(row.after, numbers_.size()));
+    if (row.kind == row_alternative) return switch_to(row.after);
+    if (row.kind == row_drop) return drop(row.after);
+    if (row.kind == row_undrop) return undrop();
     const auto next = static_cast<double>(numbers_.size());
     numbers_.resize(static_cast<std::size_t>(whole(row.step, next, next + most_lost, "number of the next step")),
                     plan_.place().head);

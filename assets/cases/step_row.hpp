@@ -5,6 +5,7 @@
 #include "assets/cases/case_plan.hpp"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,9 @@ namespace tactus::cases {
 
 /// Row kind for a move in the history (undo, redo, alternative), which is not a step.
 inline constexpr int row_goes_to = 100;
+/// Row kinds for alternatives; `after` is a place in the plan's list of alternatives. To switch to one, or with the
+/// number of alternatives to begin another at the current state; to drop one; to bring back the one dropped last.
+inline constexpr int row_alternative = 101, row_drop = 102, row_undrop = 103;
 
 /// One fragment of one step. The rows of a step are consecutive.
 struct StepRow {
@@ -52,6 +56,9 @@ public:
 
 private:
     void go(int head);
+    void switch_to(double place);
+    void drop(double place);
+    void undrop();
     int head_of(double number, std::size_t count) const;
     void finish_step(double second);
 
@@ -59,6 +66,7 @@ private:
     PlanState state_;  // at the head
     std::vector<int> numbers_;  // step numbers in the plan, by step number of the run
     std::vector<StepRow> rows_;  // rows of the incomplete step
+    std::optional<PlanAlternative> dropped_;
 };
 
 }  // namespace tactus::cases

@@ -41,9 +41,23 @@ void set_clip(const GlProgram& program, const Picture& picture, const DrawnMesh&
     glUniform4fv(program.uniform("keep"), 1, glm::value_ptr(plane));
 }
 
+/// From a pixel of the target (x, y, 1) to the point of the clip plane behind it, in homogeneous coordinates of the
+/// world. A line from the eye e through q meets the plane P at e (P·q) - q (P·e), which is linear in q.
+glm::dmat3x4 onto_plane(const Plane& clip, const DrawnView& view) {
+    const Mat4 from_clip = glm::inverse(view.projection.to_clip * view.projection.to_eye);
+    // At the far plane; x and y of clip space are linear in the pixel.
+    const double wide = 2.0 / view.width, high = 2.0 / view.height;
+    const glm::dmat3x4 far{from_clip * glm::dvec4(wide, 0.0, 0.0, 0.0), from_clip * glm::dvec4(0.0, high, 0.0, 0.0),
+                           from_clip * glm::dvec4(-1.0 - wide * view.x, -1.0 - high * view.y, 1.0, 1.0)};
+    const glm::dvec4 eye = glm::inverse(view.projection.to_eye) * glm::dvec4(0.0, 0.0, 0.0, 1.0);
+    const glm::dvec4 plane(clip.normal, -glm::dot(clip.normal, clip.point));
+    return (glm::outerProduct(eye, plane) - glm::dot(plane, eye) * Mat4(1.0)) * far;
+}
+
 std::string with_lighting(const char* shader) {
     return fmt::format("#version 330 core\n{}{}", scene_shaders::lighting, shader);
 }
+std::string with_section(const char* shader) { return std::string(scene_shaders::section_colour) + shader; }
 
 void check_version() {
     const GLubyte* const text = glGetString(GL_VERSION);
@@ -61,8 +75,10 @@ void check_version() {
 
 struct SceneRenderer::Programs {
     GlProgram background{scene_shaders::background_vertex, scene_shaders::background_fragment};
-    GlProgram mesh{scene_shaders::mesh_vertex, with_lighting(scene_shaders::mesh_fragment).c_str()};
-    GlProgram quick_mesh{with_lighting(scene_shaders::quick_mesh_vertex).c_str(), scene_shaders::quick_mesh_fragment};
+    GlProgram mesh{scene_shaders::mesh_vertex,
+                   with_lighting(with_section(scene_shaders::mesh_fragment).c_str()).c_str()};
+    GlProgram quick_mesh{with_lighting(scene_shaders::quick_mesh_vertex).c_str(),
+                         ("#version 330 core" + with_section(scene_shaders::quick_mesh_fragment)).c_str()};
     GlProgram points{scene_shaders::point_vertex, scene_shaders::point_fragment};
     GlProgram pick{scene_shaders::mesh_vertex, scene_shaders::pick_fragment};
     GLuint no_attributes = 0, point_array = 0, point_buffer = 0, pick_frame = 0, pick_buffers[2] = {};
@@ -117,11 +133,27 @@ std::vector<DrawnView> views_of(std::span<const ScreenView> eyes, int width, int
 SceneRenderer::SceneRenderer() {
     check_version();
     programs_ = std::make_unique<Programs>();
+    scans_ = std::make_unique<ScanPool>();
     pool_ = std::make_unique<MeshPool>();
     is_software_ = is_software_driver();
 }
 
 SceneRenderer::~SceneRenderer() = default;
+
+void SceneRenderer::set_section(const GlProgram& program, const Picture& picture, const DrawnView& view,
+                                const DrawnMesh& drawn) const {
+    const bool is_cut = picture.clip && drawn.is_clipped, has_scan = is_cut && drawn.scan >= 0;
+    glUniform1i(program.uniform("is_cut"), is_cut ? 1 : 0);
+    glUniform1i(program.uniform("has_scan"), has_scan ? 1 : 0);
+    scans_->bind(has_scan ? drawn.scan : -1);
+    if (!has_scan) return;
+    const glm::dmat3x4 to_scan = scans_->to_texture(drawn.scan) * matrix_of(drawn.to_scan * drawn.pose.inverse()) *
+                                 onto_plane(*picture.clip, view);
+    // Only directions count; small numbers keep their digits in single precision.
+    const double size = std::abs(to_scan[2][3]) > 0.0 ? std::abs(to_scan[2][3]) : 1.0;
+    const glm::mat3x4 single(to_scan / size);
+    glUniformMatrix3x4fv(program.uniform("to_scan"), 1, GL_FALSE, glm::value_ptr(single));
+}
 
 void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, bool see_through) {
     const Projection& projection = view.projection;
@@ -137,7 +169,9 @@ void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, b
         set(program.uniform("to_eye"), to_eye);
         glUniform1f(program.uniform("opacity"), static_cast<float>(drawn.opacity));
         set_clip(program, picture, drawn);
-        glUniform1i(program.uniform("is_cut"), picture.clip && drawn.is_clipped ? 1 : 0);
+        set_section(program, picture, view, drawn);
+        glUniform4f(program.uniform("tint"), static_cast<float>(drawn.tint.x), static_cast<float>(drawn.tint.y),
+                    static_cast<float>(drawn.tint.z), static_cast<float>(drawn.tinted));
         const auto draw_mesh = [&] {
             drawn_triangles_ +=
                 pool_->draw(drawn.mesh, projection.to_clip * to_eye, view.width, view.height, picture.grain);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "devices/display/mesh_pool.hpp"
+#include "devices/display/scan_pool.hpp"
 #include "dsp/display/camera.hpp"
 #include "dsp/display/screen.hpp"
 
@@ -16,6 +17,8 @@
 
 namespace tactus::display {
 
+class GlProgram;
+
 /// A mesh with its pose. World frame: LPS, m.
 struct DrawnMesh {
     MeshPool::Mesh mesh = 0;
@@ -24,6 +27,10 @@ struct DrawnMesh {
     bool is_clipped = true;  ///< affected by the picture's clip plane
     bool is_closed = false;  ///< never seen from inside: back faces are not drawn
     bool shines_through = false;  ///< faintly visible when occluded: arrows, axes
+    ScanPool::Scan scan = -1;  ///< what a section of the mesh shows; -1: the picture's colour of a section
+    Pose to_scan = {};  ///< from the frame of the mesh to that of the scan's grid
+    Vec3 tint{0.0};  ///< sRGB that replaces the colours of the surface by the share `tinted`, 0 to 1
+    double tinted = 0.0;
 };
 
 /// Level-of-detail cell size while something moves, pixels: the outline is off by one pixel at most.
@@ -35,7 +42,7 @@ struct Picture {
     std::vector<geometry::SurfaceVertex>
         points;  ///< dots drawn on top of surfaces less than 2 mm in front of them; normals unused
     double point_size = 7.0;  ///< pixels
-    std::optional<Plane> clip;  ///< the positive side is removed; cut bodies show a flat section
+    std::optional<Plane> clip;  ///< the positive side is removed; cut bodies show a flat section, or their scan
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
     Vec3 sky{0.96, 0.97, 0.98}, ground{0.78, 0.80, 0.83};  ///< sRGB of the background, above and below
     Bounds bounds;  ///< of all meshes
@@ -78,6 +85,7 @@ public:
     bool is_software() const { return is_software_; }
 
     MeshPool& meshes() { return *pool_; }
+    ScanPool& scans() { return *scans_; }
 
     /// Clears and draws every view. Skips meshes with a pose that is not finite. Afterwards depth test, blending,
     /// scissor and clipping are off, and the colour mask is complete.
@@ -91,11 +99,14 @@ public:
 private:
     struct Programs;
     void draw_meshes(const Picture& picture, const DrawnView& view, bool see_through);
+    void set_section(const GlProgram& program, const Picture& picture, const DrawnView& view,
+                     const DrawnMesh& drawn) const;
     void draw_hidden(const Picture& picture, const DrawnView& view);
     void draw_points(const Picture& picture, const Projection& projection);
 
     std::unique_ptr<Programs> programs_;
     std::unique_ptr<MeshPool> pool_;
+    std::unique_ptr<ScanPool> scans_;
     std::size_t drawn_triangles_ = 0;
     bool is_software_ = false;
 };

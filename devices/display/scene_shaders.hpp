@@ -53,23 +53,36 @@ vec3 lit(vec3 n, vec3 v, vec3 surface) {
     return pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2));
 })";
 
-// A section shows the back faces of the far wall in a flat colour.
+// A section shows the back faces of the far wall: in a flat colour, or in the grey of the scan where the line of sight
+// crosses the plane. `to_scan` leads from a pixel to that place in the scan.
+inline constexpr const char* section_colour = R"(
+uniform vec3 section;
+uniform bool is_cut, has_scan;
+uniform mat3x4 to_scan;
+uniform sampler3D scan;
+vec3 cut_colour() {
+    if (!has_scan) return section;
+    vec4 at = to_scan * vec3(gl_FragCoord.xy, 1.0);
+    vec3 place = at.xyz / at.w;
+    if (any(lessThan(place, vec3(0.0))) || any(greaterThan(place, vec3(1.0)))) return section;
+    return vec3(texture(scan, place).r);
+})";
+
 inline constexpr const char* mesh_fragment = R"(
 in vec3 eye_position, eye_normal;
 in vec4 surface;
 uniform float opacity;
-uniform vec3 section;
-uniform bool is_cut;
+uniform vec4 tint;
 out vec4 colour;
 void main() {
     if (is_cut && !gl_FrontFacing) {
-        colour = vec4(section, opacity * surface.a);
+        colour = vec4(cut_colour(), opacity * surface.a);
         return;
     }
     vec3 n = normalize(eye_normal);
     // The face normal decides which side is visible; an interpolated normal may point away at the rim.
     if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
-    colour = vec4(lit(n, normalize(-eye_position), surface.rgb), opacity * surface.a);
+    colour = vec4(lit(n, normalize(-eye_position), mix(surface.rgb, tint.rgb, tint.a)), opacity * surface.a);
 })";
 
 // Both sides lit at the vertices: on a processor a triangle of a few pixels costs much less so.
@@ -78,26 +91,25 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 colour;
 uniform mat4 to_eye, to_clip;
-uniform vec4 keep;
+uniform vec4 keep, tint;
 out vec4 front;
 out vec3 back;
 void main() {
     vec4 at = to_eye * vec4(position, 1.0);
     vec3 n = normalize(mat3(to_eye) * normal), v = normalize(-at.xyz);
-    front = vec4(lit(n, v, colour.rgb), colour.a);
-    back = lit(-n, v, colour.rgb);
+    vec3 surface = mix(colour.rgb, tint.rgb, tint.a);
+    front = vec4(lit(n, v, surface), colour.a);
+    back = lit(-n, v, surface);
     gl_ClipDistance[0] = dot(keep, vec4(position, 1.0));
     gl_Position = to_clip * at;
 })";
 
-inline constexpr const char* quick_mesh_fragment = R"(#version 330 core
+inline constexpr const char* quick_mesh_fragment = R"(
 in vec4 front;
 in vec3 back;
 uniform float opacity;
-uniform vec3 section;
-uniform bool is_cut;
 out vec4 colour;
-void main() { colour = vec4(gl_FrontFacing ? front.rgb : is_cut ? section : back, opacity * front.a); })";
+void main() { colour = vec4(gl_FrontFacing ? front.rgb : is_cut ? cut_colour() : back, opacity * front.a); })";
 
 // Depth is biased towards the viewer, so that dots on a surface stay visible.
 inline constexpr const char* point_vertex = R"(#version 330 core

@@ -44,7 +44,7 @@ enum class VisualKind : std::uint8_t {
     spring,  ///< between `hand` and `pose`
     mark,  ///< `radius` about `pose`, with the number `value` beside it in the legend, while it is above `length`
     task,  ///< the planned cut of the task `asset`, its depth stop and what it spares
-    asset_bone,  ///< the bone `asset` at `pose`; without one in its own frame
+    asset_bone,  ///< the bone `asset` at `pose`; without one in its own frame. With `value`: density in that output's cuts
 };
 
 /// One thing that a node shows. Strings name ports, parameters or assets of the node, "" none; an input stands for the

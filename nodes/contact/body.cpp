@@ -2,10 +2,12 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/visual.hpp"
 #include "nodes/contact/body_parts.hpp"
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 namespace tactus::nodes {
 
@@ -20,6 +22,8 @@ struct Body {
     Param spacing{structural, "0 mm", "0 mm", "20 mm",
                   "of the points; 0: the points in the file, or 0.5 mm if it has none"};
     Flag triangles{false, "also make the surface triangles, for point_proxy and sphere_proxy"};
+
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::asset_bone, .value = "body", .asset = "bone"}}; }
 
     void prepare(const Setup& setup) {
         try {
@@ -63,5 +67,6 @@ private:
 };
 
 TACTUS_NODE(Body, body, count, bone, spacing, triangles)
+TACTUS_VISUALS(Body)
 
 }  // namespace tactus::nodes

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::nodes {
@@ -54,10 +56,19 @@ struct CaseScene {
     Param loose{"8 mm", "0.1 mm", "100 mm",
                 "a settled body is free again when the hand moves it farther than this from where it settled"};
 
-    std::vector<Visual> visuals() const { return {{.kind = VisualKind::scene, .value = "scene", .asset = "plan"}}; }
+    std::vector<Visual> visuals() const {
+        return {{.kind = VisualKind::scene, .value = "scene", .asset = "plan"},
+                {.kind = VisualKind::asset_bone, .value = "scene", .asset = "plan"}};
+    }
 
     Param choose{discrete, "-1", "-1", "15",
                  "place of the body that join, split, lock and hide mean; -1: the one that was held last"};
+    Param alternative{discrete, "-1", "-1", "31",
+                      "changed: go to this alternative of the plan, the first is 0; their number: begin another one at "
+                      "the current state; -1: stay"};
+    Param drop{discrete, "-1", "-2", "31",
+               "changed: drop this alternative, which must not be the current one; its steps stay; -2: bring the one "
+               "dropped last back; -1: none"};
     Param with{discrete, "-1", "-1", "15",
                "place of the body that join puts together with it; -1: the partner of the fit"};
 
@@ -66,7 +77,7 @@ struct CaseScene {
             setup.fail("plan '" + plan.name +
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
-        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_}) notice->attach(setup);
+        for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_way_}) notice->attach(setup);
         parts_.clear();
         for (const bone::Bone& bone : plan->bones) parts_.push_back(body_of(bone));
         now_ = std::make_unique<fit::Arrangement>(cases::state_of(plan->plan).arrangement);
@@ -76,6 +87,17 @@ struct CaseScene {
             tree_->put(n, plan->plan.steps[static_cast<std::size_t>(n)].before, from.arrangement, to.arrangement);
         });
         tree_->stand(plan->plan.place());
+        ways_.clear();
+        ways_.reserve(most_ways);
+        for (const cases::PlanAlternative& way : plan->plan.alternatives)
+            if (ways_.size() < most_ways) ways_.push_back(way.place);
+        if (plan->plan.alternatives.size() > most_ways)
+            setup.fail("plan '" + plan.name +
+                       "' has more than 32 alternatives; remove some: 'tactus plan alternative'");
+        way_ = static_cast<std::size_t>(plan->plan.current);
+        dropped_.reset();
+        wanted_way_ = alternative;
+        wanted_drop_ = drop;
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
             stream_ = &setup.host->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
@@ -87,6 +109,7 @@ struct CaseScene {
     void process(const Tick& tick) noexcept {
         follow(tick);
         press(tick);
+        choose_way(tick);
         publish();
     }
 
@@ -182,6 +205,54 @@ private:
             cases::StepRow row = next(static_cast<double>(cases::row_goes_to));
             write(tick, row);
         }
+    }
+
+    /// Whether a parameter was set to something else; it is then as it was set.
+    static bool is_changed(const Param& param, double& was) noexcept {
+        return param != std::exchange(was, static_cast<double>(param)) && param != -1.0;
+    }
+
+    void choose_way(const Tick& tick) noexcept {
+        const bool goes = is_changed(alternative, wanted_way_), drops = is_changed(drop, wanted_drop_);
+        if (!goes && !drops) return;
+        if (holding_) return held_back_.tell();
+        if (goes) go_to_way(tick, static_cast<std::size_t>(alternative));
+        if (drops) drop_way(tick, drop);
+    }
+
+    void go_to_way(const Tick& tick, std::size_t to) noexcept {
+        if (to > ways_.size() || to >= most_ways || to == way_) return no_way_.tell();
+        ways_[way_] = tree_->place();
+        const bool begins = to == ways_.size();
+        if (begins) ways_.push_back(fit::after_step(tree_->head()));
+        if (!tree_->go(ways_[to], *now_)) {
+            if (begins) ways_.pop_back();
+            return no_way_.tell();
+        }
+        way_ = to;
+        *kept_ = *now_;
+        arrange_scene();
+        tell_way(tick, cases::row_alternative, static_cast<double>(to));
+    }
+
+    void drop_way(const Tick& tick, double number) noexcept {
+        if (number < 0.0) {
+            if (!dropped_ || ways_.size() >= most_ways) return no_way_.tell();
+            ways_.push_back(*std::exchange(dropped_, std::nullopt));
+            return tell_way(tick, cases::row_undrop, -1.0);
+        }
+        const auto place = static_cast<std::size_t>(number);
+        if (place >= ways_.size() || place == way_) return no_way_.tell();
+        dropped_ = ways_[place];
+        ways_.erase(ways_.begin() + static_cast<std::ptrdiff_t>(place));
+        way_ -= place < way_ ? 1 : 0;
+        tell_way(tick, cases::row_drop, number);
+    }
+
+    void tell_way(const Tick& tick, int kind, double place) noexcept {
+        cases::StepRow row = next(static_cast<double>(kind));
+        row.after = place;
+        write(tick, row);
     }
 
     /// True when there is a fit for the held body.
@@ -333,6 +404,11 @@ private:
         settled = settled_;
     }
 
+    static constexpr std::size_t most_ways = 32;
+    std::vector<fit::HistoryPlace> ways_;  // of the alternatives; the current one's is in the tree
+    std::size_t way_ = 0;
+    std::optional<fit::HistoryPlace> dropped_;
+    double wanted_way_ = -1.0, wanted_drop_ = -1.0;
     std::vector<std::shared_ptr<const BodyParts>> parts_;
     std::unique_ptr<fit::Arrangement> kept_, now_;  // after the last step; with what the hand has done since
     std::unique_ptr<fit::StepTree> tree_;
@@ -347,12 +423,13 @@ private:
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};
     Notice no_later_{"there is no step to redo"};
+    Notice no_way_{"there is no such alternative to go to, to drop or to bring back"};
     Notice no_fit_{"not settled: the held fragment has no fit where it is"};
 };
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,
             overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose,
-            choose, with)
+            choose, with, alternative, drop)
 TACTUS_VISUALS(CaseScene)
 
 }  // namespace tactus::nodes

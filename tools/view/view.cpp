@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/view.hpp"
 
+#include "assets/cases/plan_file.hpp"
 #include "devices/haptic/window_hand.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/exit_code.hpp"
@@ -152,10 +153,19 @@ private:
             if (wanted.new_patch) return open_untitled();
             if (fs::exists(wanted.open / "take.json")) return open_take(wanted.open);
             RunChoice choice = choice_;
+            if (!wanted.again_with.empty()) {
+                const std::string asset = wanted.again_with.substr(0, wanted.again_with.find('=') + 1);
+                std::erase_if(choice.overrides.assets,
+                              [&](const std::string& known) { return known.starts_with(asset); });
+                choice.overrides.assets.push_back(wanted.again_with);
+                choice.record.clear();
+                return open_patch(choice);
+            }
             choice.patch = wanted.open.string();
             choice.overrides = {};
             if (kind_of_file(wanted.open) == FileKind::plan) {
-                choice.patch = "planning-trauma";
+                const cases::CasePlan plan = cases::load_case_plan(wanted.open);
+                choice.patch = cases::state_of(plan).reconstruction ? "planning-reconstruction" : "planning-trauma";
                 choice.overrides.assets = {"case=" + fs::absolute(wanted.open).string()};
             }
             choice.record.clear();

@@ -20,6 +20,7 @@ bool same(const Arrangement::Group& a, const Arrangement::Group& b) noexcept {
 
 StepTree::StepTree(std::size_t fragments, std::size_t known, std::size_t most) : fragments_(fragments), most_(most) {
     before_.reserve(known + most);
+    way_.reserve(known + most);
     steps_.reserve(known + most);
     before_.resize(known, -1);
     steps_.resize(known);
@@ -94,6 +95,35 @@ bool StepTree::redo(Arrangement& now) noexcept {
     if (to.head == place_.head) return false;
     restore(steps_[static_cast<std::size_t>(to.head)], now, [](const auto& change) { return change.to; });
     place_ = to;
+    return true;
+}
+
+HistoryPlace StepTree::place() const noexcept { return {head(), place_.tip < 0 ? root_ : place_.tip + first_}; }
+
+bool StepTree::go(HistoryPlace to, Arrangement& now) noexcept {
+    const auto index_of = [this](int number, int& index) {
+        index = number == root_ ? -1 : number - first_;
+        return number == root_ || (index >= 0 && index < static_cast<int>(steps_.size()));
+    };
+    HistoryPlace at;
+    if (!index_of(to.head, at.head) || !index_of(to.tip, at.tip) || !is_on_way(before_, at.head, at.tip)) return false;
+    way_.clear();
+    int here = place_.head, there = at.head;
+    // A step comes after its predecessor: the later of the two is not in common.
+    while (here != there) {
+        if (there > here) {
+            way_.push_back(there);
+            there = before_[static_cast<std::size_t>(there)];
+            continue;
+        }
+        restore(steps_[static_cast<std::size_t>(here)], now, [](const auto& change) { return change.from; });
+        here = before_[static_cast<std::size_t>(here)];
+    }
+    while (!way_.empty()) {
+        restore(steps_[static_cast<std::size_t>(way_.back())], now, [](const auto& change) { return change.to; });
+        way_.pop_back();
+    }
+    place_ = at;
     return true;
 }
 

@@ -28,6 +28,12 @@ public:
     bool undo(Arrangement& now) noexcept;
     bool redo(Arrangement& now) noexcept;
 
+    /// The current place, as numbers of steps.
+    HistoryPlace place() const noexcept;
+    /// Goes to another place, by undoing back to the last step in common and doing the others; in time proportional to
+    /// their number. `now`: the arrangement at the head. False, without a change, for a step that is no longer stored.
+    bool go(HistoryPlace to, Arrangement& now) noexcept;
+
     int count() const noexcept { return first_ + static_cast<int>(steps_.size()); }
     /// Number of the last step done, -1: none.
     int head() const noexcept { return place_.head < 0 ? root_ : place_.head + first_; }
@@ -51,6 +57,7 @@ private:
     void restore(const Step& step, Arrangement& now, Side side) const noexcept;
 
     std::vector<int> before_;  // indices within this object, see history.hpp
+    std::vector<int> way_;  // of `go`
     std::vector<Step> steps_;
     std::vector<Change<Arrangement::Place>> places_;
     std::vector<Change<Arrangement::Group>> groups_;

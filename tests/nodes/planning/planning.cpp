@@ -268,3 +268,58 @@ TEST_CASE("buttons mean the fragments that are chosen, and without a choice the 
     session.node.run(500);
     CHECK(session.scene().objects[2].unit == -1);
 }
+
+TEST_CASE("a run begins an alternative, goes between them, drops one and brings it back, and its plan agrees") {
+    Session session;
+    session.release = 100;
+    session.run(200);
+    NodeHarness& node = session.node;
+    const Pose first = session.file_pose(1);
+    REQUIRE(off(first, beside) < 1e-9);
+    const auto go = [&](const char* param, const char* to) {
+        node.set(param, to);
+        node.run(20);
+    };
+    const auto agrees = [&](int current, std::size_t count) {
+        const cases::CasePlan plan = session.plan();
+        CHECK(plan.current == current);
+        CHECK(plan.alternatives.size() == count);
+        const cases::PlanState state = cases::state_of(plan);
+        for (int n = 0; n < 3; ++n) CHECK(off(session.file_pose(n), state.arrangement.pose(n)) < 1e-9);
+        CHECK(node.last<double>("steps") ==
+              static_cast<double>(fit::steps_to(plan.before(), plan.place().head).size()));
+    };
+    agrees(0, 1);
+    // A new one begins where the plan is; undo in it leaves the first as it was.
+    go("alternative", "1");
+    agrees(1, 2);
+    CHECK(session.plan().alternatives[1].name == "alternative 2");
+    session.undo = 260;
+    node.run(100);
+    const Pose second = session.file_pose(1);
+    REQUIRE(off(second, first) > 1e-4);
+    agrees(1, 2);
+    go("alternative", "0");
+    CHECK(same_bits(session.file_pose(1), first));
+    agrees(0, 2);
+    go("alternative", "1");
+    CHECK(same_bits(session.file_pose(1), second));
+    agrees(1, 2);
+    go("drop", "0");
+    agrees(0, 1);
+    go("drop", "-2");
+    agrees(0, 2);
+    go("alternative", "-1");
+    go("alternative", "1");
+    CHECK(same_bits(session.file_pose(1), first));
+    agrees(1, 2);
+    // What is not there is refused, and said.
+    take_notices(node.host);
+    go("alternative", "7");
+    agrees(1, 2);
+    go("drop", "1");
+    agrees(1, 2);
+    const auto told = take_notices(node.host);
+    REQUIRE_FALSE(told.empty());
+    CHECK(told[0].find("no such alternative") != std::string::npos);
+}

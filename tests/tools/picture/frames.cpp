@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of the library's patches, as `render --frames` makes them.
+#include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include "dsp/display/camera.hpp"
@@ -141,6 +142,57 @@ TEST_CASE("vessels are in the picture, artery and vein in their colours") {
     CHECK(like(picture::scene_colours::vein_colour) > 12);
 }
 
+TEST_CASE("a map of gaps is in the picture of a plan, full at its range") {
+    if (!can_render()) return;
+    // 0.5 mm apart.
+    const Folder folder;
+    folder.write("a.stl", box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0)));
+    folder.write("b.stl", box_stl(Vec3(-4.0, 0.0, 14.5), Vec3(6.0, 12.0, 20.0)));
+    const std::string plan = (folder.path / "case.plan.json").string();
+    REQUIRE(folder
+                .tactus("plan new " + plan + " " + (folder.path / "a.stl").string() + " " +
+                        (folder.path / "b.stl").string())
+                .code == 0);
+    folder.write("still.toml",
+                 "[assets]\ncase = \"case.plan.json\"\n[nodes.case]\ntype = \"case_scene\"\nrate = \"1 kHz\"\n"
+                 "plan = \"case\"\n");
+    const auto red = [&](const std::string& name, const std::string& options) {
+        const Outcome outcome =
+            folder.tactus("render " + (folder.path / "still.toml").string() +
+                          " --seconds 0.05 --frames 1 --size 640x400 --view-from iso --no-legend --out " +
+                          (folder.path / name).string() + " " + options);
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const Pixels seen(folder.path / name / "frame_0001.png");
+        int found = 0;
+        for (std::size_t at = 0; at + 2 < seen.rgb.size(); at += 3)
+            found += seen.rgb[at] > 90 && seen.rgb[at] > 2 * seen.rgb[at + 1] && seen.rgb[at] > 2 * seen.rgb[at + 2];
+        return found;
+    };
+    // The upper box leaves a part of the lower one's top free, which is seen, and faces nothing.
+    CHECK(red("plain", "") == 0);
+    CHECK(red("map", "--map gaps --map-range \"0.5 mm\" --clip \"z=14.2 mm\"") > 300);
+    CHECK(red("wide", "--map gaps --map-range \"50 mm\" --clip \"z=14.2 mm\"") == 0);
+}
+
+TEST_CASE("an oblique section of a body shows its density in grey") {
+    if (!can_render()) return;
+    const Folder folder;
+    const auto grey = [&](const std::string& name, const std::string& options) {
+        const Outcome outcome = folder.tactus(
+            "render fragments --seconds 0.05 --frames 1 --size 640x400 --view-from iso --no-legend --out " +
+            (folder.path / name).string() + " " + options);
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const Pixels seen(folder.path / name / "frame_0001.png");
+        int found = 0;
+        for (std::size_t at = 0; at + 2 < seen.rgb.size(); at += 3)
+            found += seen.rgb[at] == seen.rgb[at + 1] && seen.rgb[at] == seen.rgb[at + 2] && seen.rgb[at] < 253;
+        return found;
+    };
+    CHECK(grey("cut", "--clip=0.3,-1,0.2") > grey("whole", "") + 2000);
+}
+
 TEST_CASE("frames come at even times, whole, and do not depend on threads", "[slow]") {
     if (!can_render()) return;
     const Folder folder;
@@ -189,6 +241,11 @@ TEST_CASE("what a picture cannot be made of is said in one line", "[slow]") {
     CHECK(error("--view-from front").find("--frames") != std::string::npos);
     if (!can_render()) return;
     CHECK(error("--frames 1 --clip up").find("axis") != std::string::npos);
+    for (const char* clip : {"0,0,0", "1,1", "1,1,1,1", "1,nan,0", "1,1,0=5 kg", "inf,0,0"})
+        CHECK(error(std::string("--frames 1 --clip \"") + clip + "\"").size() > 10);
+    CHECK(error("--frames 1 --map holes").find("gaps or mirror") != std::string::npos);
+    CHECK(error("--frames 1 --map gaps").find("case_scene") != std::string::npos);
+    CHECK(error("--frames 1 --map gaps --map-range \"-1 mm\"").find("--map-range") != std::string::npos);
     CHECK(error("--frames 1 --head hand.nose").find("hand.nose") != std::string::npos);
     CHECK(error("--frames 1 --size 9000x10").find("8192") != std::string::npos);
     // A machine whose graphics are not there.

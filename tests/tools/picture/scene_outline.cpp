@@ -152,3 +152,18 @@ TEST_CASE("a node that declares nothing shows nothing, whatever its ports are ca
             type->destroy(node);
         }
 }
+
+TEST_CASE("sections know the density inside bodies, because their nodes name the bone or the plan") {
+    const SceneOutline fragments = outline_in_library("fragments");
+    REQUIRE(fragments.scans.size() == 2);
+    CHECK(fragments.scans[0].port == "still.body");
+    CHECK(fragments.scans[1].port == "moving.body");
+    CHECK(fragments.scans[0].path.find(".vdb") != std::string::npos);
+    const SceneOutline plan = outline_in_library("planning-trauma");
+    REQUIRE(plan.scans.size() == 1);
+    CHECK(plan.scans[0].port == "case.scene");
+    CHECK(plan.scans[0].path == plan.scenes.at(0).plan);
+    // What is drawn is drawn once.
+    CHECK(fragments.still_bones.empty());
+    CHECK(plan.still_bones.empty());
+}

@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/fit/gap.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
@@ -101,6 +102,83 @@ TEST_CASE("a map of gaps has on a face what the plan's gap says, and nothing whe
     REQUIRE(boxes.folder.tactus("plan hide " + boxes.plan + " b").code == 0);
     CHECK(std::isinf(boxes.on_first(boxes.map(SurfaceMap::Kind::gaps), 10.0 * mm).first));
     CHECK_THROWS_AS(boxes.map(SurfaceMap::Kind::healthy), Error);
+}
+
+TEST_CASE("of several neighbours an overlap is shown, the deepest one, and without one the smallest gap") {
+    const Folder folder;
+    // The face of the first box at x = 10 is 2 mm inside the second and 0.5 mm before the third; that at x = 0 is
+    // 1 mm from the fourth and 0.4 mm from the fifth; those of the others are as the formula says.
+    const std::pair<Vec3, Vec3> all[] = {{Vec3(0.0), Vec3(10.0, 12.0, 14.0)},
+                                         {Vec3(8.0, 0.0, 0.0), Vec3(20.0, 12.0, 14.0)},
+                                         {Vec3(10.5, 0.0, 0.0), Vec3(22.0, 12.0, 14.0)},
+                                         {Vec3(-9.0, 0.0, 0.0), Vec3(-1.0, 12.0, 14.0)},
+                                         {Vec3(-7.0, 0.0, 0.0), Vec3(-0.4, 12.0, 14.0)}};
+    std::string files;
+    for (std::size_t n = 0; n < std::size(all); ++n) {
+        folder.write(std::string(1, static_cast<char>('a' + n)) + ".stl", box_stl(all[n].first, all[n].second));
+        files += " " + (folder.path / (std::string(1, static_cast<char>('a' + n)) + ".stl")).string();
+    }
+    const std::string plan_file = (folder.path / "case.plan.json").string();
+    REQUIRE(folder.tactus("plan new " + plan_file + files).code == 0);
+    const cases::CasePlan plan = cases::load_case_plan(plan_file);
+    const auto fragments = study::load_fragments(plan, folder.path);
+    std::vector<std::shared_ptr<const observe::SeenBody>> bodies;
+    for (std::size_t n = 0; n < fragments.size(); ++n) {
+        auto body = std::make_shared<observe::SeenBody>();
+        body->content_hash = 100 + n;
+        body->distance = fragments[n].bone.distance;
+        bodies.push_back(body);
+    }
+    const SurfaceMap map = make_surface_map(SurfaceMap::Kind::gaps, plan, folder.path, bodies);
+    const SurfaceMapper mapper(SurfaceMap::Kind::gaps, plan, folder.path);
+    const std::vector<std::optional<Pose>> here(fragments.size(), Pose{});
+    CHECK(mapper.map(bodies, here).distance == map.distance);
+    std::vector<std::optional<Pose>> without = here;
+    without[1].reset();  // hidden
+    const SurfaceMap other = mapper.map(bodies, without);
+    std::size_t on_right = 0, on_left = 0, seen = 0;
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+        const auto surface =
+            make_body_surface(*bodies[i], contact::make_voxmap(bodies[i]->distance), Vec3(0.0), Vec3(0.0));
+        const auto& vertices = surface.patch.vertices;
+        const std::vector<float>& distance = map.distance.at(100 + i);
+        REQUIRE(distance.size() == vertices.size());
+        for (std::size_t n = 0; n < vertices.size(); ++n) {
+            // By brute force: each neighbour by itself.
+            contact::SurfacePoint point;
+            for (int axis = 0; axis < 3; ++axis) {
+                point.position[axis] = static_cast<double>(vertices[n].position[static_cast<std::size_t>(axis)]);
+                point.normal[axis] = static_cast<double>(vertices[n].normal[axis]);
+            }
+            point.normal = glm::normalize(point.normal);
+            std::vector<float> overlaps, gaps;
+            for (std::size_t j = 0; j < fragments.size(); ++j) {
+                if (j == i) continue;
+                const float d = fit::gap_between(std::span(&point, 1), {}, fragments[j].map, {}).distance[0];
+                (d < 0.0f ? overlaps : gaps).push_back(d);
+            }
+            std::ranges::sort(overlaps);
+            std::ranges::sort(gaps);
+            const float wanted = overlaps.empty() ? gaps.front() : overlaps.front();
+            ++seen;
+            if (distance[n] != wanted) FAIL(distance[n] << " but by brute force " << wanted);
+            if (i != 0 || std::abs(point.position.y - 6.0 * mm) > 3.0 * mm ||
+                std::abs(point.position.z - 7.0 * mm) > 3.0 * mm)
+                continue;
+            if (std::abs(point.position.x - 10.0 * mm) < 0.1 * mm) {
+                ++on_right;
+                CHECK(static_cast<double>(distance[n]) == Approx(-2.0 * mm).margin(0.05 * mm));
+                CHECK(static_cast<double>(other.distance.at(100)[n]) == Approx(0.5 * mm).margin(0.05 * mm));
+            }
+            if (std::abs(point.position.x) < 0.1 * mm) {
+                ++on_left;
+                CHECK(static_cast<double>(distance[n]) == Approx(0.4 * mm).margin(0.05 * mm));
+            }
+        }
+    }
+    CHECK(on_right > 50);
+    CHECK(on_left > 50);
+    CHECK(seen > 5000);
 }
 
 TEST_CASE("colours of a map are full at its range, red for gaps and blue for overlaps, and so says its legend") {

@@ -6,6 +6,7 @@
 #include "tools/picture/flap/flap_report.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_page.hpp"
+#include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +33,10 @@ int report(const ReportChoice& choice) {
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
     std::vector<std::optional<double>> residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
+    const std::optional<fit::RegistrationTarget> healthy = study::healthy_side(cases::state_of(plan), folder);
     const std::vector<picture::ReportBlock> blocks =
-        picture::plan_blocks(plan, std::move(fragments), std::move(residuals), picture::flap_blocks(plan, folder));
+        picture::plan_blocks(plan, std::move(fragments), std::move(residuals), healthy ? &*healthy : nullptr,
+                             picture::flap_blocks(plan, folder));
     file::write_whole_file(out, picture::html::page(plan.title, picture::html_of(blocks, "plan")));
     if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, picture::pdf_of(plan.title, blocks));
     file::Json written{{"report", out.string()}};

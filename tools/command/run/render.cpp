@@ -127,7 +127,10 @@ void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
     };
     add("--view-from", choice.view_from, "front, back, left, right, top, bottom, iso (front left) or tool (its side)");
     add("--size", choice.size, "size of the pictures in pixels, WIDTHxHEIGHT");
-    add("--clip", choice.clip, "clip the scene at a plane: x, -y, \"z=12 mm\"");
+    add("--clip", choice.clip,
+        "clip the scene at a plane: x, -y, \"z=12 mm\", 1,1,0; what is cut shows its density in grey");
+    add("--map", choice.map, "colour a plan's fragments: gaps (to what faces them) or mirror (from the healthy side)");
+    add("--map-range", choice.map_range, "distance of the fullest colour of --map");
     verb.flag("--no-legend", choice.has_no_legend, "with --frames: without legend and scale, for small pictures");
     add_sight_options(verb, choice.sight, &frames);
 }

@@ -12,6 +12,7 @@
 #include "tools/picture/flap/flap_scene.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/plan_picture.hpp"
+#include "tools/picture/scene/surface_map.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_overlaps.hpp"
@@ -121,20 +122,26 @@ void add_pictures(const Case& c, std::vector<ReportBlock>& out) {
                      labelled_picture(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above", here)}});
 }
 
-/// Legend of the colour maps.
-Drawing gap_legend() {
+/// A bar of the colours from share 0 to 1.
+template <class Colour>
+Drawing legend(const Colour& colour, const std::string& least, const std::string& most, const std::string& caption) {
     constexpr double left = 190.0, width = 180.0;
     constexpr int steps = 90;
     display::Figure figure(560.0, 26.0);
     for (int n = 0; n < steps; ++n) {
-        const Vec3 c = 255.0 * gap_colour((n + 0.5) / steps * 1.5e-3 - 0.5e-3);
+        const Vec3 c = 255.0 * colour((n + 0.5) / steps);
         figure.rectangle(
             left + n * width / steps, 6.0, width / steps + 0.5, 14.0,
             {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y), static_cast<std::uint8_t>(c.z), 1.0});
     }
-    figure.text({left - 8.0, 17.0}, "overlap of 0.5 mm or more", 12.0, {}, display::TextAnchor::end);
-    figure.text({left + width + 8.0, 17.0}, "gap of 1 mm or more", 12.0);
-    return {std::move(figure), "White: contact; grey: no neighbour within 3 mm"};
+    figure.text({left - 8.0, 17.0}, least, 12.0, {}, display::TextAnchor::end);
+    figure.text({left + width + 8.0, 17.0}, most, 12.0);
+    return {std::move(figure), caption};
+}
+
+Drawing gap_legend() {
+    return legend([](double share) { return gap_colour(share * 1.5e-3 - 0.5e-3); }, "overlap of 0.5 mm or more",
+                  "gap of 1 mm or more", "White: contact; grey: no neighbour within 3 mm");
 }
 
 /// Pose of each fragment, as in the exported files.
@@ -257,6 +264,27 @@ std::optional<LabelledPicture> gap_map(const Case& c, std::size_t i, std::size_t
     return labelled_picture({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
 }
 
+/// All fragments as planned, coloured by their distance from the healthy side.
+void add_mirror_maps(const Case& c, const fit::RegistrationTarget& healthy, std::vector<ReportBlock>& out) {
+    constexpr double range = 3e-3;  // m, of the fullest colour
+    std::vector<display::PictureMesh> meshes;
+    for (std::size_t n = 0; n < c.meshes.size(); ++n) {
+        if (!c.is_shown(n)) continue;
+        meshes.push_back(placed(c.meshes[n], c.pose(n), Vec3(0.0)));
+        std::vector<float>& colours = meshes.back().colours;
+        for (std::size_t v = 0; v < c.meshes[n].vertices.size(); ++v) {
+            const Vec3 colour = map_colour(healthy.distance(c.pose(n).apply(c.meshes[n].vertices[v])), range);
+            for (int axis = 0; axis < 3; ++axis)
+                colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
+        }
+    }
+    out.emplace_back(Heading{"Distance from the healthy side"});
+    out.emplace_back(legend([](double share) { return map_colour(share * range, range); }, "0 mm",
+                            fmt::format("{:g} mm or more", range * 1e3), "Distance from the mirrored healthy side"));
+    out.emplace_back(PictureGrid{{labelled_picture(meshes, Vec3(0.25, 1.0, -0.35), "from the front"),
+                                  labelled_picture(meshes, Vec3(-0.35, -1.0, -0.3), "from behind")}});
+}
+
 struct Gaps {
     ReportTable table{{"fragment", "and", "facing, mm²", "touching, mm²", "median gap, mm", "95 %, mm", "deepest, mm",
                        "overlap, mm³"},
@@ -374,7 +402,8 @@ void add_mirror(const Case& c, std::vector<ReportBlock>& out) {
 }  // namespace
 
 std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                                     std::vector<std::optional<double>> to_healthy, std::vector<ReportBlock> first) {
+                                     std::vector<std::optional<double>> to_healthy,
+                                     const fit::RegistrationTarget* healthy, std::vector<ReportBlock> first) {
     Case c;
     c.plan = plan;
     c.state = cases::state_of(c.plan);
@@ -389,6 +418,7 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
     try {
         found = gaps(c);
         add_pictures(c, pictures);
+        if (healthy) add_mirror_maps(c, *healthy, pictures);
     } catch (const Error& error) {
         throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
@@ -414,8 +444,9 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
 }
 
 std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy) {
-    return html::page(plan.title, html_of(plan_blocks(plan, std::move(fragments), std::move(to_healthy)), "plan"));
+                      std::vector<std::optional<double>> to_healthy, const fit::RegistrationTarget* healthy) {
+    return html::page(plan.title,
+                      html_of(plan_blocks(plan, std::move(fragments), std::move(to_healthy), healthy), "plan"));
 }
 
 }  // namespace tactus::picture

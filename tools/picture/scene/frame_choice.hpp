@@ -15,7 +15,11 @@ struct FrameChoice {
     std::string view_from = "tool";
     std::string size = "1280x800";
     bool has_no_legend = false;    ///< and no scale
-    std::string clip;              ///< "x", "-y", "z=12 mm": clip plane; the part above it along the axis is removed
+    /// "x", "-y", "z=12 mm", "1,1,0", "1,1,0=12 mm": clip plane; the part above it along the axis, or the direction, is
+    /// removed, and the section shows the density of what is cut.
+    std::string clip;
+    std::string map;  ///< "gaps" or "mirror": colours of a plan's fragments; empty: their own
+    std::string map_range = "1 mm";  ///< distance of the fullest colour
     SightChoice sight;
 };
 

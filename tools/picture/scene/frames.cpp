@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/frames.hpp"
 
+#include "assets/cases/plan_file.hpp"
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
+#include "tools/picture/scene/surface_map.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -52,12 +54,29 @@ struct Clip {
         const std::string axis = text.substr(0, equals);
         const bool is_turned = axis.starts_with('-');
         const std::string letter = axis.substr(is_turned ? 1 : 0);
-        if (letter != "x" && letter != "y" && letter != "z")
-            throw Error(fmt::format(
-                "--clip must be an axis, such as x or -z, or an axis with a position, such as \"y=12 mm\", not '{}'",
-                text));
-        normal[letter[0] - 'x'] = is_turned ? -1.0 : 1.0;
-        if (equals != std::string::npos) at = parse_as(text.substr(equals + 1), "m") * (is_turned ? -1.0 : 1.0);
+        if (letter == "x" || letter == "y" || letter == "z") normal[letter[0] - 'x'] = is_turned ? -1.0 : 1.0;
+        else if (const auto direction = direction_of(axis)) normal = *direction;
+        else
+            throw Error(
+                fmt::format("--clip must be an axis, such as x or -z, or a direction, such as 1,1,0, each also with "
+                            "a position along it, such as \"y=12 mm\", not '{}'",
+                            text));
+        const bool is_backwards = is_turned && letter.size() == 1;
+        if (equals != std::string::npos) at = parse_as(text.substr(equals + 1), "m") * (is_backwards ? -1.0 : 1.0);
+    }
+    /// Of length 1, from three numbers; none: it is no direction.
+    static std::optional<Vec3> direction_of(const std::string& text) {
+        Vec3 direction(0.0);
+        const char* at = text.data();
+        const char* const end = at + text.size();
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto [next, problem] = std::from_chars(at, end, direction[axis]);
+            if (problem != std::errc{} || (axis < 2 ? next == end || *next != ',' : next != end)) return std::nullopt;
+            at = next + 1;
+        }
+        const double length = glm::length(direction);
+        if (!(length > 1e-9) || !std::isfinite(length)) return std::nullopt;
+        return direction / length;
     }
     display::Plane plane(const display::Bounds& bounds) const {
         return {at ? *at * normal : bounds.empty() ? Vec3(0.0) : bounds.middle(), normal};
@@ -78,6 +97,9 @@ struct FrameWriter::State {
     display::NamedView view;
     Sight sight;
     std::optional<Clip> clip;
+    std::optional<SurfaceMapper> mapper;
+    std::vector<std::optional<Pose>> mapped;  ///< poses of the last map
+    double map_range = 1e-3;  ///< m
     observe::Observer observer{observe::Observer::Pace::lossless};
     display::PictureMaker maker;
     SceneModel model;
@@ -95,11 +117,36 @@ struct FrameWriter::State {
           maker(parse_size(wanted.size).first, parse_size(wanted.size).second),
           model(std::move(outline), observer, maker.renderer()) {
         if (!wanted.clip.empty()) clip.emplace(wanted.clip);
+        model.show_density(clip.has_value(), true);
+        if (!wanted.map.empty()) use_map(wanted);
         for (std::size_t i = 0; i < sight.screens(); ++i)
             if (sight.mode_of(i) == display::StereoMode::quad_buffer)
                 throw Error("a picture file cannot be quad-buffered; use --stereo side-by-side or anaglyph");
         sight.follow(model.outline());
         for (const std::string& port : sight.ports()) observer.watch(port, observe::Watch::latest);
+    }
+
+    void use_map(const FrameChoice& wanted) {
+        const SurfaceMap::Kind kind = parse_map_kind(wanted.map);
+        map_range = parse_as(wanted.map_range, "m");
+        if (!(map_range > 0.0)) throw Error("--map-range must be a length above 0, such as \"1 mm\"");
+        const auto& scenes = model.outline().scenes;
+        const auto of_plan = std::ranges::find_if(scenes, [](const auto& scene) { return !scene.plan.empty(); });
+        if (of_plan == scenes.end()) throw Error("--map needs a patch with a plan: a node of type case_scene");
+        mapper.emplace(kind, cases::load_case_plan(of_plan->plan), std::filesystem::path(of_plan->plan).parent_path());
+    }
+
+    /// Again when a fragment has moved.
+    void map_surfaces() {
+        std::vector<std::optional<Pose>> poses = model.plan_poses();
+        const auto are_same = [](const std::optional<Pose>& a, const std::optional<Pose>& b) {
+            return a.has_value() == b.has_value() &&
+                   (!a || (a->position == b->position && a->orientation == b->orientation));
+        };
+        if (std::ranges::equal(poses, mapped, are_same)) return;
+        model.use_map(std::make_shared<const SurfaceMap>(mapper->map(model.plan_bodies(), poses)), map_range);
+        mapped = std::move(poses);
+        model.update();
     }
 
     double time_of(int frame) const { return seconds * frame / choice.frames; }
@@ -129,6 +176,7 @@ struct FrameWriter::State {
     void draw(int frame) {
         observer.advance(static_cast<Flicks>(std::llround(time_of(frame) * static_cast<double>(flicks_per_second))));
         display::Picture& picture = model.update();
+        if (mapper) map_surfaces();
         if (!is_aimed) {
             camera.look_from(view);
             if (choice.view_from == "tool" && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());

@@ -5,6 +5,7 @@
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
+#include "tools/picture/scene/section_grey.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -32,10 +33,18 @@ SceneModel::SceneModel(SceneOutline outline, observe::Observer& observer, displa
 }
 
 SceneModel::~SceneModel() {
-    for (const auto& [name, bone] : bones_) renderer_.meshes().remove(bone.mesh);
-    for (const auto& [path, bone] : still_bones_)
+    for (const auto& [name, bone] : bones_) {
+        renderer_.meshes().remove(bone.mesh);
+        renderer_.scans().remove(bone.scan);
+    }
+    for (const auto& [path, bone] : still_bones_) {
         if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
-    for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
+        renderer_.scans().remove(bone.scan);
+    }
+    for (const auto& [hash, body] : bodies_) {
+        renderer_.meshes().remove(body.mesh);
+        renderer_.scans().remove(body.scan);
+    }
     for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
@@ -54,6 +63,7 @@ void SceneModel::follow(SceneOutline outline) {
         const bool gone =
             std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
         if (gone) meshes.remove(bone.second.mesh);
+        if (gone) renderer_.scans().remove(bone.second.scan);
         return gone;
     });
     std::erase_if(ropes_, [&](const auto& rope) {
@@ -66,6 +76,7 @@ void SceneModel::follow(SceneOutline outline) {
         const bool gone = std::ranges::find(outline_.still_bones, bone.first, &SceneOutline::StillBone::path) ==
                           outline_.still_bones.end();
         if (gone && bone.second.mesh >= 0) meshes.remove(bone.second.mesh);
+        if (gone) renderer_.scans().remove(bone.second.scan);
         return gone;
     });
     std::erase_if(tasks_, [&](const auto& task) {
@@ -77,6 +88,7 @@ void SceneModel::follow(SceneOutline outline) {
     std::erase_if(bodies_, [&](const auto& body) {
         const bool gone = !shown_.contains(body.first);
         if (gone) meshes.remove(body.second.mesh);
+        if (gone) renderer_.scans().remove(body.second.scan);
         return gone;
     });
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
@@ -145,10 +157,12 @@ display::Picture& SceneModel::update() {
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
+    shows_grey_ = false;
     show_bones();
     show_still_bones();
     show_bodies();
     show_targets();
+    show_compared();
     show_blades();
     show_balls();
     show_gripper();
@@ -164,6 +178,7 @@ display::Picture& SceneModel::update() {
     // What never comes must not let the bounds follow the tools for ever.
     constexpr int most_waits = 200;
     is_fitting_ = is_fitting_ && (bounds_.empty() || (is_waiting_ && ++waits_ < most_waits));
+    if (shows_grey_) legend_.scales.push_back(section_scale());
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
     return picture_;
@@ -202,7 +217,8 @@ void SceneModel::show_bones() {
         const bool is_new = bone.of.lock() != seen;
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
-            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}};
+            renderer_.scans().remove(bone.scan);
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1};
         }
         for (const std::uint32_t brick : seen->changed_since(bone.update)) {
             mesher_.make(seen->snapshot(), brick, patch_);
@@ -214,6 +230,9 @@ void SceneModel::show_bones() {
         if (!is_part_shown(node_of(port), still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
+        if (has_density_ && bone.scan < 0)
+            bone.scan = renderer_.scans().make(density_of(seen->snapshot()), section_grey);
+        show_scan(bone.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
@@ -245,6 +264,10 @@ void SceneModel::show_still_bones() {
         if (!is_part_shown(name, still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), name);
         show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
+        if (has_density_ && known->second.scan < 0)
+            if (const auto grids = densities_of(path); grids.size() == 1)
+                known->second.scan = renderer_.scans().make(grids[0], section_grey);
+        show_scan(known->second.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }

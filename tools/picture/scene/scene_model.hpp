@@ -8,9 +8,11 @@
 #include "tools/picture/scene/scene_outline.hpp"
 #include "tools/picture/scene/surface_map.hpp"
 
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -53,8 +55,17 @@ public:
     /// Colours the bodies that a map has, from the next picture on; null: none. `range`: m, distance of the fullest
     /// colour.
     void use_map(std::shared_ptr<const SurfaceMap> map, double range);
+    /// Draws the fragments of the plan a second time from the next picture on, see-through and in another colour, where
+    /// these poses of their files differ from those of the scene; empty: no longer. `name`: for the legend.
+    void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
+    /// Whether sections show the density of what is cut, from the next picture on. Files are read beside the pictures, and
+    /// sections are flat until then; `waits`: the next picture waits for them.
+    void show_density(bool wanted, bool waits = false);
+    bool is_reading_density() const;
     /// Of the scene of a plan, in the plan's order; null where one was not drawn yet.
     std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
+    /// Poses of its fragments' files in that scene, as they are seen; none where one is hidden, or was not drawn yet.
+    std::vector<std::optional<Pose>> plan_poses() const;
     /// Parts that are marked, in the order in which they were chosen.
     const std::vector<std::string>& chosen_parts() const { return chosen_; }
     /// Marks a part, or no longer if it was the only one; `adds`: the others stay as they are. Empty: none.
@@ -82,6 +93,7 @@ private:
         std::weak_ptr<const observe::SeenBone> of;
         std::uint64_t update = 0;
         display::Bounds bounds;
+        int scan = -1;
     };
     struct BodyMesh {
         Vec3 colour{0.0};
@@ -91,6 +103,8 @@ private:
         contact::Voxmap field;
         bool has_paint = false;
         int map = 0;  ///< number of the map whose colours it has
+        int scan = -1;  ///< of the pool
+        bool has_scan = false;  ///< it was looked for
     };
 
     display::MeshPool::Mesh shape_mesh(const std::string& name, const geometry::SurfacePatch& patch);
@@ -102,6 +116,7 @@ private:
     void show_still_bones();
     void show_bodies();
     void show_targets();
+    void show_compared();
     bool is_part_shown(const std::string& name, const Vec3& colour);
     void take_names();
     std::string name_of_body(const SceneOutline::Bodies& scene, std::size_t place) const;
@@ -128,6 +143,10 @@ private:
     void show_force(const std::string& wrench, const Vec3& at);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     void mark(const BodyMesh& mesh, const Pose& pose);
+    /// The densities of a file: those of its bone, or of a plan's fragments in their order; empty: being read, or none.
+    std::span<const volume::Grid> densities_of(const std::string& path);
+    void find_scan(BodyMesh& mesh, const SceneOutline::Bodies& scene, std::size_t place);
+    void show_scan(int scan, const Pose& to_scan);
     void set_surface(BodyMesh& mesh, std::uint64_t content);
     BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
@@ -141,6 +160,7 @@ private:
         display::MeshPool::Mesh mesh = -1;
         display::Bounds bounds;
         std::string problem;  ///< why it is missing
+        int scan = -1;
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::string, TaskMesh> tasks_;  // by path
@@ -151,6 +171,16 @@ private:
     };
     std::map<std::string, RopeMesh> ropes_;  // by port
     std::map<std::uint64_t, BodyMesh> bodies_;
+    struct Densities {
+        std::future<std::vector<volume::Grid>> reading;
+        std::vector<volume::Grid> grids;
+        bool is_read = false;
+    };
+    std::map<std::string, Densities> densities_;  // by path
+    std::vector<std::optional<Pose>> compared_;
+    std::string compared_name_;
+    std::map<std::size_t, std::uint64_t> content_at_;  // of the plan's scene: what was seen last, by place
+    bool has_density_ = false, waits_for_density_ = false, shows_grey_ = false;
     std::shared_ptr<const SurfaceMap> map_;
     double map_range_ = 1e-3;
     int map_number_ = 0;

@@ -82,6 +82,23 @@ std::vector<std::shared_ptr<const observe::SeenBody>> SceneModel::plan_bodies() 
     return all;
 }
 
+std::vector<std::optional<Pose>> SceneModel::plan_poses() const {
+    std::vector<std::optional<Pose>> all;
+    for (const SceneOutline::Bodies& scene : outline_.scenes) {
+        const auto seen = scene.plan.empty() ? std::nullopt : observer_.latest<observe::SeenScene>(scene.port);
+        if (!seen) continue;
+        for (std::size_t i = 0; i < seen->value.count; ++i) {
+            const observe::SeenScene::Object& object = seen->value.objects[i];
+            const auto known = bodies_.find(object.body);
+            all.emplace_back();
+            if (object.body != 0 && known != bodies_.end() && known->second.body && is_valid(object.pose))
+                all.back() = object.pose * known->second.body->home.inverse();
+        }
+        break;
+    }
+    return all;
+}
+
 /// Its surface in its colour, or in those of the map.
 void SceneModel::set_surface(BodyMesh& mesh, std::uint64_t content) {
     BodySurface surface = make_body_surface(*mesh.body, mesh.field, mesh.colour, paint_colour);
@@ -155,6 +172,7 @@ void SceneModel::show_bodies() {
             const auto hand = held ? pose_of(held->hand) : std::nullopt;
             if (held)
                 if (const auto now = pose_of(held->pose)) pose = *now;
+            if (!scene->plan.empty()) content_at_[i] = object.body;
             const bool is_shown = is_part_shown(name, colour);
             Part& part = parts_.back();
             part.place = static_cast<int>(i);
@@ -172,6 +190,8 @@ void SceneModel::show_bodies() {
             }
             part_of_mesh_.emplace_back(picture_.meshes.size(), name);
             show(mesh->mesh, pose, mesh->bounds);
+            find_scan(*mesh, *scene, i);
+            show_scan(mesh->scan, mesh->body->home);
             if (std::ranges::find(chosen_, name) != chosen_.end()) mark(*mesh, pose);
             has_paint = has_paint || mesh->has_paint;
             if (!held) continue;
@@ -220,8 +240,41 @@ void SceneModel::show_targets() {
         const auto body = bodies_.find(scene->value.objects[static_cast<std::size_t>(place)].body);
         if (!pose || body == bodies_.end()) continue;
         show(body->second.mesh, *pose, body->second.bounds, 0.35, false, false);
-        legend_.entries.push_back({fmt::format("see-through: where fragment {} fits", place + 1), hand_colour});
+        const auto from = std::ranges::find(outline_.scenes, target.scene, &SceneOutline::Bodies::port);
+        const std::string name = from == outline_.scenes.end() ? fmt::format("fragment {}", place + 1)
+                                                               : name_of_body(*from, static_cast<std::size_t>(place));
+        legend_.entries.push_back({fmt::format("see-through: where {} fits", name), hand_colour});
     }
+}
+
+void SceneModel::compare(std::vector<std::optional<Pose>> poses, const std::string& name) {
+    compared_ = std::move(poses);
+    compared_name_ = name;
+}
+
+/// What lies alike is drawn once. A fragment that was never shown has no surface yet.
+void SceneModel::show_compared() {
+    if (compared_.empty()) return;
+    const std::vector<std::optional<Pose>> here = plan_poses();
+    bool is_any = false;
+    for (std::size_t n = 0; n < compared_.size(); ++n) {
+        const auto content = content_at_.find(n);
+        const auto known = content == content_at_.end() ? bodies_.end() : bodies_.find(content->second);
+        if (!compared_[n] || known == bodies_.end()) continue;
+        const BodyMesh& mesh = known->second;
+        const auto at = [&](const Pose& file) { return file.apply(mesh.body->home.position); };
+        if (n < here.size() && here[n]) {
+            const Quat turn = glm::conjugate(here[n]->orientation) * compared_[n]->orientation;
+            const double apart = glm::length(at(*here[n]) - at(*compared_[n])) +
+                                 2.0 * mesh.bounds.radius() * glm::length(Vec3(turn.x, turn.y, turn.z));
+            if (apart < 0.05e-3) continue;
+        }
+        show(mesh.mesh, *compared_[n] * mesh.body->home, mesh.bounds, 0.5, true, false);
+        picture_.meshes.back().tint = compared_colour;
+        picture_.meshes.back().tinted = 1.0;
+        is_any = true;
+    }
+    if (is_any) legend_.entries.push_back({fmt::format("see-through: {}", compared_name_), compared_colour});
 }
 
 /// Points of the held body that penetrate another body.

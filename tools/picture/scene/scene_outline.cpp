@@ -118,8 +118,10 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
                 outline.tasks.push_back({view.node.name, path});
             break;
         case VisualKind::asset_bone:
-            if (const std::string name = view.asset(v.asset), path = path_of(view.plan, name); !path.empty())
-                outline.still_bones.push_back({name, path, v.pose});
+            if (const std::string name = view.asset(v.asset), path = path_of(view.plan, name); !path.empty()) {
+                if (!v.value.empty()) outline.scans.push_back({v.value, path});
+                else outline.still_bones.push_back({name, path, v.pose});
+            }
             break;
         case VisualKind::rope: outline.ropes.push_back({view.node.name, v.value}); break;
         case VisualKind::point:

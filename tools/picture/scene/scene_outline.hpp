@@ -30,6 +30,10 @@ struct SceneOutline {
         std::vector<std::string> bodies;
         std::string plan;  ///< file of the plan that names them; empty: none
     };
+    /// What sections of the bodies of an output show: the bone in a file, or those of a plan's fragments.
+    struct Scan {
+        std::string port, path;
+    };
     /// A held body.
     struct Held {
         std::string scene;
@@ -103,6 +107,7 @@ struct SceneOutline {
     std::vector<Bone> bones;
     std::vector<StillBone> still_bones;
     std::vector<Bodies> scenes;
+    std::vector<Scan> scans;
     std::vector<Held> held;
     std::vector<Target> targets;
     std::vector<Blade> blades;

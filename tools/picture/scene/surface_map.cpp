@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 
 namespace tactus::picture {
 
@@ -41,41 +41,61 @@ std::vector<contact::SurfacePoint> vertices_of(const observe::SeenBody& body) {
 
 }  // namespace
 
-SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
-                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies, std::stop_token stop) {
-    const cases::PlanState state = cases::state_of(plan);
-    const std::size_t count = std::min(bodies.size(), plan.fragments.size());
-    std::vector<study::CaseFragment> fragments;
-    std::optional<fit::RegistrationTarget> healthy;
-    if (kind == SurfaceMap::Kind::gaps) fragments = study::load_fragments(plan, folder);
-    else if (state.mirror) healthy.emplace(study::laid_target(*state.mirror, folder));
-    else throw Error("the plan has no healthy side; make one by 'tactus plan mirror'");
+SurfaceMapper::SurfaceMapper(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder)
+    : kind_(kind) {
+    if (kind == SurfaceMap::Kind::gaps) {
+        fragments_ = study::load_fragments(plan, folder);
+        return;
+    }
+    healthy_ = study::healthy_side(cases::state_of(plan), folder);
+    if (!healthy_) throw Error("the plan has no healthy side; make one by 'tactus plan mirror'");
+}
+
+SurfaceMap SurfaceMapper::map(std::span<const std::shared_ptr<const observe::SeenBody>> bodies,
+                              std::span<const std::optional<Pose>> poses, std::stop_token stop) const {
     SurfaceMap map;
-    map.kind = kind;
-    for (std::size_t i = 0; i < count && !stop.stop_requested(); ++i) {
+    map.kind = kind_;
+    for (std::size_t i = 0; i < std::min(bodies.size(), poses.size()) && !stop.stop_requested(); ++i) {
         // Of fragments with one content the first is drawn.
         if (!bodies[i] || map.distance.contains(bodies[i]->content_hash)) continue;
-        const int mine = static_cast<int>(i);
         const std::vector<contact::SurfacePoint> points = vertices_of(*bodies[i]);
         std::vector<float>& nearest = map.distance[bodies[i]->content_hash];
         nearest.assign(points.size(), std::numeric_limits<float>::infinity());
-        const Pose& at = state.arrangement.pose(mine);
-        if (healthy) {
+        if (!poses[i]) continue;
+        if (healthy_) {
             std::ranges::transform(points, nearest.begin(), [&](const contact::SurfacePoint& point) {
-                return static_cast<float>(healthy->distance(at.apply(point.position)));
+                return static_cast<float>(healthy_->distance(poses[i]->apply(point.position)));
             });
             continue;
         }
-        if (state.arrangement.is_hidden(mine)) continue;
-        for (int other = 0; other < static_cast<int>(fragments.size()); ++other) {
-            if (other == mine || state.arrangement.is_hidden(other) || stop.stop_requested()) continue;
-            const fit::SurfaceGap gap = fit::gap_between(points, at, fragments[static_cast<std::size_t>(other)].map,
-                                                         state.arrangement.pose(other));
-            for (std::size_t n = 0; n < points.size(); ++n)
-                if (std::abs(gap.distance[n]) < std::abs(nearest[n])) nearest[n] = gap.distance[n];
+        for (std::size_t other = 0; other < std::min(fragments_.size(), poses.size()); ++other) {
+            if (other == i || !poses[other] || stop.stop_requested()) continue;
+            const fit::SurfaceGap gap = fit::gap_between(points, *poses[i], fragments_[other].map, *poses[other]);
+            // An overlap, the deepest first, comes before the smallest gap.
+            for (std::size_t n = 0; n < points.size(); ++n) nearest[n] = std::min(nearest[n], gap.distance[n]);
         }
     }
     return map;
+}
+
+SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
+                            std::span<const std::shared_ptr<const observe::SeenBody>> bodies, std::stop_token stop) {
+    const cases::PlanState state = cases::state_of(plan);
+    std::vector<std::optional<Pose>> poses;
+    for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
+        poses.emplace_back();
+        // The healthy side is seen on hidden ones, too, once they are shown.
+        if (kind == SurfaceMap::Kind::healthy || !state.arrangement.is_hidden(n))
+            poses.back() = state.arrangement.pose(n);
+    }
+    return SurfaceMapper(kind, plan, folder).map(bodies, poses, std::move(stop));
+}
+
+SurfaceMap::Kind parse_map_kind(const std::string& name) {
+    if (name == "gaps") return SurfaceMap::Kind::gaps;
+    if (name == "mirror") return SurfaceMap::Kind::healthy;
+    throw Error(fmt::format("--map must be gaps or mirror, not '{}'{}", name,
+                            did_you_mean(name, std::vector<std::string>{"gaps", "mirror"})));
 }
 
 Vec3 map_colour(double distance, double range) {

@@ -4,21 +4,26 @@
 
 #include "assets/cases/case_plan.hpp"
 #include "devices/display/legend.hpp"
+#include "dsp/fit/registration/registration.hpp"
 #include "engine/observe/seen_values.hpp"
+#include "tools/study/planning/plan_case.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 namespace tactus::picture {
 
 struct SurfaceMap {
     enum class Kind : std::uint8_t {
-        gaps,  ///< as fit::gap_between: signed, negative inside the other
+        gaps,  ///< as fit::gap_between: signed, negative inside the other; of several neighbours the deepest overlap,
+        ///< without one the smallest gap
         healthy,  ///< as fit::RegistrationTarget::distance: never negative
     };
     Kind kind = Kind::gaps;
@@ -32,6 +37,25 @@ struct SurfaceMap {
 SurfaceMap make_surface_map(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder,
                             std::span<const std::shared_ptr<const observe::SeenBody>> bodies,
                             std::stop_token stop = {});
+
+/// The same again and again, wherever the fragments are: loads their files once.
+class SurfaceMapper {
+public:
+    /// Throws Error as make_surface_map does.
+    SurfaceMapper(SurfaceMap::Kind kind, const cases::CasePlan& plan, const std::filesystem::path& folder);
+
+    /// `poses`: of the fragments' files in the scene; none: hidden, or not there.
+    SurfaceMap map(std::span<const std::shared_ptr<const observe::SeenBody>> bodies,
+                   std::span<const std::optional<Pose>> poses, std::stop_token stop = {}) const;
+
+private:
+    SurfaceMap::Kind kind_;
+    std::vector<study::CaseFragment> fragments_;
+    std::optional<fit::RegistrationTarget> healthy_;
+};
+
+/// "gaps" or "mirror". Throws Error with the names.
+SurfaceMap::Kind parse_map_kind(const std::string& name);
 
 /// sRGB at a finite distance, full at `range` (m): from light to red for a gap or a distance, to blue for an overlap.
 Vec3 map_colour(double distance, double range);

@@ -23,6 +23,12 @@ std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target
                          {target.plane_normal, target.plane_offset}, target.pose);
 }
 
+std::optional<fit::RegistrationTarget> healthy_side(const cases::PlanState& state,
+                                                    const std::filesystem::path& folder) {
+    if (!state.mirror) return std::nullopt;
+    return std::optional<fit::RegistrationTarget>(std::in_place, laid_target(*state.mirror, folder));
+}
+
 const std::vector<contact::SurfacePoint>& IntactBone::points() {
     // Half the width of the openings that connect marrow to the outside at a threshold for cortex.
     constexpr double closing = 3e-3;

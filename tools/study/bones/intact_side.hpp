@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,6 +19,9 @@ namespace tactus::study {
 /// The healthy side of a plan in the frame of the case; `folder` is the plan's folder. Throws Error. Does not check
 /// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder);
+
+/// The same as a target, of the plan's state; none: it has no healthy side.
+std::optional<fit::RegistrationTarget> healthy_side(const cases::PlanState& state, const std::filesystem::path& folder);
 
 /// m, median. The two sides of a body, and two scans, differ by about a millimetre; a bone that lies wrongly, or another
 /// bone, is off by several.

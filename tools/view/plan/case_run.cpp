@@ -91,6 +91,7 @@ void CaseRun::follow_patch() {
     for (const compile::PlanNode& node : plan.nodes) {
         if (node.type->name == "case_scene") {
             node_ = node.name;
+            for (const AssetParam* asset : node.assets) asset_ = asset->name;
             for (const char* input : {"undo", "redo", "join", "split", "lock", "hide", "show", "settle"}) {
                 const Source from = source_of(plan, node, input);
                 if (from.node && from.node->type->name == "button") buttons_[input] = from.node->name;
@@ -187,6 +188,19 @@ void CaseRun::press(const std::string& input, int fragment, int other) {
 
 void CaseRun::join(const std::vector<int>& fragments) {
     for (std::size_t i = 1; i < fragments.size(); ++i) press("join", fragments.front(), fragments[i]);
+}
+
+bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }
+
+// Only a change counts.
+void CaseRun::go_to_alternative(int place) {
+    commands_.push_back({node_, "alternative", "-1"});
+    commands_.push_back({node_, "alternative", std::to_string(place)});
+}
+
+void CaseRun::drop_alternative(int place) {
+    commands_.push_back({node_, "drop", "-1"});
+    commands_.push_back({node_, "drop", std::to_string(place)});
 }
 
 std::optional<std::size_t> CaseRun::hand_button(const std::string& what) const {

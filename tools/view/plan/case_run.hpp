@@ -41,6 +41,8 @@ public:
 
     /// As the run last wrote it; null until then.
     const cases::CasePlan* plan() const { return plan_ ? &*plan_ : nullptr; }
+    /// The name of the plan in the patch's [assets].
+    const std::string& asset() const { return asset_; }
     const std::filesystem::path& file() const { return file_; }
     /// When it was written.
     std::filesystem::file_time_type written() const { return written_; }
@@ -53,6 +55,12 @@ public:
     bool can_press(const std::string& input) const;
     /// Puts fragments into one group, one after another.
     void join(const std::vector<int>& fragments);
+    /// The patch runs.
+    bool is_live() const;
+    /// Goes to an alternative of the plan, by its place; their number: begins another one at the current state.
+    void go_to_alternative(int place);
+    /// Drops an alternative that is not the current one; -2: brings the last one back.
+    void drop_alternative(int place);
     /// The button of the hand, 0 to 3, that grasps, asks for a fit ("snap") or settles; none: the hand does not.
     std::optional<std::size_t> hand_button(const std::string& what) const;
 
@@ -86,7 +94,7 @@ private:
     std::shared_ptr<observe::Observer> observer_;
     std::int64_t plan_version_ = -1;
     std::string node_, matcher_;
-    std::string file_name_;
+    std::string file_name_, asset_;
     std::map<std::string, std::string> buttons_;  // node, by input
     std::map<std::string, std::size_t> hand_buttons_;
     std::vector<std::string> watched_;

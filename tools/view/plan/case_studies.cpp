@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/counted.hpp"
 #include "tools/picture/report/plan_page.hpp"
+#include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_export.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 #include "tools/view/plan/case_run.hpp"
@@ -53,7 +54,9 @@ std::string made(CaseRun::Study what, const fs::path& file) {
             std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
             auto residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
             const fs::path page = folder / "case.html";
-            file::write_whole_file(page, picture::plan_page(plan, std::move(fragments), std::move(residuals)));
+            const auto healthy = study::healthy_side(cases::state_of(plan), folder);
+            file::write_whole_file(page, picture::plan_page(plan, std::move(fragments), std::move(residuals),
+                                                            healthy ? &*healthy : nullptr));
             return fmt::format("report: {}", page.string());
         }
         case CaseRun::Study::files: {

@@ -138,12 +138,6 @@ void PlanPanel::step_list() {
         case_.press("undo");
     if (button("redo step", case_.can_press("redo"), "of the plan")) case_.press("redo");
     if (!case_.plan()) return ImGui::TextDisabled("the run has written no plan yet");
-    const cases::CasePlan& plan = *case_.plan();
-    std::string ways;
-    for (std::size_t n = 0; n < plan.alternatives.size(); ++n)
-        ways += fmt::format("{}{}", n > 0 ? ", " : "", plan.alternatives[n].name);
-    ImGui::TextDisabled("alternative %s of: %s", plan.alternatives[static_cast<std::size_t>(plan.current)].name.c_str(),
-                        ways.c_str());
     ImGui::BeginChild("steps", ImVec2(0.0f, 0.0f));
     const auto& steps = case_.steps();
     if (steps.empty()) ImGui::TextDisabled("no steps yet");
@@ -157,6 +151,11 @@ void PlanPanel::step_list() {
     ImGui::EndChild();
 }
 
+std::string PlanPanel::take_restart() {
+    const std::filesystem::path changed = flap_.flap().take_changed();
+    return changed.empty() ? "" : fmt::format("{}={}", case_.asset(), std::filesystem::absolute(changed).string());
+}
+
 void PlanPanel::draw(const Fonts&) {
     hand_buttons();
     fit_line();
@@ -164,6 +163,9 @@ void PlanPanel::draw(const Fonts&) {
     studies();
     maps();
     ImGui::Separator();
+    alternatives_.draw();
+    ImGui::Separator();
+    flap_.draw();
     step_list();
 }
 

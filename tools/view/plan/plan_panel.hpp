@@ -5,6 +5,8 @@
 #include "tools/view/frame/commands.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/plan/case_run.hpp"
+#include "tools/view/plan/flap_panel.hpp"
+#include "tools/view/plan/plan_alternatives.hpp"
 #include "tools/view/plan/plan_map.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
@@ -13,17 +15,25 @@ namespace tactus::view {
 class PlanPanel {
 public:
     PlanPanel(Workbench& bench, ScenePanel& scene)
-        : bench_(bench), case_(bench), scene_(scene), map_(bench, case_, scene) {}
+        : bench_(bench),
+          case_(bench),
+          scene_(scene),
+          map_(bench, case_, scene),
+          alternatives_(bench, case_, scene),
+          flap_(bench, case_, scene) {}
 
     CaseRun& case_run() { return case_; }
     /// Once per picture, also while it is not drawn: the scene keeps the colours of a map.
     void tend(const std::shared_ptr<observe::Observer>& observer) {
         case_.tend(observer);
         map_.tend();
+        alternatives_.tend();
     }
     void draw(const Fonts& fonts);
     /// What its buttons do, by name.
     void add_commands(std::vector<Command>& all);
+    /// A changed plan with which the run is to begin again, "ASSET=FILE"; empty: none. Taken once.
+    std::string take_restart();
 
 private:
     void on_chosen(const char* input);
@@ -38,6 +48,8 @@ private:
     CaseRun case_;
     ScenePanel& scene_;
     PlanMap map_;
+    PlanAlternatives alternatives_;
+    FlapPanel flap_;
     std::size_t listed_ = 0;
 };
 

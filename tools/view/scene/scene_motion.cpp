@@ -38,6 +38,9 @@ std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_chang
         add(hash, drawn.pose.position);
         hash.add_bytes(glm::value_ptr(drawn.pose.orientation), sizeof drawn.pose.orientation);
         hash.add_bytes(&drawn.opacity, sizeof drawn.opacity);
+        hash.add_word(static_cast<std::uint64_t>(drawn.scan));
+        add(hash, drawn.tint);
+        hash.add_bytes(&drawn.tinted, sizeof drawn.tinted);
     }
     for (const geometry::SurfaceVertex& point : picture.points) hash.add_bytes(&point, sizeof point);
     if (picture.clip) {

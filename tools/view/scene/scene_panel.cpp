@@ -88,6 +88,13 @@ std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() 
     return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
 }
 
+void ScenePanel::compare(std::vector<std::optional<Pose>> poses, const std::string& name) {
+    compared_ = std::move(poses);
+    compared_name_ = name;
+    if (model_) model_->compare(compared_, compared_name_);
+    needs_picture_ = true;
+}
+
 std::vector<int> ScenePanel::chosen_places() const {
     std::vector<int> places;
     if (!model_) return places;
@@ -230,7 +237,9 @@ void ScenePanel::render(int width, int height) {
     width_ = width;
     height_ = height;
     hand_.beat();
+    model_->show_density(clip_axis_ >= 0);
     display::Picture& picture = model_->update();
+    needs_picture_ = needs_picture_ || model_->is_reading_density();
     hand_.beat();
     sight_.update(*observer_);
     screens_.lay_out(sight_, width, height);
@@ -323,6 +332,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
             else model_->follow(std::move(outline));
             model_->use_map(map_, map_range_);
+            model_->compare(compared_, compared_name_);
             sight_.follow(model_->outline());
             hand_.follow(observer_, model_->outline());
             plan_version_ = bench_.plan_version();

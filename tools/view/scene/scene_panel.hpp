@@ -59,6 +59,8 @@ public:
     std::int64_t pictures() const { return pictures_; }
     /// The parts of the last picture.
     std::span<const SceneModel::Part> parts() const;
+    /// The points that are measured now, m.
+    std::span<const Vec3> marks() const { return marks_; }
     /// Places in their scene of the chosen bodies, in the order in which they were chosen.
     std::vector<int> chosen_places() const;
     /// Colours the fragments of a plan; null: by their own colours. `range`: m, distance of the fullest colour.
@@ -66,6 +68,8 @@ public:
     void set_map_range(double range);
     /// Of the plan in the scene, in its order; empty: not seen yet.
     std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
+    /// Draws the fragments of a plan a second time, at these poses of their files and in another colour; empty: no longer.
+    void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
     bool is_measuring = false;
     bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool has_few_tools = false;  ///< above the picture: views and the hand, as a trainee needs them
@@ -111,6 +115,8 @@ private:
     std::unique_ptr<SceneModel> model_;
     std::shared_ptr<const picture::SurfaceMap> map_;
     double map_range_ = 1e-3;
+    std::vector<std::optional<Pose>> compared_;
+    std::string compared_name_;
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
     SceneMotion motion_;

@@ -35,6 +35,7 @@ void ScenePanel::tools() {
         marks_.clear();
         needs_picture_ = true;
     }
+    mark_spot("measure");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
     sight_tools();
     const float unit = ImGui::GetFontSize();
@@ -43,6 +44,7 @@ void ScenePanel::tools() {
     int axis = clip_axis_ + 1;
     ImGui::SetNextItemWidth(6.0f * unit);
     if (ImGui::Combo("##axis", &axis, axes, 6)) clip(axis - 1, clip_share_);
+    mark_spot("clip");
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("view: across the line of sight as it is now; plane: that of three measured points");
     if (clip_axis_ >= 0) {

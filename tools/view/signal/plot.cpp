@@ -26,7 +26,7 @@ std::size_t index_at(const Trace& trace, double time) {
 
 Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz,
                double shift_db) {
-    Curve curve{name, ink, {}, false};
+    Curve curve{name, ink, {}, false, {}};
     // When bins are closer than a pixel, the maximum in each of 600 equal frequency steps.
     constexpr double steps = 600.0;
     double last = -1.0;
@@ -47,6 +47,10 @@ double power_between(const signal::Spectrum& spectrum, Range hz) {
     for (std::size_t k = 1; k < spectrum.power.size(); ++k)
         if (spectrum.frequency(k) >= hz.low && spectrum.frequency(k) <= hz.high) sum += spectrum.power[k] * spectrum.df;
     return sum;
+}
+
+std::string density_unit(const Display& display) {
+    return display.unit.empty() ? "dB/Hz" : fmt::format("dB re ({})²/Hz", display.unit);
 }
 
 display::Colour figure_colour(std::uint32_t ink) {
@@ -76,33 +80,46 @@ Display display_of(const ValueType& type, const std::string& unit) {
     return {1.0, unit, 1};
 }
 
-Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels) {
+std::vector<std::string> column_units(const ValueType& type, const std::string& unit) {
+    if (&type == &value::pose) return {"m", "m", "m", "", "", "", ""};
+    if (&type == &value::twist) return {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s"};
+    if (&type == &value::wrench) return {"N", "N", "N", "N m", "N m", "N m"};
+    return std::vector<std::string>(std::max<std::size_t>(type.columns.size(), 1), unit);
+}
+
+Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels, double origin) {
     Plot plot;
-    plot.x = {now - span, now};
+    const Range time{now - span, now};
+    plot.x = {time.low - origin, time.high - origin};
+    plot.origin = origin;
     plot.x_unit = "s";
     plot.y_unit = display.unit;
     Range values{1e300, -1e300};
     const std::size_t shown = std::min(display.columns, trace.columns.size());
-    const std::size_t first = index_at(trace, plot.x.low), count = trace.times.size() - first;
+    const std::size_t first = index_at(trace, time.low);
+    std::size_t past = first;
+    while (past < trace.times.size() && trace.times[past] <= time.high) ++past;
+    const std::size_t count = past - first;
     for (std::size_t c = 0; c < shown; ++c) {
-        Curve curve{c < trace.names.size() ? trace.names[c] : "", tone::curves[c % std::size(tone::curves)], {}, false};
-        const auto add = [&](double time, double value) {
-            curve.points.push_back({time, value});
+        Curve curve{
+            c < trace.names.size() ? trace.names[c] : "", tone::curves[c % std::size(tone::curves)], {}, false, {}};
+        const auto add = [&](double at, double value) {
+            curve.points.push_back({at - origin, value});
             values = {std::min(values.low, value), std::max(values.high, value)};
         };
         if (count <= 2 * static_cast<std::size_t>(std::max(pixels, 1))) {
-            for (std::size_t i = first; i < trace.times.size(); ++i)
-                add(trace.times[i], trace.columns[c][i] * display.factor);
+            for (std::size_t i = first; i < past; ++i) add(trace.times[i], trace.columns[c][i] * display.factor);
         } else {
-            const Envelope envelope = envelope_of(trace.times, trace.columns[c], plot.x, pixels);
+            const Envelope envelope = envelope_of(trace.times, trace.columns[c], time, pixels);
             for (int k = 0; k < pixels; ++k) {
                 const auto at = static_cast<std::size_t>(k);
                 if (std::isnan(envelope.low[at])) continue;
-                const double time = plot.x.low + (k + 0.5) / pixels * span;
-                add(time, envelope.low[at] * display.factor);
-                add(time, envelope.high[at] * display.factor);
+                const double middle = time.low + (k + 0.5) / pixels * span;
+                add(middle, envelope.low[at] * display.factor);
+                add(middle, envelope.high[at] * display.factor);
             }
         }
+        if (count > 0) curve.last = trace.columns[c][past - 1] * display.factor;
         plot.curves.push_back(std::move(curve));
     }
     plot.y = fitted({0.0, 0.0}, values.high >= values.low ? values : Range{-1.0, 1.0});
@@ -116,7 +133,7 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
     plot.x = {std::max(10.0, 2.0 / span), 0.5 * rate};
     if (plot.x.high <= 2.0 * plot.x.low) plot.x = {0.05 * rate, 0.5 * rate};
     plot.x_unit = "Hz";
-    plot.y_unit = display.unit.empty() ? "dB/Hz" : fmt::format("dB re ({})²/Hz", display.unit);
+    plot.y_unit = plot.level_unit = density_unit(display);
     const std::size_t first = index_at(trace, now - span);
     signal::Spectrum spectrum;
     if (!trace.columns.empty() && trace.times.size() > first + 64) {
@@ -151,7 +168,7 @@ Plot histogram_plot(const Trace& trace, const Display& display, double now, doub
     Plot plot;
     plot.x_unit = display.unit;
     plot.y_unit = "%";
-    Curve curve{trace.names.empty() ? "" : trace.names[0], tone::curves[0], {}, false};
+    Curve curve{trace.names.empty() ? "" : trace.names[0], tone::curves[0], {}, false, {}};
     const Histogram histogram = histogram_of(trace, 0, {now - span, now}, parts);
     double most = 0.0;
     for (std::size_t k = 0; k < histogram.counts.size(); ++k) {
@@ -175,7 +192,7 @@ Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, con
     Plot plot;
     plot.x_unit = x_display.unit;
     plot.y_unit = y_display.unit;
-    Curve curve{y_column < y.names.size() ? y.names[y_column] : "", tone::curves[0], {}, false};
+    Curve curve{y_column < y.names.size() ? y.names[y_column] : "", tone::curves[0], {}, false, {}};
     Range across{1e300, -1e300}, up = across;
     for (const Point& p : pairs_of(x, x_column, y, y_column, {now - span, now}, most)) {
         const Point at{p.x * x_display.factor, p.y * y_display.factor};
@@ -184,6 +201,7 @@ Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, con
         up = {std::min(up.low, at.y), std::max(up.high, at.y)};
     }
     const bool is_empty = curve.points.empty();
+    if (!is_empty) curve.last = curve.points.back().y;
     plot.x = fitted({0.0, 0.0}, is_empty ? Range{-1.0, 1.0} : across);
     plot.y = fitted({0.0, 0.0}, is_empty ? Range{-1.0, 1.0} : up);
     plot.curves.push_back(std::move(curve));
@@ -194,6 +212,7 @@ Plot waterfall_plot(const Trace& trace, const Display& display, double rate, dou
     Plot plot;
     plot.is_logarithmic = true;
     plot.waterfall = waterfall_of(trace, 0, rate, {now - span, now}, 48, 160, display.factor);
+    plot.level_unit = density_unit(display);
     plot.x = plot.waterfall->hz;
     plot.x_unit = "Hz";
     plot.y = {now - span, now};
@@ -285,9 +304,11 @@ display::Figure figure_of(const Plot& plot, double width, double height) {
     return figure;
 }
 
-void write_csv(const Trace& trace, Range time, const std::filesystem::path& path) {
+void write_csv(const Trace& trace, Range time, const std::vector<std::string>& units,
+               const std::filesystem::path& path) {
     std::string text = "time s";
-    for (const std::string& name : trace.names) text += "," + name;
+    for (std::size_t c = 0; c < trace.names.size(); ++c)
+        text += "," + trace.names[c] + (c < units.size() && !units[c].empty() ? " " + units[c] : "");
     text += "\n";
     for (std::size_t i = index_at(trace, time.low); i < trace.times.size() && trace.times[i] <= time.high; ++i) {
         text += fmt::format("{:.9g}", trace.times[i]);

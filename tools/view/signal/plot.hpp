@@ -22,11 +22,14 @@ struct Curve {
     std::uint32_t ink = 0;  ///< as in theme.hpp
     std::vector<Point> points;
     bool is_reference = false;
+    std::optional<double> last = {};  ///< the latest value, where there is one
 };
 
 struct Plot {
     std::string title, x_unit, y_unit;
+    std::string level_unit;  ///< of spectra
     Range x, y;
+    double origin = 0.0;  ///< s, the time at which `x` is 0; of waves
     bool is_logarithmic = false;  ///< across
     std::vector<Curve> curves;
     std::optional<Waterfall> waterfall;  ///< across: its frequencies; up: its times
@@ -36,6 +39,8 @@ struct Plot {
     double up(double value) const;
     /// The inverse of `across`.
     double value_at(double across) const;
+    /// The inverse of `up`.
+    double height_at(double up) const { return y.low + up * y.span(); }
     std::vector<double> x_ticks(int most) const {
         return is_logarithmic ? decade_ticks(x, most) : linear_ticks(x, most);
     }
@@ -49,8 +54,11 @@ struct Display {
 };
 Display display_of(const ValueType& type, const std::string& unit);
 
-/// The last `span` seconds before `now`, with about two points per pixel.
-Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels);
+/// SI units of the columns of a value type: those of a trace.
+std::vector<std::string> column_units(const ValueType& type, const std::string& unit);
+
+/// The last `span` seconds before `now`, with about two points per pixel. `origin`: the time that is 0 on the axis.
+Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels, double origin = 0.0);
 
 /// Power density of one column of the last `span` seconds, dB re (unit)²/Hz. `reference` (may be empty) is shifted to
 /// the same power over the frequencies that both have.
@@ -74,7 +82,9 @@ signal::Spectrum spectrum_of_file(const std::filesystem::path& path);
 
 /// A figure with white background, axes and names.
 display::Figure figure_of(const Plot& plot, double width = 720, double height = 320);
-/// Writes the rows of a trace in a time range as CSV, "time s,px,…". Throws Error when the file cannot be written.
-void write_csv(const Trace& trace, Range time, const std::filesystem::path& path);
+/// Writes the rows of a trace in a time range as CSV, "time s,px m,…"; `units`: of its columns. Throws Error when the
+/// file cannot be written.
+void write_csv(const Trace& trace, Range time, const std::vector<std::string>& units,
+               const std::filesystem::path& path);
 
 }  // namespace tactus::view

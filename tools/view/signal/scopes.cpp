@@ -3,6 +3,8 @@
 
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/view/signal/level_meter.hpp"
+#include "tools/view/signal/readings.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -39,16 +41,30 @@ std::set<std::string> Scopes::traced() const {
     return ports;
 }
 
-Display Scopes::display(const std::string& port) const {
-    std::string unit;
+std::string Scopes::unit(const std::string& port) const {
     const std::size_t dot = port.find('.');
     const int node = bench_.picture().find(port.substr(0, dot));
     if (node >= 0)
         for (const PicturePort& p : bench_.picture().nodes[static_cast<std::size_t>(node)].outputs)
-            if (p.name == port.substr(dot + 1)) unit = p.unit;
+            if (p.name == port.substr(dot + 1)) return p.unit;
+    return {};
+}
+
+Display Scopes::display(const std::string& port) const {
     for (const Feed::Port& known : ports_)
-        if (known.name == port) return display_of(*known.type, unit);
-    return {1.0, unit, 1};
+        if (known.name == port) return display_of(*known.type, unit(port));
+    return {1.0, unit(port), 1};
+}
+
+std::vector<std::string> Scopes::units(const std::string& port) const {
+    for (const Feed::Port& known : ports_)
+        if (known.name == port) return column_units(*known.type, unit(port));
+    return {};
+}
+
+bool Scopes::is_sound(const std::string& port) const {
+    return std::ranges::any_of(
+        ports_, [&](const Feed::Port& known) { return known.name == port && known.type == &value::signal; });
 }
 
 double Scopes::rate(const std::string& port) const {
@@ -63,24 +79,28 @@ const Trace* Scopes::other(const Scope& scope, std::size_t index, const Feed& fe
 
 void Scopes::refresh_wave(Scope& scope, const Trace& trace, const Feed& feed, double now, int pixels) {
     const Display shown = display(scope.port);
+    double origin = 0.0;
     if (scope.trigger) {
         // A tenth before the crossing, and all of the rest after it.
         const Trigger raw{scope.trigger->level / shown.factor, scope.trigger->is_rising};
         const auto at = trigger_time(trace, 0, raw, {now - LiveFeed::kept_s, now - 0.9 * scope.span});
-        if (at) now = *at + 0.9 * scope.span;
+        if (at) now = (origin = *at) + 0.9 * scope.span;
     }
-    scope.plot = time_plot(trace, shown, now, scope.span, pixels);
-    const Level level = level_of(trace, 0, scope.plot.x);
-    scope.reading = level.count == 0
-                        ? ""
-                        : fmt::format("peak {:.1f} dB, rms {:.1f} dB", decibels(level.peak() * shown.factor),
-                                      decibels(level.rms * shown.factor));
+    scope.plot = time_plot(trace, shown, now, scope.span, pixels, origin);
+    Level level = level_of(trace, 0, {now - scope.span, now});
+    for (double* part : {&level.low, &level.high, &level.mean, &level.rms}) *part *= shown.factor;
+    const bool has_several = std::min(shown.columns, trace.columns.size()) > 1 && !trace.names.empty();
+    scope.reading = level_words(level, shown.unit, has_several ? trace.names[0] : "");
+    if (scope.trigger && origin == 0.0) scope.reading += ", no crossing of the trigger's level";
+    if (is_sound(scope.port) && level.count > 0) scope.meter = level;
     for (std::size_t i = 0; i < scope.others.size(); ++i) {
         const Trace* trace_of = other(scope, i, feed);
         if (!trace_of) continue;
-        Plot over = time_plot(*trace_of, display(scope.others[i]), now, scope.span, pixels);
+        const Display over_it = display(scope.others[i]);
+        Plot over = time_plot(*trace_of, over_it, now, scope.span, pixels, origin);
         for (Curve& curve : over.curves) {
             curve.name = scope.others[i] + (curve.name.empty() ? "" : " " + curve.name);
+            if (over_it.unit != shown.unit) curve.name += over_it.unit.empty() ? " (no unit)" : " in " + over_it.unit;
             curve.ink = tone::curves[scope.plot.curves.size() % std::size(tone::curves)];
             scope.plot.curves.push_back(std::move(curve));
         }
@@ -113,6 +133,7 @@ void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
     if (scope.view != Scope::View::wave && !is_due) return;
     scope.computed_at = now;
     scope.reading.clear();
+    scope.meter.reset();
     switch (scope.view) {
         case Scope::View::wave: refresh_wave(scope, *trace, feed, now, pixels); break;
         case Scope::View::spectrum:
@@ -120,6 +141,10 @@ void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
             break;
         case Scope::View::waterfall:
             scope.plot = waterfall_plot(*trace, shown, rate(scope.port), now, scope.span);
+            if (scope.plot.waterfall->rows > 0) {
+                const double top = top_of(*scope.plot.waterfall);
+                scope.reading = fmt::format("black {:.0f}, white {:.0f} {}", top - 90.0, top, scope.plot.level_unit);
+            }
             break;
         case Scope::View::histogram: scope.plot = histogram_plot(*trace, shown, now, scope.span); break;
         case Scope::View::xy: {
@@ -143,11 +168,22 @@ void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::p
         const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
         if (!trace || trace->times.empty()) throw Error(fmt::format("there are no values of {} yet", scope.port));
         // Of a wave what is shown, also where a trigger holds it.
-        const double now = trace->times.back();
+        const double now = scope.held ? scope.held_at : trace->times.back();
+        const Range wave{scope.plot.origin + scope.plot.x.low, scope.plot.origin + scope.plot.x.high};
         const bool is_wave = scope.view == Scope::View::wave;
-        write_csv(*trace, is_wave ? scope.plot.x : Range{now - scope.span, now}, path);
+        write_csv(*trace, is_wave ? wave : Range{now - scope.span, now}, units(scope.port), path);
     } else display::write_png(figure_of(scope.plot).image(), path.string());
     bench_.tell(fmt::format("wrote {}", path.string()));
+}
+
+/// In the folder of the run; without one in the current folder.
+std::filesystem::path Scopes::free_file(const std::string& port, const std::string& ending) const {
+    std::string name = port;
+    std::ranges::replace(name, '/', '-');  // of a sub-patch
+    std::filesystem::path path;
+    for (int i = 1; path.empty() || std::filesystem::exists(path); ++i)
+        path = bench_.status()->folder / fmt::format("{}-{}{}", name, i, ending);
+    return path;
 }
 
 void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& closes) {
@@ -195,11 +231,8 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
     ImGui::Checkbox("freeze", &scope.is_frozen);
     mark("freeze");
     const auto save_as = [&](const char* ending) {
-        std::filesystem::path path;
-        for (int i = 1; path.empty() || std::filesystem::exists(path); ++i)
-            path = fmt::format("{}-{}{}", scope.port, i, ending);
         try {
-            write(index, feed, path);
+            write(index, feed, free_file(scope.port, ending));
         } catch (const Error& error) {
             bench_.tell(error.what(), true);
         }
@@ -266,14 +299,29 @@ void Scopes::waterfall(const Scope& scope, const Painter& paint, const Box& inne
         }
 }
 
-void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double height) {
+std::string Scopes::cursor_words(const Scope& scope, const Feed& feed, std::span<const Point> at) const {
+    switch (scope.view) {
+        case Scope::View::wave: {
+            const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
+            return wave_words(scope.plot, {trace, display(scope.port)}, at);
+        }
+        case Scope::View::spectrum: return spectrum_words(scope.plot, at);
+        case Scope::View::waterfall: return waterfall_words(scope.plot, at);
+        case Scope::View::histogram: return histogram_words(scope.plot, at);
+        case Scope::View::xy: return xy_words(scope.plot, at);
+    }
+    return {};
+}
+
+void Scopes::body(Scope& scope, std::size_t index, const Feed& feed, const Fonts& fonts, double height) {
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     const Point corner = point(ImGui::GetCursorScreenPos());
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x), s = fonts.scale, small = 11.0 * s;
     ImGui::InvisibleButton("plot", vec({width, height}));
     mark_spot(fmt::format("scope {} plot", index));
     const Box all{corner.x, corner.y, corner.x + width, corner.y + height};
-    const Box inner{all.left + 52.0 * s, all.top + 6.0 * s, all.right - 8.0 * s, all.bottom - 18.0 * s};
+    const double meter = scope.meter ? 12.0 * s : 0.0;
+    const Box inner{all.left + 52.0 * s, all.top + 6.0 * s, all.right - 8.0 * s - meter, all.bottom - 18.0 * s};
     paint.box(all, colour(0x0f1319), 4.0 * s);
     const Plot& plot = scope.plot;
     if (!(plot.y.span() > 0.0) || inner.width() < 20.0 || inner.height() < 12.0) return;
@@ -307,43 +355,34 @@ void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double he
     }
     const bool hovered = ImGui::IsItemHovered();
     const Point mouse = point(ImGui::GetIO().MousePos);
+    const Point pointed{plot.value_at((mouse.x - inner.left) / inner.width()),
+                        plot.height_at((inner.bottom - mouse.y) / inner.height())};
     if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (scope.cursors.size() == 2) scope.cursors.clear();
-        scope.cursors.push_back(plot.value_at((mouse.x - inner.left) / inner.width()));
+        scope.cursors.push_back(pointed);
     }
-    for (const double cursor : scope.cursors)
-        paint.line({x_of(cursor), inner.top}, {x_of(cursor), inner.bottom}, tone::chosen, 1.2 * s);
+    const bool is_flat = scope.view == Scope::View::xy || scope.view == Scope::View::waterfall;
+    for (const Point& cursor : scope.cursors) {
+        paint.line({x_of(cursor.x), inner.top}, {x_of(cursor.x), inner.bottom}, tone::chosen, 1.2 * s);
+        if (is_flat) paint.line({inner.left, y_of(cursor.y)}, {inner.right, y_of(cursor.y)}, tone::chosen, 1.2 * s);
+    }
     paint.list()->PopClipRect();
+    if (scope.meter)
+        draw_level_meter(paint, {all.right - meter, inner.top, all.right - 2.0 * s, inner.bottom}, *scope.meter);
 
     Point at{inner.left + 6.0 * s, inner.top + 2.0 * s};
     paint.text(at, small, tone::dim, plot.y_unit);
     at.x += paint.width_of(plot.y_unit, small) + 12.0 * s;
     for (const Curve& curve : plot.curves) {
         std::string text = curve.name;
-        if (!curve.points.empty() && !plot.is_logarithmic) text += fmt::format(" {:.4g}", curve.points.back().y);
+        if (curve.last) text += fmt::format(" {:.4g}", *curve.last);
         paint.text(at, small, curve.ink, text);
         at.x += paint.width_of(text, small) + 12.0 * s;
     }
-    const auto value_near = [&](double x) {
-        double best = 1e300, value = 0.0;
-        for (const Curve& curve : plot.curves)
-            if (!curve.is_reference)
-                for (const Point& p : curve.points)
-                    if (std::abs(p.x - x) < best) best = std::abs(p.x - x), value = p.y;
-        return value;
-    };
-    std::string reading;
-    if (scope.cursors.size() == 2) {
-        const double a = scope.cursors[0], b = scope.cursors[1];
-        reading =
-            fmt::format("Δ {:.4g} {}, Δ {:.4g} {}", b - a, plot.x_unit, value_near(b) - value_near(a), plot.y_unit);
-        if (!plot.is_logarithmic && a != b) reading += fmt::format(", {:.4g} Hz", 1.0 / std::abs(b - a));
-    } else if (scope.cursors.size() == 1 || hovered) {
-        const double x =
-            scope.cursors.empty() ? plot.value_at((mouse.x - inner.left) / inner.width()) : scope.cursors[0];
-        reading = fmt::format("{:.5g} {}: {:.4g} {}", x, plot.x_unit, value_near(x), plot.y_unit);
-    }
-    paint.text_left_of({inner.right - 4.0 * s, inner.top + 2.0 * s}, small, tone::chosen, reading);
+    std::span<const Point> read = scope.cursors;
+    if (read.empty() && hovered) read = std::span(&pointed, 1);
+    paint.text_left_of({inner.right - 4.0 * s, inner.top + 2.0 * s}, small, tone::chosen,
+                       cursor_words(scope, feed, read));
     paint.text_left_of({inner.right - 4.0 * s, inner.bottom - 1.4 * small}, small, tone::dim, scope.reading);
 }
 
@@ -383,7 +422,7 @@ void Scopes::draw(const Feed* feed, const Fonts& fonts) {
         bool closes = false;
         head(scopes_[i], i, *feed, closes);
         refresh(scopes_[i], *feed, std::max(50, static_cast<int>(ImGui::GetContentRegionAvail().x) - 60));
-        body(scopes_[i], i, fonts, height);
+        body(scopes_[i], i, *feed, fonts, height);
         if (closes) closed = i;
         ImGui::PopID();
     }

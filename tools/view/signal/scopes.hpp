@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,10 @@ public:
         std::vector<Trace> held_others;
         double held_at = 0.0;
         Range y{0.0, 0.0};
-        std::vector<double> cursors;  ///< at most two, in units of the horizontal axis
+        std::vector<Point> cursors;  ///< at most two, in units of the axes
         double computed_at = -1.0;    ///< time of the last computed spectrum
         std::string reading;          ///< levels in dB
+        std::optional<Level> meter;   ///< of what is shown of a sound
         Plot plot;
     };
 
@@ -57,9 +59,14 @@ private:
     const Trace* other(const Scope& scope, std::size_t index, const Feed& feed) const;
     void options(Scope& scope, std::size_t index);
     void waterfall(const Scope& scope, const Painter& paint, const Box& inner) const;
+    std::string cursor_words(const Scope& scope, const Feed& feed, std::span<const Point> at) const;
+    std::filesystem::path free_file(const std::string& port, const std::string& ending) const;
     void head(Scope& scope, std::size_t index, const Feed& feed, bool& closes);
-    void body(Scope& scope, std::size_t index, const Fonts& fonts, double height);
+    void body(Scope& scope, std::size_t index, const Feed& feed, const Fonts& fonts, double height);
     Display display(const std::string& port) const;
+    std::vector<std::string> units(const std::string& port) const;
+    std::string unit(const std::string& port) const;
+    bool is_sound(const std::string& port) const;
     double rate(const std::string& port) const;
 
     Workbench& bench_;

@@ -121,3 +121,36 @@ TEST_CASE("steps that are known from before are undone like others, on whichever
     CHECK(tree.head() == 3);
     CHECK(tree.done() == 3);
 }
+
+TEST_CASE("a tree goes to any place of any branch to the bit, and no further than what it stores") {
+    fit::StepTree tree(fragments, 0, 500);
+    fit::Arrangement now(fragments);
+    std::vector<fit::Arrangement> at;
+    std::vector<fit::HistoryPlace> places;
+    for (std::uint64_t n = 0; n < 400; ++n) {
+        // A third of the steps begins a branch.
+        if (n % 3 == 2)
+            for (std::uint64_t back = 0; back < n % 7; ++back) tree.undo(now);
+        const fit::Arrangement before = now;
+        change(now, n);
+        tree.add(before, now);
+        at.push_back(now);
+        places.push_back(tree.place());
+    }
+    for (std::uint64_t n = 0; n < 1000; ++n) {
+        const auto to = static_cast<std::size_t>(Random{n}.uniform(1) * 400.0);
+        REQUIRE(tree.go(places[to], now));
+        CHECK(same(now, at[to]));
+        CHECK(tree.head() == static_cast<int>(to));
+        CHECK(tree.place().tip == places[to].tip);
+    }
+    // To the root, and half way to a tip; what is not a step stays away.
+    REQUIRE(tree.go({-1, 399}, now));
+    CHECK(same(now, fit::Arrangement(fragments)));
+    CHECK(tree.done() == 0);
+    CHECK_FALSE(tree.go({400, 400}, now));
+    CHECK_FALSE(tree.go({-2, -2}, now));
+    CHECK_FALSE(tree.go({399, 0}, now));
+    CHECK(tree.head() == -1);
+    REQUIRE(tree.redo(now));
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans in GPU memory: what the inside of a body looks like where a plane cuts it.
+#pragma once
+
+#include "dsp/core/types.hpp"
+#include "dsp/display/camera.hpp"
+#include "dsp/volume/grid.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tactus::display {
+
+/// Values that are drawn black and white.
+struct GreyScale {
+    double black = 0.0, white = 1.0;
+};
+
+/// All scans of one OpenGL context, which must be current in every call.
+class ScanPool {
+public:
+    using Scan = int;
+
+    ScanPool() = default;
+    ~ScanPool();
+    ScanPool(const ScanPool&) = delete;
+    ScanPool& operator=(const ScanPool&) = delete;
+
+    /// Keeps the grey values of a grid of at least 2 samples per axis in 8 bits, and of a very large one every n-th
+    /// sample. -1 for an empty grid.
+    Scan make(const volume::Grid& grid, const GreyScale& scale);
+    void remove(Scan scan);
+    /// From the frame of the grid to the texture's coordinates.
+    const Mat4& to_texture(Scan scan) const { return scans_[static_cast<std::size_t>(scan)].to_texture; }
+    /// To texture unit 0.
+    void bind(Scan scan) const;
+
+private:
+    struct Texture {
+        std::uint32_t name = 0;
+        Mat4 to_texture{1.0};
+    };
+    std::vector<Texture> scans_;
+};
+
+}  // namespace tactus::display

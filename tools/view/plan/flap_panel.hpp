@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reconstruction of a plan: plates, implants, vessels, sites and margin, which can be added, changed and removed, and
+// the verdicts of the plan as it is now.
+#pragma once
+
+#include "tools/view/plan/flap_run.hpp"
+#include "tools/view/scene/scene_panel.hpp"
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+namespace tactus::view {
+
+class FlapPanel {
+public:
+    FlapPanel(Workbench& bench, CaseRun& run, ScenePanel& scene) : run_(run), flap_(bench, run), scene_(scene) {}
+
+    /// Draws nothing for a plan without a reconstruction.
+    void draw();
+    FlapRun& flap() { return flap_; }
+
+private:
+    enum class Kind { plate, implant, vessel, site, margin };
+    /// What is asked for in the dialog; mm.
+    struct Form {
+        Kind kind = Kind::plate;
+        std::string name, file;
+        std::array<float, 3> at{}, axis{0.0f, 0.0f, -1.0f};
+        float diameter = 4.0f, length = 14.0f, screw_length = 12.0f, height = 0.0f, margin = 10.0f;
+        int screws = 2;
+        bool is_vein = false;
+    };
+    void open(Form form);
+    void lists(const reconstruct::Reconstruction& all);
+    void dialog();
+    void places();
+    void apply();
+    /// A line of a list: its name, which opens the dialog, and a button that removes it.
+    template <class Named>
+    void line(const char* what, const Named& one, Form form, std::vector<Named> reconstruct::Flap::* list);
+
+    CaseRun& run_;
+    FlapRun flap_;
+    ScenePanel& scene_;
+    Form form_;
+    bool wants_dialog_ = false;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/plan/flap_run.hpp"
+
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/reconstruct/plate_line.hpp"
+#include "tools/study/planning/flap_study.hpp"
+#include "tools/study/planning/flap_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto now = std::chrono::seconds(0);
+
+template <class T>
+bool is_ready(const std::future<T>& work) {
+    return work.valid() && work.wait_for(now) == std::future_status::ready;
+}
+
+FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folder) {
+    study::FlapStudy study(plan, cases::state_of(plan), folder);
+    const reconstruct::FlapMeasures measures = study.measures();
+    FlapRun::Verdicts verdicts;
+    for (const reconstruct::SiteReach& reach : measures.reaches) verdicts.lines.push_back(study::reach_words(reach));
+    std::vector<reconstruct::Clearance> near = measures.clearances;
+    std::ranges::sort(near, {}, &reconstruct::Clearance::distance);
+    for (const reconstruct::Clearance& c : near)
+        verdicts.lines.push_back(fmt::format("{} to {}: {:.2f} mm", c.object, c.other, c.distance * 1e3));
+    if (measures.tumour_margin)
+        verdicts.lines.push_back(fmt::format("tumour to the nearest cut: {:.1f} mm", *measures.tumour_margin * 1e3));
+    for (const reconstruct::FlapWarning& warning : measures.warnings) verdicts.warnings.push_back(warning.text);
+    return verdicts;
+}
+
+fs::path free_plan(const fs::path& folder) {
+    for (int n = 1;; ++n)
+        if (fs::path free = folder / fmt::format("changed-{}.plan.json", n); !fs::exists(free)) return free;
+}
+
+}  // namespace
+
+void FlapRun::tend() {
+    if (is_ready(changing_)) {
+        try {
+            changed_ = changing_.get();
+        } catch (const Error& error) {
+            bench_.tell(error.what(), true);
+        }
+    }
+    if (is_ready(measuring_)) {
+        try {
+            verdicts_ = measuring_.get();
+        } catch (const Error& error) {
+            verdicts_ = {};
+            bench_.tell(error.what(), true);
+        }
+    }
+    if (!run_.plan()) {
+        now_.reset();
+        of_ = {};
+        return;
+    }
+    if (of_ == run_.written() || measuring_.valid()) return;
+    of_ = run_.written();
+    now_ = cases::state_of(*run_.plan()).reconstruction;
+    verdicts_ = {};
+    if (now_)
+        measuring_ = std::async(std::launch::async, [plan = *run_.plan(), folder = run_.file().parent_path()] {
+            return verdicts_of(plan, folder);
+        });
+}
+
+void FlapRun::begin(WholeChange change) {
+    if (!run_.plan() || changing_.valid()) return;
+    changing_ = std::async(std::launch::async,
+                           [plan = *run_.plan(), folder = run_.file().parent_path(), change = std::move(change)] {
+                               const fs::path file = free_plan(folder);
+                               cases::save_case_plan(plan, file);
+                               try {
+                                   study::change_reconstruction(file, change);
+                               } catch (...) {
+                                   std::error_code none;
+                                   fs::remove(file, none);
+                                   throw;
+                               }
+                               return file;
+                           });
+}
+
+void FlapRun::change(Change change) {
+    begin([change = std::move(change)](reconstruct::Reconstruction& all, const cases::CasePlan&) { change(all); });
+}
+
+void FlapRun::lay_plate(const std::string& name, int screws_per_segment, double screw_length, double height) {
+    begin([=, folder = run_.file().parent_path()](reconstruct::Reconstruction& all, const cases::CasePlan& plan) {
+        const study::FlapStudy study(plan, cases::state_of(plan), folder);
+        reconstruct::PlateSettings settings;
+        settings.screws_per_segment = screws_per_segment;
+        settings.screw_length = screw_length;
+        settings.height = height;
+        reconstruct::Plate made = reconstruct::plate_on(study.inputs(), study.fibula(), settings);
+        made.name = name;
+        put_named(all.flap.plates, std::move(made));
+    });
+}
+
+fs::path FlapRun::take_changed() { return std::exchange(changed_, {}); }
+
+}  // namespace tactus::view

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reconstruction of the plan of a run: what is measured of it beside the window, and changes of it. A change makes
+// a plan with one more step, which a new run of the patch begins with; undo takes the step back. No user interface.
+#pragma once
+
+#include "assets/reconstruct/reconstruction.hpp"
+#include "tools/view/plan/case_run.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+class FlapRun {
+public:
+    using Change = std::function<void(reconstruct::Reconstruction&)>;
+
+    FlapRun(Workbench& bench, CaseRun& run) : bench_(bench), run_(run) {}
+
+    /// Once per picture while it is seen.
+    void tend();
+    /// Of the plan as it is now; null: it has none.
+    const reconstruct::Reconstruction* reconstruction() const { return now_.get(); }
+
+    /// Verdicts of the plan as it is now: reach of each vessel, clearances, margin; then warnings.
+    struct Verdicts {
+        std::vector<std::string> lines, warnings;
+    };
+    const Verdicts& verdicts() const { return verdicts_; }
+    bool is_busy() const { return measuring_.valid() || changing_.valid(); }
+
+    void change(Change change);
+    /// Lays a plate on the segments and the stumps; one of that name is replaced. m.
+    void lay_plate(const std::string& name, int screws_per_segment, double screw_length, double height);
+    /// The plan with the change, once it is made; empty: none. Taken once.
+    std::filesystem::path take_changed();
+
+private:
+    using WholeChange = std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>;
+    void begin(WholeChange change);
+
+    Workbench& bench_;
+    CaseRun& run_;
+    std::shared_ptr<const reconstruct::Reconstruction> now_;
+    std::filesystem::file_time_type of_{};
+    std::future<Verdicts> measuring_;
+    std::future<std::filesystem::path> changing_;
+    std::filesystem::path changed_;
+    Verdicts verdicts_;
+};
+
+/// Puts a thing into a list by its name: replaces the one of that name, or adds it.
+template <class Named>
+void put_named(std::vector<Named>& all, Named one) {
+    for (Named& known : all)
+        if (known.name == one.name) {
+            known = std::move(one);
+            return;
+        }
+    all.push_back(std::move(one));
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/plan/plan_alternatives.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace tactus::view {
+
+namespace {
+
+int find(const cases::CasePlan& plan, const std::string& name) {
+    const auto found = std::ranges::find(plan.alternatives, name, &cases::PlanAlternative::name);
+    return found == plan.alternatives.end() ? -1 : static_cast<int>(found - plan.alternatives.begin());
+}
+
+}  // namespace
+
+void PlanAlternatives::tend() {
+    if (counting_.valid() && counting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        numbers_.clear();
+        try {
+            for (const AlternativeNumbers& one : counting_.get()) numbers_.push_back(words_of(one));
+        } catch (const Error& error) {
+            bench_.tell(error.what(), true);
+        }
+    }
+    const cases::CasePlan* plan = run_.plan();
+    const int other = plan ? find(*plan, compared_) : -1;
+    if (other < 0 || other == plan->current) {
+        if (!shown_.empty()) scene_.compare({}, "");
+        shown_.clear();
+        return;
+    }
+    if (shown_ == compared_ && of_ == run_.written()) return;
+    if (counting_.valid()) return;  // of the plan as it was; then again
+    shown_ = compared_;
+    of_ = run_.written();
+    scene_.compare(poses_of_alternative(*plan, other), compared_);
+    std::vector<Vec3> middles;
+    for (const auto& body : scene_.plan_bodies()) middles.push_back(body ? body->home.position : Vec3(0.0));
+    differences_ = differences(*plan, plan->current, other, middles);
+    counting_ = std::async(std::launch::async, [plan = *plan, other, folder = run_.file().parent_path()] {
+        return Numbers{numbers_of_alternative(plan, plan.current, folder), numbers_of_alternative(plan, other, folder)};
+    });
+}
+
+void PlanAlternatives::list(const cases::CasePlan& plan) {
+    for (int n = 0; n < static_cast<int>(plan.alternatives.size()); ++n) {
+        const std::string& name = plan.alternatives[static_cast<std::size_t>(n)].name;
+        ImGui::PushID(n);
+        const bool is_current = n == plan.current;
+        if (ImGui::RadioButton(name.c_str(), is_current) && !is_current) run_.go_to_alternative(n);
+        mark_spot("alternative " + name);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", is_current ? "the scene shows this one" : "the scene goes to this one");
+        if (!is_current) {
+            ImGui::SameLine();
+            bool is_compared = compared_ == name;
+            if (ImGui::Checkbox("compare", &is_compared)) compared_ = is_compared ? name : "";
+            mark_spot("compare " + name);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("drawn through the current one, in a second colour");
+            ImGui::SameLine();
+            if (ImGui::SmallButton("drop")) run_.drop_alternative(n);
+            mark_spot("drop " + name);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("its steps stay in the file; 'undrop' brings it back");
+        }
+        ImGui::PopID();
+    }
+}
+
+void PlanAlternatives::draw() {
+    if (!run_.plan()) return;
+    const cases::CasePlan& plan = *run_.plan();
+    ImGui::BeginDisabled(!run_.is_live());
+    if (ImGui::Button("new from here")) run_.go_to_alternative(static_cast<int>(plan.alternatives.size()));
+    mark_spot("new from here");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("begins an alternative at the plan as it is now");
+    ImGui::SameLine();
+    if (ImGui::Button("undrop")) run_.drop_alternative(-2);
+    mark_spot("undrop");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("brings the alternative that was dropped last back");
+    list(plan);
+    ImGui::EndDisabled();
+    if (shown_.empty()) return;
+    for (const std::string& line : numbers_) ImGui::TextWrapped("%s", line.c_str());
+    if (counting_.valid()) ImGui::TextDisabled("...");
+    if (differences_.empty()) ImGui::TextDisabled("all fragments lie alike");
+    for (const std::string& line : differences_) ImGui::TextWrapped("%s", line.c_str());
+}
+
+}  // namespace tactus::view
