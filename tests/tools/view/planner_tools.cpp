@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A planner with a mouse: maps, alternatives, sections and measurements of a plan.
 #include "assets/cases/plan_file.hpp"
-#include "assets/file/json.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/view/eyes.hpp"
@@ -30,7 +29,6 @@ int count(const Person& person, const Spot& scene, Like&& like) {
 }
 
 bool is_red(int r, int g, int b) { return r > 90 && r > 2 * g && r > 2 * b; }
-bool is_blue(int r, int g, int b) { return b > 90 && b > r + 60 && b > g + 40; }
 
 }  // namespace
 
@@ -63,12 +61,12 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
     Person::wait(3.0);
     const int red = count(person, scene, is_red);
 
-    // Maps: the fragments of a broken jaw are far from each other, some lie in each other.
+    // Maps: fragments that face nothing are grey, their painted fractures, too.
     press(person, eyes, "gap map");
-    CHECK(comes([&] { return count(person, scene, is_red) > red + 500; }));
+    CHECK(comes([&] { return count(person, scene, is_red) < red / 2; }));
     keep(person, "planner-1-gap-map");
     press(person, eyes, "gap map");
-    CHECK(comes([&] { return count(person, scene, is_red) < red + 100; }));
+    CHECK(comes([&] { return count(person, scene, is_red) > red * 3 / 4; }));
     // Without a healthy side there is no such map, and the window says so.
     press(person, eyes, "mirror map");
     Person::wait(2.0);
@@ -117,8 +115,9 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
     keep(person, "planner-6-measured");
     press(person, eyes, "save for Slicer");
     REQUIRE(comes([&] { return fs::exists(folder.path / "out/measurements-1.mrk.json"); }));
-    const auto marks = file::Json::parse(slurp(folder.path / "out/measurements-1.mrk.json"));
-    CHECK(marks.at("markups").at(0).at("controlPoints").size() >= 2);
+    const std::string marks = slurp(folder.path / "out/measurements-1.mrk.json");
+    CHECK(marks.find("\"controlPoints\"") != std::string::npos);
+    CHECK(marks.find("\"LPS\"") != std::string::npos);
     interrupt(folder.path);
     done.wait();
 }
