@@ -366,7 +366,7 @@ TEST_CASE("the report of a trauma case is a PDF file too, with all of the page",
     std::getline(entries, line);
     std::getline(entries, line);
     for (int n = 1; std::getline(entries, line) && line.ends_with(" n "); ++n)
-        CHECK(bytes.compare(std::stoul(line.substr(0, 10)), std::to_string(n).size() + 5,
+        CHECK(bytes.compare(std::stoul(line.substr(0, 10)), std::to_string(n).size() + 6,
                             std::to_string(n) + " 0 obj") == 0);
     const auto at = [&](const std::string& text) { return bytes.find("(" + text); };
     // Warnings first; then what hangs together, fits, pictures with sides, scale and names, gaps, poses, steps.
