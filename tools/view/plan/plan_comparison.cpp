@@ -35,7 +35,7 @@ AlternativeNumbers numbers_of_alternative(const cases::CasePlan& plan, int alter
     }
     std::vector<double> gaps;
     for (const study::PlanGap& pair : study::plan_gaps(other, folder, {})) {
-        if (pair.gap.facing_area > 0.0) gaps.push_back(pair.gap.median);
+        if (pair.gap.facing > 0.0) gaps.push_back(pair.gap.median);
         numbers.deepest = std::max(numbers.deepest, pair.gap.deepest);
         numbers.overlap += pair.overlap;
     }
