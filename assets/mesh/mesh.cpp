@@ -20,16 +20,18 @@ const Vec3& corner(const geometry::TriangleSurface& mesh, const std::array<int, 
 Mesh surface_of(const volume::Grid& distance) {
     Mesh mesh;
     static_cast<geometry::TriangleSurface&>(mesh) = geometry::iso_surface(distance, 0.0f, false);
-    // Not from the distances: in bone thinner than a voxel their slope is that of either side.
-    mesh.normals.assign(mesh.vertices.size(), Vec3(0.0));
-    for (const auto& t : mesh.triangles) {
-        const Vec3 across =
-            glm::cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0));
-        for (const int n : t) mesh.normals[static_cast<std::size_t>(n)] += across;
-    }
-    for (Vec3& normal : mesh.normals) {
-        const double length = glm::length(normal);
-        normal = length > 0.0 ? normal / length : Vec3(0.0, 0.0, 1.0);
+    const auto& size = distance.size;
+    for (const Vec3& vertex : mesh.vertices) {
+        const Vec3 u = (vertex - distance.origin) / distance.spacing;
+        const int i = static_cast<int>(u.x + 0.5), j = static_cast<int>(u.y + 0.5), k = static_cast<int>(u.z + 0.5);
+        const int x0 = std::max(i - 1, 0), x1 = std::min(i + 1, size[0] - 1), y0 = std::max(j - 1, 0);
+        const int y1 = std::min(j + 1, size[1] - 1), z0 = std::max(k - 1, 0), z1 = std::min(k + 1, size[2] - 1);
+        const Vec3 slope =
+            Vec3(distance.at(x1, j, k) - distance.at(x0, j, k), distance.at(i, y1, k) - distance.at(i, y0, k),
+                 distance.at(i, j, z1) - distance.at(i, j, z0)) /
+            (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
+        const double length = glm::length(slope);
+        mesh.normals.push_back(length > 0.0 ? slope / length : Vec3(0.0, 0.0, 1.0));
     }
     return mesh;
 }

@@ -29,7 +29,7 @@ struct MeshOrigin {
 /// triangles. `origin` may be null.
 Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
-/// The zero surface of a signed distance (m, negative inside). A normal is the mean of the triangles around it, by area.
+/// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
 Mesh surface_of(const volume::Grid& distance);
 
 double volume_of(
