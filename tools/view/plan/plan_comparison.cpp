@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/plan/plan_comparison.hpp"
 
+#include "tools/counted.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 #include "tools/study/planning/plan_words.hpp"
@@ -47,12 +48,13 @@ AlternativeNumbers numbers_of_alternative(const cases::CasePlan& plan, int alter
 }
 
 std::string words_of(const AlternativeNumbers& n) {
-    std::string words = fmt::format("{}: {} steps, {} shown, {} fits hold", n.name, n.steps, n.shown, n.fits);
+    std::string words = fmt::format("{}: {}, {} shown, {} that hold", n.name, counted(n.steps, "step"), n.shown,
+                                    counted(n.fits, "fit"));
     if (n.facing > 0)
-        words +=
-            fmt::format("; {} pairs face each other, median gap {:.2f} mm", n.facing, study::shown_mm(n.gap * 1e3));
+        words += fmt::format("; {} of fragments facing each other, median gap {:.2f} mm", counted(n.facing, "pair"),
+                             study::shown_mm(n.gap * 1e3));
     words += fmt::format("; overlap {:.1f} mm³, {:.2f} mm deep", n.overlap * 1e9, n.deepest * 1e3);
-    if (n.warnings) words += fmt::format("; {} warnings", *n.warnings);
+    if (n.warnings) words += "; " + counted(*n.warnings, "warning");
     return words;
 }
 
