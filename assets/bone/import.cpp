@@ -16,7 +16,7 @@ std::string bone_name(const std::filesystem::path& input) {
 void describe(Bone& bone, const ImportOptions& options, const ImportSummary& found) {
     add_provenance(bone, options, found, hash_of_source(options.input));
     bone.name = bone_name(options.input);
-    bone.provenance["component"] = options.component;
+    bone.provenance["component"] = options.component.empty() ? "largest" : options.component;
     bone.provenance["fill"] = options.fill ? "true" : "false";
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
 }

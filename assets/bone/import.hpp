@@ -25,7 +25,8 @@ struct ImportOptions {
     /// HU; samples at or above it are bone. Default: suggested_threshold of the whole volume, which `info` prints.
     std::optional<double> threshold;
     std::string crop;  ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
-    std::string component = "largest";  ///< "largest", "all", or the number of components to keep, largest first
+    /// "largest", "all", or the number of components to keep, largest first. Default: of a label all, else the largest.
+    std::string component;
     /// Unit of length: "mm", "cm" or "m". Default: what the file states, or mm when the size is plausible for a bone.
     std::optional<std::string> unit;
     std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent

@@ -45,6 +45,20 @@ std::size_t pieces_of(volume::Grid distance) {
     return volume::components_above(distance, 0.0f).voxels.size();
 }
 
+/// Leaves the `keep` largest parts of the label, and returns how many it had.
+std::size_t keep_parts(volume::Grid& map, int label, std::size_t keep) {
+    volume::Grid inside{map.size, map.origin, map.spacing, {}};
+    inside.values.reserve(map.values.size());
+    for (const float value : map.values) inside.values.push_back(value == static_cast<float>(label) ? 1.0f : 0.0f);
+    const volume::Components parts = volume::components_above(inside, 0.5f);
+    for (int k = 0; k < map.size[2]; ++k)
+        for (int j = 0; j < map.size[1]; ++j)
+            for (const volume::SampleRun& run : parts.rows.row(j, k))
+                if (static_cast<std::size_t>(run.part) >= keep)
+                    for (int i = run.begin; i < run.end; ++i) map.at(i, j, k) = 0.0f;
+    return parts.voxels.size();
+}
+
 constexpr double air_around = 5e-3;  // m
 
 // Bounding box of each label, in samples.
@@ -112,6 +126,7 @@ volume::Grid part_around(volume::ReorientedVolume& source, const volume::Grid& l
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress) {
     check_options(options);
     if (!options.crop.empty()) throw Error("--crop is for CT volumes; in a label map the bones are separated already");
+    const std::size_t keep = parse_component(options.component, 0);
     const ImportReport report{progress};
     const std::string file = options.input.string();
     report(0.0, "reading");
@@ -143,17 +158,19 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
         // One label at a time is in memory.
         const volume::Components::Box& box = boxes.at(segment.label);
-        const volume::Grid map = part_around(source, source.layout(), box, 0);
+        volume::Grid map = part_around(source, source.layout(), box, 0);
+        const std::size_t parts = keep > 0 ? keep_parts(map, segment.label, keep) : 0;
         const volume::Grid values = ct ? part_around(*ct, source.layout(), box, 4) : volume::Grid{};
         how.hu = ct ? &values : nullptr;
         ImportedBone made;
         made.bone = bone_of_label(map, segment, how, options.run);
         made.summary.hu = volume::name_of(hu);
         made.summary.notes = reader->about.notes;
-        made.summary.components = pieces_of(made.bone.distance);
+        made.summary.components = keep > 0 ? parts : pieces_of(made.bone.distance);
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);
+        if (keep > 0) made.bone.provenance["component"] = options.component;
         if (!options.ct.empty()) made.bone.provenance["ct"] = options.ct.filename().string();
         bones.push_back(std::move(made));
     }

@@ -56,7 +56,8 @@ void check_output(const ImportOptions& options, const std::filesystem::path& out
         throw Error(fmt::format("{}: this is a folder; name a file for the bone", out.string()));
 }
 
-std::size_t parse_component(const std::string& text) {
+std::size_t parse_component(const std::string& text, std::size_t otherwise) {
+    if (text.empty()) return otherwise;
     if (text == "largest") return 1;
     if (text == "all") return 0;
     std::size_t count = 0;

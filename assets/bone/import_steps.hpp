@@ -39,8 +39,9 @@ void check_options(const ImportOptions& options);
 /// never overwrite a patient's file.
 void check_output(const ImportOptions& options, const std::filesystem::path& out);
 
-/// Number of components to keep for "largest", "all" or a number; 0 for all. Throws Error for anything else.
-std::size_t parse_component(const std::string& text);
+/// Number of components to keep for "largest", "all" or a number; 0 for all; `otherwise` for "". Throws Error for anything
+/// else.
+std::size_t parse_component(const std::string& text, std::size_t otherwise = 1);
 
 /// Throws Error for more voxels than `most`.
 void check_layout(const volume::Grid& layout, double most);

@@ -279,7 +279,19 @@ TEST_CASE("a label map's file becomes one file of bones in its frame, and labels
     for (float& value : labels.values) value = value > 0.0f ? 1.0f : 0.0f;
     file::write_whole_file(options.input, nrrd_of(labels));
     options.label = "1";
-    CHECK(bone::import_labels(options).front().summary.components == 2);
+    const bone::ImportedBone both_parts = bone::import_labels(options).front();
+    CHECK(both_parts.summary.components == 2);
+    options.component = "largest";
+    const bone::ImportedBone larger = bone::import_labels(options).front();
+    CHECK(larger.summary.components == 2);
+    CHECK(larger.bone.provenance.at("component") == "largest");
+    CHECK(larger.summary.bone_volume_mm3 < 0.7 * both_parts.summary.bone_volume_mm3);
+    CHECK(larger.summary.bone_volume_mm3 > 0.4 * both_parts.summary.bone_volume_mm3);
+    options.component = "2";
+    CHECK(bone::import_labels(options).front().bone.distance.values == both_parts.bone.distance.values);
+    options.component = "none";
+    CHECK_THROWS_WITH(bone::import_labels(options), ContainsSubstring("'largest', 'all'"));
+    options.component.clear();
     options.crop = "0:1,0:1,0:1";
     CHECK_THROWS_WITH(bone::import_labels(options), ContainsSubstring("crop"));
 }

@@ -76,8 +76,9 @@ std::string text_of(const bone::ImportSummary& s, const bone::ImportOptions& opt
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
         "found\n{}  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n  {}\n{}",
         s.size[0], s.size[1], s.size[2], s.voxel_mm[0], s.voxel_mm[1], s.voxel_mm[2], s.bone_volume_mm3,
-        s.surface_area_mm2, counted(s.components, "component"), threshold_text(s, options.component), s.density.min,
-        s.density.max, s.density.mean, density_source(s, options.mesh_density), study::saw_line(s.voxel_mm),
+        s.surface_area_mm2, counted(s.components, "component"),
+        threshold_text(s, options.component.empty() ? "largest" : options.component), s.density.min, s.density.max,
+        s.density.mean, density_source(s, options.mesh_density), study::saw_line(s.voxel_mm),
         s.points ? fmt::format("  {} on the surface\n", counted(s.points, "point")) : "");
     for (const std::string& note : s.notes) text += fmt::format("  {}\n", note);
     return text;
@@ -131,8 +132,8 @@ Action add(VerbOptions& verb) {
              "CT number at and above which a voxel is bone, HU (default: the one that info suggests)")
         .unit("HU");
     verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
-    verb.add("--component", choice->component, "parts to keep: largest, all, or a number, largest first")
-        .shows_default();
+    verb.add("--component", choice->component,
+             "parts to keep: largest, all, or a number, largest first (default: of a label all, else the largest)");
     add_unit(verb, choice->unit);
     verb.add("--density", choice->mesh_density,
              "of a mesh, throughout, kg/m^3 (default: a cortex of 1800 to 2 mm depth around a core of 400)")

@@ -31,7 +31,7 @@ std::size_t label_named(Painting& painting, const std::string& name) {
     };
     if (const std::size_t found = find(); found < painting.labels().size()) return found;
     const auto unused = std::ranges::find_if(painting.labels(), [](const segment::SeedLabel& label) {
-        return label.strokes.empty() && label.name.starts_with("fragment ");
+        return label.strokes.empty() && label.name.starts_with("fragment_");
     });
     const std::size_t active = painting.active;
     if (unused != painting.labels().end())

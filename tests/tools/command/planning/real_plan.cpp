@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hip that was really broken, by its own faces and against the other side; and a pelvis with a shifted part. Runs
 // only where TACTUS_SHARED_DATA names a folder with these published scans.
+#include "assets/volume/scan_volume.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/volume/components.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -117,9 +121,24 @@ TEST_CASE("two pieces of a broken hip that do not touch are not fitted to each o
     if (!has(labels)) return;
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    // Label 2 is in two parts; the smaller one becomes label 3.
+    using namespace tactus::volume;
+    Grid map = lps_grid(read_volume(labels));
+    Grid second{map.size, map.origin, map.spacing, {}};
+    for (const float value : map.values) second.values.push_back(value == 2.0f ? 1.0f : 0.0f);
+    const Components parts = components_above(second, 0.5f);
+    REQUIRE(parts.voxels.size() == 2);
+    for (int k = 0; k < map.size[2]; ++k)
+        for (int j = 0; j < map.size[1]; ++j)
+            for (const SampleRun& run : parts.rows.row(j, k))
+                for (int i = run.begin; i < run.end; ++i) map.at(i, j, k) = run.part == 0 ? 2.0f : 3.0f;
+    std::vector<std::uint8_t> values;
+    for (const float value : map.values) values.push_back(static_cast<std::uint8_t>(value));
+    const std::vector<Segment> segments{{1, "main", {}}, {2, "large", {}}, {3, "small", {}}};
+    write_labels(map, values, segments, file("parts.nrrd"));
     for (const std::string part : {"1", "2"}) {
         REQUIRE(folder
-                    .tactus("import " + labels.string() + " --label 2 --component " + part + " -o " +
+                    .tactus("import " + file("parts.nrrd") + " --label " + (part == "1" ? "large" : "small") + " -o " +
                             file("part" + part + ".vdb"))
                     .code == 0);
         REQUIRE(folder.tactus("export " + file("part" + part + ".vdb") + " -o " + file("part" + part + ".stl")).code ==

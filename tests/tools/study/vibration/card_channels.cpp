@@ -33,6 +33,7 @@ full_scale = "1 m"
 std::string refusal(const std::string& actuator, const std::string& sensor) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "p.toml", problems);
+    for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(problems.empty());
     try {
         study::card_channels(patch, actuator, sensor);

@@ -130,7 +130,7 @@ TEST_CASE("a fragment that is merged gives its strokes to the other one") {
     REQUIRE(painting.merge(2, 1));
     REQUIRE(painting.labels().size() == 2);
     CHECK(painting.active == 1);
-    CHECK(painting.labels()[1].name == "fragment 2");
+    CHECK(painting.labels()[1].name == "fragment_2");
     CHECK(*painting.labels()[1].colour == kept);
     CHECK(painting.labels()[1].strokes.size() == 2);
     settle(bench);
