@@ -155,3 +155,26 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
     CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"),
                       Catch::Matchers::ContainsSubstring("cannot be changed"));
 }
+
+TEST_CASE("a dropped alternative comes back beside one that was begun since, and the plan can be read") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    const auto tell = [&](int kind, double place) {
+        cases::StepRow row;
+        row.kind = kind;
+        row.after = place;
+        keeper.add(row, 0.0);
+    };
+    tell(cases::row_alternative, 1.0);
+    tell(cases::row_alternative, 0.0);
+    tell(cases::row_drop, 1.0);
+    tell(cases::row_alternative, 1.0);
+    tell(cases::row_undrop, -1.0);
+    keeper.finish();
+    CHECK(keeper.trouble().empty());
+    const cases::CasePlan plan = cases::load_case_plan(file);
+    REQUIRE(plan.alternatives.size() == 3);
+    CHECK(plan.current == 1);
+    CHECK(plan.alternatives[2].name == "alternative 2");
+}
