@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
@@ -140,6 +141,29 @@ TEST_CASE("a plan of another run is never overwritten, and one that is continued
     }
     CHECK(file::read_whole_file(file.string() + ".2") == "what is this?");
     CHECK(cases::load_case_plan(file).steps.empty());
+}
+
+TEST_CASE("a plan with a reconstruction is continued, whose files a run names by their whole paths") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    const auto plan = [](const std::string& where) {
+        reconstruct::Reconstruction all;
+        all.inputs.planes = {{Vec3(0.0), Vec3(1.0, 0.0, 0.0), {}}, {Vec3(0.03, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}}};
+        all.donor = {where + "fibula.stl", 1};
+        all.jaw = {where + "jaw.stl", 2};
+        all.tumour = {where + "tumour.stl", 3};
+        cases::PlanStep step;
+        step.kind = cases::StepKind::reconstruct;
+        step.by = "command";
+        step.fragments = {0, 1};
+        step.reconstruction = std::make_shared<reconstruct::Reconstruction>(all);
+        cases::CasePlan made = two();
+        cases::add_step(made, step);
+        return made;
+    };
+    cases::save_case_plan(plan(""), file);
+    cases::PlanKeeper(plan("/cases/"), file).finish();
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".1"));
 }
 
 TEST_CASE("two keepers of one plan: the second is refused until the first has ended") {
