@@ -91,9 +91,11 @@ struct TumourMargin {
             for (reconstruct::OneWayWall& wall : walls_) wall.release();
             return;
         }
-        // What goes away fades; what comes begins at a depth of 0.
+        // What goes away fades to the end, also when the piece is back before; what comes begins at a depth of 0.
         const double fades = tick.elapsed_seconds() / fade;
-        share_ = is_there.get() ? std::min(1.0, share_ + fades) : std::max(0.0, share_ - fades);
+        const bool goes =
+            !is_there.get() || (share_ < 1.0 && std::ranges::any_of(walls_, &reconstruct::OneWayWall::holds));
+        share_ = goes ? std::max(0.0, share_ - fades) : std::min(1.0, share_ + fades);
         double nearest = std::numeric_limits<double>::infinity();
         Vec3 force(0.0);
         for (reconstruct::OneWayWall& wall : walls_) {

@@ -180,6 +180,26 @@ TEST_CASE("the margin goes with the piece: held or moved it is no more, and what
     }
 }
 
+TEST_CASE("a piece that is taken and let go at once pushes no hand that came deeper meanwhile") {
+    Rig rig;
+    rig.node.feed<double>("held", -1.0).connect("held");
+    rig.node.prepare();
+    rig.node.run(100);
+    rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm);
+    rig.node.feed<double>("held", 0.0);
+    for (int n = 0; n < 40; ++n) rig.at(Vec3(-12.0, 0.0, 0.0) * mm);
+    double last = glm::length(rig.at(Vec3(-4.0, 0.0, 0.0) * mm));
+    CHECK(last > 0.1);
+    rig.node.feed<double>("held", -1.0);
+    for (int n = 0; n < 100; ++n) {
+        const double now = glm::length(rig.at(Vec3(-4.0, 0.0, 0.0) * mm));
+        CHECK(now <= last);
+        last = now;
+    }
+    CHECK(last == 0.0);
+    CHECK(rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm).x < -1.0);
+}
+
 TEST_CASE("a margin that cannot be is refused with the reason, and poses that are none give no force") {
     Rig rig;
     rig.node.set("piece", "tumour");
