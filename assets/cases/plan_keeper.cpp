@@ -3,12 +3,15 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <memory>
 #include <system_error>
+#include <utility>
 
 namespace tactus::cases {
 
@@ -32,6 +35,12 @@ bool is_continued(const std::string& text, const CasePlan& plan) {
             for (PlanStep& step : p.steps) {
                 if (step.mirror) step.mirror->file.clear();
                 if (step.painted) step.painted->file.clear();
+                if (!step.reconstruction) continue;
+                auto all = std::make_shared<reconstruct::Reconstruction>(*step.reconstruction);
+                all->donor.file.clear();
+                if (all->jaw) all->jaw->file.clear();
+                if (all->tumour) all->tumour->file.clear();
+                step.reconstruction = std::move(all);
             }
         };
         bare(old);

@@ -27,10 +27,11 @@ int whole(double value, double low, double high, const char* what) {
     return static_cast<int>(value);
 }
 
-/// "alternative 2", or the next free number.
-std::string free_alternative_name(const CasePlan& plan) {
+/// "alternative 2", or the next free number; that of one which may come back is not free.
+std::string free_alternative_name(const CasePlan& plan, const std::optional<PlanAlternative>& dropped) {
     for (std::size_t n = plan.alternatives.size() + 1;; ++n) {
         std::string name = fmt::format("alternative {}", n);
+        if (dropped && dropped->name == name) continue;
         if (std::ranges::find(plan.alternatives, name, &PlanAlternative::name) == plan.alternatives.end()) return name;
     }
 }
@@ -89,7 +90,7 @@ void RunSteps::switch_to(double place) {
     const auto count = plan_.alternatives.size();
     const int n = whole(place, 0.0, static_cast<double>(count), "alternative");
     if (n == static_cast<int>(count))
-        plan_.alternatives.push_back({free_alternative_name(plan_), fit::after_step(plan_.place().head)});
+        plan_.alternatives.push_back({free_alternative_name(plan_, dropped_), fit::after_step(plan_.place().head)});
     plan_.current = n;
     state_ = state_of(plan_);
 }

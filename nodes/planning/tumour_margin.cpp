@@ -39,7 +39,8 @@ struct TumourMargin {
     Asset<cases::CaseBones> plan{"the plan, whose reconstruction has the planes of the jaw and the margin"};
     Asset<bone::Bone> tumour{"its surface, in the frame of the jaw's scan"};
     Text piece{"",
-               "name of the piece that the tumour lies in; empty: the plan's first, as 'plan reconstruct' makes it"};
+               "name of the piece that the tumour lies in; empty: the first of the reconstruction, which 'plan "
+               "reconstruct' resects"};
     Param margin{structural, "0 mm", "0 mm", "100 mm", "between tumour and walls; 0: that of the plan"};
     Param radius{"25 mm", "1 mm", "200 mm", "a hand that passes the plane farther from the limb's axis is free"};
     Param moved{"2 mm", "0.1 mm", "100 mm", "a piece that has moved so far is out"};
@@ -51,14 +52,16 @@ struct TumourMargin {
 
     void prepare(const Setup& setup) {
         const auto& fragments = plan->plan.fragments;
-        const auto found = piece.value.empty() ? fragments.begin()
+        const cases::PlanState state = cases::state_of(plan->plan);
+        if (!state.reconstruction)
+            setup.fail("plan '" + plan.name + "' has no reconstruction: 'tactus plan reconstruct' makes one");
+        // Other alternatives have pieces of their own.
+        const int first = state.pieces.empty() ? 0 : state.pieces.front();
+        const auto found = piece.value.empty() ? fragments.begin() + first
                                                : std::ranges::find(fragments, piece.value, &cases::PlanFragment::name);
         if (found == fragments.end())
             setup.fail("plan '" + plan.name + "' has no piece '" + piece.value + "', in which the tumour would lie");
         piece_ = static_cast<std::size_t>(found - fragments.begin());
-        const cases::PlanState state = cases::state_of(plan->plan);
-        if (!state.reconstruction)
-            setup.fail("plan '" + plan.name + "' has no reconstruction: 'tactus plan reconstruct' makes one");
         std::vector<Vec3> surface;
         const std::vector<contact::SurfacePoint> sampled =
             tumour->points.empty() ? contact::sample_surface(tumour->distance, {}) : tumour->points;
@@ -88,9 +91,11 @@ struct TumourMargin {
             for (reconstruct::OneWayWall& wall : walls_) wall.release();
             return;
         }
-        // What goes away fades; what comes begins at a depth of 0.
+        // What goes away fades to the end, also when the piece is back before; what comes begins at a depth of 0.
         const double fades = tick.elapsed_seconds() / fade;
-        share_ = is_there.get() ? std::min(1.0, share_ + fades) : std::max(0.0, share_ - fades);
+        const bool goes =
+            !is_there.get() || (share_ < 1.0 && std::ranges::any_of(walls_, &reconstruct::OneWayWall::holds));
+        share_ = goes ? std::max(0.0, share_ - fades) : std::min(1.0, share_ + fades);
         double nearest = std::numeric_limits<double>::infinity();
         Vec3 force(0.0);
         for (reconstruct::OneWayWall& wall : walls_) {

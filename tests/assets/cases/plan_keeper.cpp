@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
@@ -142,6 +143,29 @@ TEST_CASE("a plan of another run is never overwritten, and one that is continued
     CHECK(cases::load_case_plan(file).steps.empty());
 }
 
+TEST_CASE("a plan with a reconstruction is continued, whose files a run names by their whole paths") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    const auto plan = [](const std::string& where) {
+        reconstruct::Reconstruction all;
+        all.inputs.planes = {{Vec3(0.0), Vec3(1.0, 0.0, 0.0), {}}, {Vec3(0.03, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}}};
+        all.donor = {where + "fibula.stl", 1};
+        all.jaw = {where + "jaw.stl", 2};
+        all.tumour = {where + "tumour.stl", 3};
+        cases::PlanStep step;
+        step.kind = cases::StepKind::reconstruct;
+        step.by = "command";
+        step.fragments = {0, 1};
+        step.reconstruction = std::make_shared<reconstruct::Reconstruction>(all);
+        cases::CasePlan made = two();
+        cases::add_step(made, step);
+        return made;
+    };
+    cases::save_case_plan(plan(""), file);
+    cases::PlanKeeper(plan("/cases/"), file).finish();
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".1"));
+}
+
 TEST_CASE("two keepers of one plan: the second is refused until the first has ended") {
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
@@ -154,4 +178,27 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
     CHECK_NOTHROW(cases::PlanKeeper(two(), file));
     CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"),
                       Catch::Matchers::ContainsSubstring("cannot be changed"));
+}
+
+TEST_CASE("a dropped alternative comes back beside one that was begun since, and the plan can be read") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    const auto tell = [&](int kind, double place) {
+        cases::StepRow row;
+        row.kind = kind;
+        row.after = place;
+        keeper.add(row, 0.0);
+    };
+    tell(cases::row_alternative, 1.0);
+    tell(cases::row_alternative, 0.0);
+    tell(cases::row_drop, 1.0);
+    tell(cases::row_alternative, 1.0);
+    tell(cases::row_undrop, -1.0);
+    keeper.finish();
+    CHECK(keeper.trouble().empty());
+    const cases::CasePlan plan = cases::load_case_plan(file);
+    REQUIRE(plan.alternatives.size() == 3);
+    CHECK(plan.current == 1);
+    CHECK(plan.alternatives[2].name == "alternative 2");
 }

@@ -127,6 +127,30 @@ TEST_CASE("a hand that comes from the front, or passes beside the limb, is free"
     CHECK(rig.go(Vec3(-30.0, 26.0, 0.0) * mm, Vec3(0.0, 26.0, 0.0) * mm) == Vec3(0.0));
 }
 
+TEST_CASE("in another alternative of a plan the margin goes with the piece of that reconstruction") {
+    cases::CaseBones two = *jaw();
+    for (const char* name : {"resected-2", "jaw-1-2"}) two.plan.fragments.push_back({name, name, 0, Vec3(1.0)});
+    two.bones.insert(two.bones.end(), {two.bones[0], two.bones[1]});
+    cases::PlanStep again = two.plan.steps.front();
+    again.fragments = {2, 3};
+    two.plan.alternatives.push_back({"2", {}});
+    two.plan.current = 1;
+    cases::add_step(two.plan, again);
+    const auto plan = std::make_shared<const cases::CaseBones>(std::move(two));
+    Rig rig;
+    NodeHarness shown("case_scene", {.period = flicks_per_second / 1000});
+    shown.asset("plan", plan).disconnect_optional();
+    shown.prepare();
+    shown.run(1);
+    coupling::Scene scene = shown.last<coupling::Scene>("scene");
+    REQUIRE(scene.objects[0].body.map == nullptr);
+    rig.node.asset("plan", plan).feed("scene", scene);
+    rig.node.prepare();
+    rig.node.run(100);
+    CHECK(rig.node.last<bool>("is_there"));
+    CHECK(rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm).x < -1.0);
+}
+
 TEST_CASE("the margin goes with the piece: held or moved it is no more, and what is felt fades") {
     for (const bool is_held : {true, false}) {
         Rig rig;
@@ -154,6 +178,26 @@ TEST_CASE("the margin goes with the piece: held or moved it is no more, and what
         for (int n = 0; n < 100; ++n) CHECK(rig.at(Vec3(-12.0, 0.0, 0.0) * mm) == Vec3(0.0));
         CHECK(rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm).x < -1.0);
     }
+}
+
+TEST_CASE("a piece that is taken and let go at once pushes no hand that came deeper meanwhile") {
+    Rig rig;
+    rig.node.feed<double>("held", -1.0).connect("held");
+    rig.node.prepare();
+    rig.node.run(100);
+    rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm);
+    rig.node.feed<double>("held", 0.0);
+    for (int n = 0; n < 40; ++n) rig.at(Vec3(-12.0, 0.0, 0.0) * mm);
+    double last = glm::length(rig.at(Vec3(-4.0, 0.0, 0.0) * mm));
+    CHECK(last > 0.1);
+    rig.node.feed<double>("held", -1.0);
+    for (int n = 0; n < 100; ++n) {
+        const double now = glm::length(rig.at(Vec3(-4.0, 0.0, 0.0) * mm));
+        CHECK(now <= last);
+        last = now;
+    }
+    CHECK(last == 0.0);
+    CHECK(rig.go(Vec3(-30.0, 0.0, 0.0) * mm, Vec3(-12.0, 0.0, 0.0) * mm).x < -1.0);
 }
 
 TEST_CASE("a margin that cannot be is refused with the reason, and poses that are none give no force") {

@@ -61,10 +61,10 @@ FlapStudy::FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state,
     if (all_.tumour) tumour_ = reconstruct::read_surface(cases::file_of(all_.tumour->file, folder)).vertices;
     fibula_ = reconstruct::plan_fibula(inputs_);
     for (const int piece : state.pieces) {
-        const cases::PlanFragment& fragment = plan.fragments[static_cast<std::size_t>(piece)];
-        if (is_segment(fragment.name)) segment_poses_.push_back(state.arrangement.pose(piece));
+        const auto n = static_cast<std::size_t>(piece);
+        if (is_segment(plan.fragments[n].name)) segment_poses_.push_back(state.arrangement.pose(piece));
         else if (!state.arrangement.is_hidden(piece))
-            jaw_files_.emplace_back(cases::file_of(fragment.file, folder), state.arrangement.pose(piece));
+            jaw_files_.emplace_back(cases::file_of(state.files[n].file, folder), state.arrangement.pose(piece));
     }
     if (segment_poses_.size() != fibula_.segments.size()) segment_poses_.clear();
 }

@@ -137,7 +137,7 @@ std::string doubt_of(const fit::KerfEstimate& kerf) {
     if (kerf.is_open)
         return fmt::format(
             "unsure: the cortex beyond the faces does not exclude that bone is lost between them ({:.1f} ± {:.1f} mm): "
-            "say how much with --kerf, or place it by hand",
+            "say how much with --kerf; if none is, place it by hand",
             kerf.kerf * 1e3, kerf.spread * 1e3);
     if (!kerf.is_contradicted)
         return said + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";

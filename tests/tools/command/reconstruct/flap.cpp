@@ -137,6 +137,20 @@ TEST_CASE("plan reach tells what the vessels do, and ranks eight candidates", "[
     CHECK_THAT(made.folder.tactus("plan reach " + made.plan).err, ContainsSubstring("no reconstruction"));
 }
 
+TEST_CASE("a piece of jaw that has another file since is measured in that file", "[slow]") {
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    const fs::path before = made.folder.path / "case-pieces/jaw-1.stl", after = made.folder.path / "painted.stl";
+    REQUIRE(fs::exists(before));
+    const json found = made.reach();
+    fs::copy_file(before, after);
+    REQUIRE(made.change("repaint", "jaw-1 " + after.string()).code == 0);
+    fs::remove(before);
+    CHECK(made.reach()["reaches"] == found["reaches"]);
+    fs::remove(after);
+    CHECK(made.change("reach", "").code == 2);
+}
+
 TEST_CASE("thresholds of a flap are parameters of the plan, and a warning follows them", "[slow]") {
     const FlapCase made;
     json given = made.whole();
