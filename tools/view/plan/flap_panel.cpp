@@ -191,7 +191,7 @@ void FlapPanel::dialog() {
             break;
     }
     const bool can = (!has_name || !form_.name.empty()) && (form_.kind != Kind::vessel || !form_.file.empty());
-    ImGui::BeginDisabled(!can || flap_.is_busy());
+    ImGui::BeginDisabled(!can || flap_.is_changing());
     if (ImGui::Button("apply")) {
         apply();
         ImGui::CloseCurrentPopup();
@@ -210,11 +210,11 @@ void FlapPanel::draw() {
     const reconstruct::Reconstruction* all = flap_.reconstruction();
     if (!all) return;
     ImGui::TextUnformatted("reconstruction (for research, not a medical device)");
-    ImGui::BeginDisabled(flap_.is_busy());
+    ImGui::BeginDisabled(flap_.is_changing());
     lists(*all);
     ImGui::EndDisabled();
     dialog();
-    if (flap_.is_busy()) ImGui::TextDisabled("...");
+    if (flap_.is_measuring() || flap_.is_changing()) ImGui::TextDisabled("...");
     for (const std::string& text : flap_.verdicts().warnings) {
         ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
         ImGui::TextWrapped("%s", text.c_str());

@@ -31,7 +31,9 @@ public:
         std::vector<std::string> lines, warnings;
     };
     const Verdicts& verdicts() const { return verdicts_; }
-    bool is_busy() const { return measuring_.valid() || changing_.valid(); }
+    bool is_measuring() const { return measuring_.valid(); }
+    /// A change is being made; another one is not begun meanwhile.
+    bool is_changing() const { return changing_.valid(); }
 
     void change(Change change);
     /// Lays a plate on the segments and the stumps; one of that name is replaced. m.
