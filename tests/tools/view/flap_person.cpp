@@ -54,14 +54,7 @@ TEST_CASE(
         REQUIRE(walk.waits_for("part segment-2"));
         walk.person.tap("1");
         Person::wait(2.0);
-        walk.press("measure");
-        const Spot scene = walk.eyes.spot("scene picture");
-        const double x = 0.5 * (scene.left + scene.right), y = 0.5 * (scene.top + scene.bottom);
-        for (int n = 0; n < 36 && !walk.shows("keep measurement"); ++n) {
-            walk.person.click(x + 14.0 * (n % 6) - 35.0, y + 24.0 * (n / 6) - 60.0);
-            Person::wait(0.8);
-        }
-        REQUIRE(walk.shows("keep measurement"));
+        walk.measure();
         press("+ implant");
         REQUIRE(walk.waits_for("at the measured point"));
         walk.press("at the measured point");

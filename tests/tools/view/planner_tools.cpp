@@ -114,13 +114,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         Person::wait(2.0);
 
         // Two points, kept, and written for Slicer.
-        walk.press("measure");
-        const double x = 0.5 * (scene.left + scene.right), y = 0.5 * (scene.top + scene.bottom);
-        for (int n = 0; n < 24 && !walk.shows("keep measurement"); ++n) {
-            walk.person.click(x + 14.0 * (n % 6) - 35.0, y + 20.0 * (n / 6) - 30.0);
-            Person::wait(1.0);
-        }
-        REQUIRE(walk.waits_for("keep measurement"));
+        walk.measure();
         walk.press("keep measurement", "panel tree");
         REQUIRE(walk.waits_for("save for Slicer"));
         walk.keep("measured");
