@@ -109,6 +109,7 @@ void Desk::ask_farewell() {
 }
 
 void Desk::draw() {
+    plan_.begin_again();
     follow_run();
     scene_.hand().begin_picture();
     looked_at_.clear();
@@ -124,7 +125,6 @@ void Desk::draw() {
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
     plan_.tend(take_ ? nullptr : bench_.observer());
-    if (std::string again = plan_.take_restart(); !again.empty()) wishes.again_with = std::move(again);
     arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     for (std::size_t c = 0; c < columns_.size(); ++c) {

@@ -30,9 +30,8 @@ namespace tactus::view {
 /// What the desk asks of its owner.
 struct DeskWishes {
     std::filesystem::path open;  ///< a patch, a take or a plan
-    std::string again_with;  ///< the same patch again, with an asset from another file, "ASSET=FILE"
     bool new_patch = false, start_page = false;
-    bool any() const { return !open.empty() || !again_with.empty() || new_patch || start_page; }
+    bool any() const { return !open.empty() || new_patch || start_page; }
 };
 
 class Desk {

@@ -153,14 +153,6 @@ private:
             if (wanted.new_patch) return open_untitled();
             if (fs::exists(wanted.open / "take.json")) return open_take(wanted.open);
             RunChoice choice = choice_;
-            if (!wanted.again_with.empty()) {
-                const std::string asset = wanted.again_with.substr(0, wanted.again_with.find('=') + 1);
-                std::erase_if(choice.overrides.assets,
-                              [&](const std::string& known) { return known.starts_with(asset); });
-                choice.overrides.assets.push_back(wanted.again_with);
-                choice.record.clear();
-                return open_patch(choice);
-            }
             choice.patch = wanted.open.string();
             choice.overrides = {};
             if (kind_of_file(wanted.open) == FileKind::plan) {

@@ -303,6 +303,19 @@ void Workbench::run() {
     followed_ = plan_;
 }
 
+void Workbench::run_with(const std::string& asset, const fs::path& file) {
+    const std::vector<std::string> before = choice_.overrides.assets;
+    std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
+    choice_.overrides.assets.push_back(asset + "=" + file.string());
+    if (const auto problem = check(editor_->text())) {
+        choice_.overrides.assets = before;
+        return tell(*problem, true);
+    }
+    run_.reset();
+    adopt();
+    run();
+}
+
 void Workbench::stop() {
     if (run_) run_->stop();
 }

@@ -145,6 +145,9 @@ public:
 
     // The run.
     void run();
+    /// Ends the run and begins another one with this file for an asset. A file that the patch does not take leaves all as
+    /// it is; the reason is in `messages`.
+    void run_with(const std::string& asset, const std::filesystem::path& file);
     void stop();
     void pause(bool wanted);
     /// Presses a button of the run that is a node of the patch.

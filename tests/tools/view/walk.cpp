@@ -89,6 +89,24 @@ void Walk::press(const std::string& control, const std::string& panel) {
     test::press(person, eyes, control);
 }
 
+void Walk::measure() {
+    press("measure");
+    const Spot scene = eyes.spot("scene picture"), tree = eyes.spot("panel tree");
+    const double x = 0.5 * (scene.left + scene.right), y = 0.5 * (scene.top + scene.bottom);
+    for (int n = 0; n < 36 && !shows("keep measurement"); ++n) {
+        person.click(x + 14.0 * (n % 6) - 35.0, y + 24.0 * (n / 6) - 60.0);
+        Person::wait(0.3);
+        // In a small window the list is longer than its room.
+        person.move(0.5 * (tree.left + tree.right), 0.5 * (tree.top + tree.bottom));
+        for (int turn = 0; turn < 5; ++turn) {
+            person.button(5, true);
+            person.button(5, false);
+        }
+        Person::wait(0.8);
+    }
+    REQUIRE(shows("keep measurement"));
+}
+
 void Walk::command(const std::string& words) {
     person.chord({"Control_L"}, "p");
     REQUIRE(waits_for("command"));

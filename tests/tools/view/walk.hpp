@@ -51,6 +51,8 @@ public:
     bool waits_while(const std::string& control) const;
     /// Presses a control; turns the wheel over the panel where it must be until it is there.
     void press(const std::string& control, const std::string& panel = {});
+    /// Clicks places of the scene until two of them are measured.
+    void measure();
     /// Does one thing through the list of commands.
     void command(const std::string& words);
     /// Repeats what a person does until its effect is seen, at most four times.

@@ -52,6 +52,10 @@ void FlapPanel::line(const char* what, const Named& one, Form form, std::vector<
 
 void FlapPanel::lists(const reconstruct::Reconstruction& all) {
     const auto add = [&](const char* label, Kind kind) {
+        const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(label).x +
+                          2.0f * ImGui::GetStyle().FramePadding.x;
+        if (kind != Kind::plate && end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x)
+            ImGui::SameLine();
         if (ImGui::SmallButton(label)) {
             Form form;
             form.kind = kind;
@@ -59,14 +63,12 @@ void FlapPanel::lists(const reconstruct::Reconstruction& all) {
             open(std::move(form));
         }
         mark_spot(label);
-        ImGui::SameLine();
     };
     add("+ plate", Kind::plate);
     add("+ implant", Kind::implant);
     add("+ vessel", Kind::vessel);
     add("+ site", Kind::site);
     add("margin...", Kind::margin);
-    ImGui::NewLine();
     for (const reconstruct::Plate& plate : all.flap.plates) {
         Form form;
         form.kind = Kind::plate;
@@ -191,7 +193,7 @@ void FlapPanel::dialog() {
             break;
     }
     const bool can = (!has_name || !form_.name.empty()) && (form_.kind != Kind::vessel || !form_.file.empty());
-    ImGui::BeginDisabled(!can || flap_.is_busy());
+    ImGui::BeginDisabled(!can || flap_.is_changing());
     if (ImGui::Button("apply")) {
         apply();
         ImGui::CloseCurrentPopup();
@@ -209,12 +211,12 @@ void FlapPanel::draw() {
     flap_.tend();
     const reconstruct::Reconstruction* all = flap_.reconstruction();
     if (!all) return;
-    ImGui::TextUnformatted("reconstruction (for research, not a medical device)");
-    ImGui::BeginDisabled(flap_.is_busy());
+    ImGui::TextWrapped("reconstruction (for research, not a medical device)");
+    ImGui::BeginDisabled(flap_.is_changing());
     lists(*all);
     ImGui::EndDisabled();
     dialog();
-    if (flap_.is_busy()) ImGui::TextDisabled("...");
+    if (flap_.is_measuring() || flap_.is_changing()) ImGui::TextDisabled("...");
     for (const std::string& text : flap_.verdicts().warnings) {
         ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
         ImGui::TextWrapped("%s", text.c_str());

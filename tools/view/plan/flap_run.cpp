@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto now = std::chrono::seconds(0);
+// Of one change: a hand that never rests must not keep it off for ever.
+constexpr int most_repeats = 5;
 
 template <class T>
 bool is_ready(const std::future<T>& work) {
@@ -50,13 +52,7 @@ fs::path free_plan(const fs::path& folder) {
 }  // namespace
 
 void FlapRun::tend() {
-    if (is_ready(changing_)) {
-        try {
-            changed_ = changing_.get();
-        } catch (const Error& error) {
-            bench_.tell(error.what(), true);
-        }
-    }
+    if (is_ready(changing_)) take_made();
     if (is_ready(measuring_)) {
         try {
             verdicts_ = measuring_.get();
@@ -80,21 +76,43 @@ void FlapRun::tend() {
         });
 }
 
+void FlapRun::take_made() {
+    try {
+        fs::path made = changing_.get();
+        if (run_.plan() && run_.written() != made_of_ && repeats_ < most_repeats) {
+            std::error_code none;
+            fs::remove(made, none);
+            ++repeats_;
+            return make();
+        }
+        changed_ = std::move(made);
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+    }
+}
+
 void FlapRun::begin(WholeChange change) {
     if (!run_.plan() || changing_.valid()) return;
-    changing_ = std::async(std::launch::async,
-                           [plan = *run_.plan(), folder = run_.file().parent_path(), change = std::move(change)] {
-                               const fs::path file = free_plan(folder);
-                               cases::save_case_plan(plan, file);
-                               try {
-                                   study::change_reconstruction(file, change);
-                               } catch (...) {
-                                   std::error_code none;
-                                   fs::remove(file, none);
-                                   throw;
-                               }
-                               return file;
-                           });
+    change_ = std::move(change);
+    repeats_ = 0;
+    make();
+}
+
+void FlapRun::make() {
+    made_of_ = run_.written();
+    changing_ =
+        std::async(std::launch::async, [plan = *run_.plan(), folder = run_.file().parent_path(), change = change_] {
+            const fs::path file = free_plan(folder);
+            cases::save_case_plan(plan, file);
+            try {
+                study::change_reconstruction(file, change);
+            } catch (...) {
+                std::error_code none;
+                fs::remove(file, none);
+                throw;
+            }
+            return file;
+        });
 }
 
 void FlapRun::change(Change change) {

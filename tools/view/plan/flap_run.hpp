@@ -31,7 +31,10 @@ public:
         std::vector<std::string> lines, warnings;
     };
     const Verdicts& verdicts() const { return verdicts_; }
-    bool is_busy() const { return measuring_.valid() || changing_.valid(); }
+    bool is_measuring() const { return measuring_.valid(); }
+    /// A change is being made; another one is not begun meanwhile. It is made again when the plan had further steps by
+    /// then, so that the run does not go on without them.
+    bool is_changing() const { return changing_.valid(); }
 
     void change(Change change);
     /// Lays a plate on the segments and the stumps; one of that name is replaced. m.
@@ -42,6 +45,8 @@ public:
 private:
     using WholeChange = std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>;
     void begin(WholeChange change);
+    void make();
+    void take_made();
 
     Workbench& bench_;
     CaseRun& run_;
@@ -50,6 +55,9 @@ private:
     std::future<Verdicts> measuring_;
     std::future<std::filesystem::path> changing_;
     std::filesystem::path changed_;
+    WholeChange change_;  ///< being made
+    std::filesystem::file_time_type made_of_{};
+    int repeats_ = 0;
     Verdicts verdicts_;
 };
 

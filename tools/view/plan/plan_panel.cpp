@@ -151,9 +151,9 @@ void PlanPanel::step_list() {
     ImGui::EndChild();
 }
 
-std::string PlanPanel::take_restart() {
+void PlanPanel::begin_again() {
     const std::filesystem::path changed = flap_.flap().take_changed();
-    return changed.empty() ? "" : fmt::format("{}={}", case_.asset(), std::filesystem::absolute(changed).string());
+    if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
 }
 
 void PlanPanel::draw(const Fonts&) {

@@ -32,8 +32,8 @@ public:
     void draw(const Fonts& fonts);
     /// What its buttons do, by name.
     void add_commands(std::vector<Command>& all);
-    /// A changed plan with which the run is to begin again, "ASSET=FILE"; empty: none. Taken once.
-    std::string take_restart();
+    /// Once per picture, before the run is looked at: begins the run again when its plan was changed beside it.
+    void begin_again();
 
 private:
     void on_chosen(const char* input);
