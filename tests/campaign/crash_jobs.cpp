@@ -53,9 +53,10 @@ void make_earlier_work(const fs::path& folder) {
     make_ct(folder / "ct.nrrd");
     make({"import", "ct.nrrd", "-o", "bone.vdb"}, folder);
     write_seeds(folder / "seeds");
-    for (const char* name : {"a.stl", "b.stl"}) fs::copy_file(folder / "seeds/assets_stl/closed.stl", folder / name);
+    fs::copy_file(folder / "seeds/assets_stl/closed.stl", folder / "a.stl");
+    fs::copy_file(folder / "seeds/assets_obj/closed.obj", folder / "b.obj");
     fs::remove_all(folder / "seeds");
-    make({"plan", "new", "case.plan.json", "a.stl", "b.stl"}, folder);
+    make({"plan", "new", "case.plan.json", "a.stl", "b.obj"}, folder);
     make({"plan", "move", "case.plan.json", "a", "--pose", "1,2,3,1,0,0,0"}, folder);
     make({"flap", "-o", "flap"}, folder);
     make({"plan", "reconstruct", "jaw.plan.json", "flap/INPUTS.json"}, folder);

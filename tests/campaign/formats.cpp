@@ -123,8 +123,9 @@ fs::path small_take(const fs::path& folder) {
 fs::path small_case(const fs::path& folder) {
     const fs::path made = folder / "case";
     fs::create_directories(made);
-    for (const char* name : {"a.stl", "b.stl"}) fs::copy_file(folder / "assets_stl/closed.stl", made / name);
-    make_by_command({"plan", "new", "case.plan.json", "a.stl", "b.stl"}, made);
+    fs::copy_file(folder / "assets_stl/closed.stl", made / "a.stl");
+    fs::copy_file(folder / "assets_obj/closed.obj", made / "b.obj");
+    make_by_command({"plan", "new", "case.plan.json", "a.stl", "b.obj"}, made);
     return made;
 }
 

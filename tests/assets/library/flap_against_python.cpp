@@ -235,7 +235,7 @@ TEST_CASE("random flaps of the synthetic case have the measures and warnings tha
     if (std::system("/usr/bin/python3 -c 'import numpy, scipy' 2>/dev/null") != 0)
         return tactus::test::skip("no python3 with numpy and scipy here");
     const char* const wanted = std::getenv("TACTUS_FLAP_PLANS");
-    const int count = wanted ? std::atoi(wanted) : 100;
+    const int count = wanted ? std::atoi(wanted) : 20;
     const library::FlapCase made = library::make_flap();
     FibulaInputs nominal = made.inputs;
     nominal.donor = made.fibula;

@@ -75,8 +75,8 @@ close
     CHECK(saved.find("\"constant.value -> loud.factor\"") != std::string::npos);
     CHECK(saved.find("level.value") == std::string::npos);
     CHECK(on(display, folder, "check voice.toml").code == 0);
-    CHECK(slurp(folder.path / "loud.out-1.csv").starts_with("time s,"));
-    CHECK(read_picture(folder.path / "loud.out-1.png").width > 600);
+    CHECK(slurp(folder.path / "out" / "loud.out-1.csv").starts_with("time s,"));
+    CHECK(read_picture(folder.path / "out" / "loud.out-1.png").width > 600);
     const Outcome again = on(display, folder, "replay voice-take-1 --json");
     INFO(again.out << again.err);
     CHECK(again.code == 0);

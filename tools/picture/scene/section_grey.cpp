@@ -47,7 +47,7 @@ std::vector<volume::Grid> read_densities(const std::filesystem::path& file) {
             grids.push_back(std::move(cases::bone_from_file(file).density));
             return grids;
         }
-        for (const cases::PlanFragment& fragment : cases::load_case_plan(file).fragments)
+        for (const cases::PlanFragment& fragment : cases::fragments_of(cases::load_case_plan(file)))
             grids.push_back(
                 std::move(cases::bone_from_file(cases::file_of(fragment.file, file.parent_path())).density));
     } catch (const Error&) {

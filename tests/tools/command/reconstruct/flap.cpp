@@ -156,17 +156,18 @@ TEST_CASE("thresholds of a flap are parameters of the plan, and a warning follow
     json given = made.whole();
     given["limits"] = {{"kink_radii", 0.0}, {"twist_deg", 180}, {"over_in_situ", 1.0}};
     REQUIRE(made.run(given).code == 0);
-    REQUIRE(made.change("implant", "molar --at 0 -41 6 --axis 0 0 -1").code == 0);
+    REQUIRE(made.change("implant", "molar --at -8 -41 6 --axis 0 0 -1").code == 0);
     const auto near_cut = [&] {
         const json found = made.reach();
         return std::ranges::count_if(found["warnings"], [](const json& w) { return w["code"] == "near-cut"; });
     };
-    REQUIRE(made.change("limits", "--clearance 0").code == 0);
-    const auto none = near_cut();
-    REQUIRE(made.change("limits", "--clearance 60").code == 0);
-    CHECK(near_cut() == none + 1);
+    // The implant is 5.93 mm away from a cut.
+    REQUIRE(made.change("limits", "--clearance 5.9").code == 0);
+    CHECK(near_cut() == 0);
+    REQUIRE(made.change("limits", "--clearance 6").code == 0);
+    CHECK(near_cut() == 1);
     const json step = json::parse(test::slurp(made.plan))["steps"].back()["reconstruction"]["limits"];
-    CHECK(step["clearance_m"].get<double>() == Approx(0.06));
+    CHECK(step["clearance_m"].get<double>() == Approx(0.006));
     CHECK(step["kink_radii"] == 0.0);
     CHECK(step["twist_rad"].get<double>() == Approx(3.14159265));
     CHECK(made.change("limits", "").code == 2);

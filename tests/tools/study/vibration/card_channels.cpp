@@ -10,7 +10,10 @@ using namespace tactus;
 
 namespace {
 
-constexpr const char* text = R"([actuators.handle]
+constexpr const char* text = R"([nodes.value]
+type = "constant"
+rate = "1 kHz"
+[actuators.handle]
 channel = 3
 full_scale = 2
 preset = "haptuator_large"
@@ -68,8 +71,8 @@ TEST_CASE("a sweep between two cards, and what is no channel or no full scale, i
     CHECK_THAT(refusal("handle", "skim"), ContainsSubstring("no sensor 'skim' in [sensors]; did you mean 'skin'?"));
     CHECK_THAT(refusal("handle", "handle"), ContainsSubstring("no sensor 'handle'"));
     CHECK_THAT(refusal("skin", "skin"), ContainsSubstring("no actuator 'skin'"));
-    CHECK_THAT(refusal("handle", "usb"), ContainsSubstring("p.toml:10:") && ContainsSubstring("goes through one card"));
-    CHECK_THAT(refusal("handle", "half"), ContainsSubstring("p.toml:14:") && ContainsSubstring("a whole number"));
-    CHECK_THAT(refusal("handle", "huge"), ContainsSubstring("p.toml:16:") && ContainsSubstring("outside the range"));
-    CHECK_THAT(refusal("handle", "metre"), ContainsSubstring("p.toml:18:"));
+    CHECK_THAT(refusal("handle", "usb"), ContainsSubstring("p.toml:13:") && ContainsSubstring("goes through one card"));
+    CHECK_THAT(refusal("handle", "half"), ContainsSubstring("p.toml:17:") && ContainsSubstring("a whole number"));
+    CHECK_THAT(refusal("handle", "huge"), ContainsSubstring("p.toml:19:") && ContainsSubstring("outside the range"));
+    CHECK_THAT(refusal("handle", "metre"), ContainsSubstring("p.toml:21:"));
 }
