@@ -59,6 +59,16 @@ struct Pixels {
 
 const fs::path golden = tactus::test::source_folder() / "tests/tools/frames";
 
+/// The first frame of a patch, seen from a corner and without a legend.
+Pixels still_of(const Folder& folder, const std::string& patch, const std::string& name, const std::string& options) {
+    const Outcome outcome = folder.tactus(
+        "render " + patch + " --seconds 0.05 --frames 1 --size 640x400 --view-from iso --no-legend --out " +
+        (folder.path / name).string() + " " + options);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    return Pixels(folder.path / name / "frame_0001.png");
+}
+
 }  // namespace
 
 TEST_CASE("pictures of the library look as they did", "[slow]") {
@@ -157,13 +167,7 @@ TEST_CASE("a map of gaps is in the picture of a plan, full at its range") {
                  "[assets]\ncase = \"case.plan.json\"\n[nodes.case]\ntype = \"case_scene\"\nrate = \"1 kHz\"\n"
                  "plan = \"case\"\n");
     const auto red = [&](const std::string& name, const std::string& options) {
-        const Outcome outcome =
-            folder.tactus("render " + (folder.path / "still.toml").string() +
-                          " --seconds 0.05 --frames 1 --size 640x400 --view-from iso --no-legend --out " +
-                          (folder.path / name).string() + " " + options);
-        INFO(outcome.err);
-        REQUIRE(outcome.code == 0);
-        const Pixels seen(folder.path / name / "frame_0001.png");
+        const Pixels seen = still_of(folder, (folder.path / "still.toml").string(), name, options);
         int found = 0;
         for (std::size_t at = 0; at + 2 < seen.rgb.size(); at += 3)
             found += seen.rgb[at] > 90 && seen.rgb[at] > 2 * seen.rgb[at + 1] && seen.rgb[at] > 2 * seen.rgb[at + 2];
@@ -178,12 +182,7 @@ TEST_CASE("an oblique section of a body shows its density in grey") {
     if (!can_render()) return;
     const Folder folder;
     const auto grey = [&](const std::string& name, const std::string& options) {
-        const Outcome outcome = folder.tactus(
-            "render fragments --seconds 0.05 --frames 1 --size 640x400 --view-from iso --no-legend --out " +
-            (folder.path / name).string() + " " + options);
-        INFO(outcome.err);
-        REQUIRE(outcome.code == 0);
-        const Pixels seen(folder.path / name / "frame_0001.png");
+        const Pixels seen = still_of(folder, "fragments", name, options);
         int found = 0;
         for (std::size_t at = 0; at + 2 < seen.rgb.size(); at += 3)
             found += seen.rgb[at] == seen.rgb[at + 1] && seen.rgb[at] == seen.rgb[at + 2] && seen.rgb[at] < 253;

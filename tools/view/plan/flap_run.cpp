@@ -2,7 +2,6 @@
 #include "tools/view/plan/flap_run.hpp"
 
 #include "assets/cases/plan_file.hpp"
-#include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/flap_words.hpp"
@@ -11,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -56,7 +56,7 @@ void FlapRun::tend() {
     if (is_ready(measuring_)) {
         try {
             verdicts_ = measuring_.get();
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             verdicts_ = {};
             bench_.tell(error.what(), true);
         }
@@ -86,7 +86,7 @@ void FlapRun::take_made() {
             return make();
         }
         changed_ = std::move(made);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         bench_.tell(error.what(), true);
     }
 }

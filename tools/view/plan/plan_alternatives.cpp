@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/plan/plan_alternatives.hpp"
 
-#include "dsp/core/error.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -10,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 
 namespace tactus::view {
 
@@ -27,7 +27,7 @@ void PlanAlternatives::tend() {
         numbers_.clear();
         try {
             for (const AlternativeNumbers& one : counting_.get()) numbers_.push_back(words_of(one));
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
         }
     }
