@@ -6,6 +6,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <fmt/format.h>
 
@@ -487,29 +488,35 @@ TEST_CASE("a live run with events is repeated bit by bit, also when groups stand
 }
 
 TEST_CASE("a thousand events a second make nobody late", "[live]") {
-    const PatchText text{
-        {{"p", "burst", "1 kHz", {}},
-         {"w", "witness", "48 kHz", {}},
-         {"v", "witness", "60 Hz", {}},
-         {"trigger", "event_trigger", "48 kHz", {}},
-         {"again", "event_delay", "1 kHz", {}}},
-        {"p.events -> w.in", "p.events -> v.in", "p.events -> trigger.in", "p.events -> again.in", "again.out -> w.in"},
-        ""};
-    // The machine is busy with other things now and then: such a run is repeated.
-    std::int64_t late = 1;
-    for (int attempt = 0; attempt < 5 && late > 0; ++attempt) {
+    const auto late_ticks = [](const char* every) {
+        const PatchText text{{{"p", "burst", "1 kHz", {{"every", every}}},
+                              {"w", "witness", "48 kHz", {}},
+                              {"v", "witness", "60 Hz", {}},
+                              {"trigger", "event_trigger", "48 kHz", {}},
+                              {"again", "event_delay", "1 kHz", {}}},
+                             {"p.events -> w.in", "p.events -> v.in", "p.events -> trigger.in", "p.events -> again.in",
+                              "again.out -> w.in"},
+                             ""};
         run::EngineOptions options;
         options.seconds = 2.0;
         options.live = true;
         run::Engine live(plan_of(text), options);
         live.run_live({.dilate = 1.0, .log = {}, .stop = nullptr, .watch = {}});
-        late = 0;
+        REQUIRE(live.groups().size() == 3);
+        std::int64_t late = 0;
         for (const auto& group : live.groups())
             late += group->telemetry.misses + group->telemetry.skipped + group->telemetry.dropped +
                     group->telemetry.lost_events;
-        CHECK(live.groups().size() == 3);
+        return late;
+    };
+    // A machine that wakes threads late does so without events too: only a run beside a silent one on time counts.
+    bool was_judged = false;
+    for (int attempt = 0; attempt < 6; ++attempt) {
+        if (late_ticks("1") == 0) return;
+        was_judged = late_ticks("1000000") == 0 || was_judged;
     }
-    CHECK(late == 0);
+    if (!was_judged) return tactus::test::skip("the machine was too busy to keep silent groups on time");
+    FAIL("each of 6 runs with events was late, and a run without events was on time");
 }
 
 }  // namespace tactus::test

@@ -3,6 +3,7 @@
 #include "tools/session/force_news.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/background_run.hpp"
 
 #include <nlohmann/json.hpp>
@@ -55,12 +56,15 @@ TEST_CASE("a trainer that stood still for a moment tells it, and when its forces
         INFO(told());
         const json summary = json::parse(test::slurp(folder.path / "out/summary.json"));
         const json& faults = summary["faults"];
-        if ((!was_calm || faults.size() != 1) && attempt < 4) continue;
         REQUIRE_FALSE(faults.empty());
+        if (!was_calm || faults.size() != 1) {
+            if (attempt < 4) continue;
+            return test::skip("the machine was too busy to keep the force up but for the one stop");
+        }
         CHECK(faults[0]["reason"] == "no force arrived in time");
         const double began = faults[0]["time_s"], over = faults[0]["over_s"];
         CHECK(over - began >= 1.0);
-        if (faults.size() == 1) CHECK(over - began < 1.5);
+        CHECK(over - began < 1.5);
         CHECK_THAT(told(), ContainsSubstring("no force on 'simulated' at ") &&
                                ContainsSubstring("forces return by themselves once ticks were on time for 1 s") &&
                                ContainsSubstring("forces are on again from "));
