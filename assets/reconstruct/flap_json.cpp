@@ -52,6 +52,12 @@ Plate plate_of(const Members& item) {
     if (plate.points.size() < 2) item.fail("needs at least two points");
     if (plate.outward.size() != plate.points.size()) item.fail("needs a direction 'outward' for each point");
     for (const Members& screw : item.list("screws", most_things)) plate.screws.push_back(screw_of(screw));
+    if (const std::optional<Members> laid = item.object("laid")) {
+        const double screws = laid->number("screws_per_segment");
+        if (!(screws >= 0.0 && screws <= static_cast<double>(most_things) && screws == std::floor(screws)))
+            item.fail("has 'screws_per_segment' that is no whole number from 0 to 100");
+        plate.laid = {laid->length("height"), static_cast<int>(screws)};
+    }
     return plate;
 }
 
@@ -280,17 +286,19 @@ void add_members(Json& json, const Flap& flap) {
         return Json{{"name", s.name}, {"kind", name_of(s.kind)}, {"at_m", json_of(s.at)}};
     });
     json["plates"] = list(flap.plates, [&](const Plate& p) {
-        return Json{{"name", p.name},
-                    {"width_m", p.width},
-                    {"thickness_m", p.thickness},
-                    {"points_m", json_of(p.points)},
-                    {"outward", json_of(p.outward)},
-                    {"screws", list(p.screws, [](const Screw& s) {
-                         return Json{{"head_m", json_of(s.head)},
-                                     {"axis", json_of(s.axis)},
-                                     {"length_m", s.length},
-                                     {"diameter_m", s.diameter}};
-                     })}};
+        Json plate{{"name", p.name},
+                   {"width_m", p.width},
+                   {"thickness_m", p.thickness},
+                   {"points_m", json_of(p.points)},
+                   {"outward", json_of(p.outward)},
+                   {"screws", list(p.screws, [](const Screw& s) {
+                        return Json{{"head_m", json_of(s.head)},
+                                    {"axis", json_of(s.axis)},
+                                    {"length_m", s.length},
+                                    {"diameter_m", s.diameter}};
+                    })}};
+        if (p.laid) plate["laid"] = {{"height_m", p.laid->height}, {"screws_per_segment", p.laid->screws_per_segment}};
+        return plate;
     });
     json["implants"] = list(flap.implants, [](const DentalImplant& i) {
         return Json{{"name", i.name},

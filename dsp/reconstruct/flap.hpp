@@ -47,6 +47,12 @@ struct Plate {
     std::vector<Vec3> points;  ///< m: its centreline on the bone's outer contour
     std::vector<Vec3> outward;  ///< unit, of each point: away from the bone
     std::vector<Screw> screws;
+    /// How `plate_on` laid it.
+    struct Laid {
+        double height = 0.0;  ///< m
+        int screws_per_segment = 0;
+    };
+    std::optional<Laid> laid{};  ///< none: not known
 };
 
 /// A dental implant, frame of the jaw.

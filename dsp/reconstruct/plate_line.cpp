@@ -143,7 +143,9 @@ private:
 
 Plate plate_on(const FibulaInputs& inputs, const FibulaPlan& plan, const PlateSettings& settings) {
     if (!inputs.donor) throw Error("the plate lies on the donor's surface: name a 'donor'");
-    return PlateLine(inputs, plan, settings).made();
+    Plate plate = PlateLine(inputs, plan, settings).made();
+    plate.laid = {settings.height, settings.screws_per_segment};
+    return plate;
 }
 
 }  // namespace tactus::reconstruct

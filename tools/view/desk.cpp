@@ -26,6 +26,7 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
       scene_(bench),
       calibration_(bench, scene_),
       plan_(bench, scene_),
+      slices_(bench, scene_, plan_.case_run(), memory),
       train_(bench),
       memory_(memory),
       start_page_(memory) {
@@ -34,6 +35,7 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
     nodes_.ask_file = [this](const std::string& title, FileChooser chooser, FileDialog::Done done) {
         ask_file(title, std::move(chooser), std::move(done));
     };
+    slices_.ask_scan = [this] { ask_scan(); };
 }
 
 const Feed* Desk::feed() const {
@@ -124,6 +126,8 @@ void Desk::draw() {
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
+    // Three slices and a scene need more than a small window has.
+    slices_.propose(height > 620.0 * fonts_.scale);
     plan_.tend(take_ ? nullptr : bench_.observer());
     arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
@@ -138,6 +142,7 @@ void Desk::draw() {
             move_border(columns_, c, by / std::max(width, 1.0));
     }
     ImGui::PopStyleVar();
+    if (!shows(columns_, Panel::slices)) slices_.rest();
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
     ask_farewell();

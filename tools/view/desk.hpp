@@ -14,6 +14,7 @@
 #include "tools/view/scene/calibration_panel.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/signal/scopes.hpp"
+#include "tools/view/slices/plan_slices.hpp"
 #include "tools/view/take_bench.hpp"
 #include "tools/view/train/train_panel.hpp"
 #include "tools/view/window.hpp"
@@ -48,6 +49,7 @@ public:
     NodePanel& nodes() { return nodes_; }
     Scopes& scopes() { return scopes_; }
     ScenePanel& scene() { return scene_; }
+    PlanSlices& slices() { return slices_; }
     const Feed* feed() const;
 
     Layout layout = Layout::patch;
@@ -79,6 +81,7 @@ private:
     void draw_node(double height);
     void draw_tree(double height);
     void draw_steps(double height);
+    void draw_slices(double height);
     void draw_task(double height);
     void show_messages(double height);
     void ask_farewell();
@@ -93,6 +96,7 @@ private:
     void ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done);
     void ask_open();
     void ask_save_as();
+    void ask_scan();
     void ask_value(const std::string& node, const std::string& param, const std::string& value);
     void draw_value();
     void go_to_largest_force();
@@ -112,6 +116,7 @@ private:
     ScenePanel scene_;
     CalibrationPanel calibration_;
     PlanPanel plan_;
+    PlanSlices slices_;
     TrainPanel train_;
     std::set<std::string> looked_at_;
     WindowMemory& memory_;

@@ -148,6 +148,7 @@ std::vector<Command> Desk::all_commands() {
     scene_.add_commands(all);
     if (take_) return all;
     plan_.add_commands(all);
+    if (!take_) slices_.add_commands(all);
     for (const session::HandForces& forces : bench_.status()->forces)
         if (forces.state == control::ForceState::by_hand && !forces.node.empty())
             all.push_back(
@@ -232,6 +233,17 @@ void Desk::ask_save_as() {
     });
 }
 
+void Desk::ask_scan() {
+    std::error_code ignored;
+    FileChooser chooser(FileChooser::For::open, fs::current_path(ignored),
+                        {".nrrd", ".nhdr", ".nii", ".nii.gz", ".dcm", ".zip", ".inv3"});
+    chooser.takes_folders = true;
+    ask_file("Open a scan: a CT, or a folder of DICOM", std::move(chooser), [this](const fs::path& path) {
+        slices_.open(path);
+        use_layout(Layout::plan);
+    });
+}
+
 void Desk::ask_value(const std::string& node, const std::string& param, const std::string& value) {
     value_of_ = param.empty() ? node : node + "." + param;
     value_ = value;
@@ -299,7 +311,10 @@ void Desk::take_dropped(const fs::path& file) {
     const FileKind kind = kind_of_file(file);
     if (kind == FileKind::patch || kind == FileKind::take) wishes.open = file;
     else if (take_) bench_.tell("a take is read-only; run the patch to change it", true);
-    else if (kind != FileKind::plan || !bench_.take_file(file, patch_.selected)) {
+    else if (is_ct(file) && plan_.case_run().is_there()) {
+        slices_.open(file);
+        use_layout(Layout::plan);
+    } else if (kind != FileKind::plan || !bench_.take_file(file, patch_.selected)) {
         if (kind == FileKind::plan) wishes.open = file;
         else bench_.take_file(file, patch_.selected);
     }

@@ -70,7 +70,9 @@ PanelRoom Desk::room_of(Panel panel) {
         case Panel::tree: return scene_.is_empty() ? PanelRoom::none : PanelRoom::full;
         case Panel::steps: return plan_.case_run().is_there() && !take_ ? PanelRoom::full : PanelRoom::none;
         case Panel::task: return take_ ? PanelRoom::none : PanelRoom::full;
-        case Panel::slices: return PanelRoom::none;
+        case Panel::slices:
+            if (!plan_.case_run().is_there() || take_) return PanelRoom::none;
+            return slices_.is_shown() ? PanelRoom::full : PanelRoom::line;
     }
     return PanelRoom::none;
 }
@@ -121,7 +123,7 @@ void Desk::draw_panel(Panel panel, double height) {
         case Panel::tree: return draw_tree(height);
         case Panel::steps: return draw_steps(height);
         case Panel::task: return draw_task(height);
-        case Panel::slices: return;
+        case Panel::slices: return draw_slices(height);
     }
 }
 
@@ -155,6 +157,12 @@ void Desk::draw_steps(double height) {
     const double s = fonts_.scale;
     const PanelFrame frame("plan steps", height, {8.0 * s, 6.0 * s}, {6.0 * s, 5.0 * s}, true);
     plan_.draw(fonts_);
+}
+
+void Desk::draw_slices(double height) {
+    const double s = fonts_.scale;
+    const PanelFrame frame("slices", height, {6.0 * s, 6.0 * s}, {6.0 * s, 4.0 * s}, false);
+    slices_.draw(fonts_);
 }
 
 void Desk::draw_task(double height) {

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t ground = colour(0x12161d), lane = colour(0x1a202a
                                node = colour(0x262f3d), node_head = colour(0x313c4d), node_edge = colour(0x46546a),
                                chosen = colour(0xf2b84b), text = colour(0xe8edf4), dim = colour(0x93a1b5),
                                grid = colour(0x2a3342), bad = colour(0xff5c5c), good = colour(0x46d39a),
-                               warm = colour(0xf2b84b);
+                               warm = colour(0xf2b84b), cursor = colour(0x5ab0ff);
 /// Told apart by people who confuse red and green, too.
 inline constexpr std::uint32_t curves[] = {colour(0x2fa7ff), colour(0xe28643), colour(0xb0ffa1), colour(0xc2599f),
                                            colour(0xfedd46), colour(0xf16f85), colour(0xc5ffe3), colour(0xbed9ff)};

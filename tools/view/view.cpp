@@ -28,6 +28,23 @@ namespace {
 // Limits the frame rate, also when vertical sync does not.
 constexpr auto picture_time = std::chrono::microseconds(16'667);
 
+/// Before a window is opened. Throws Error.
+void check(const ViewChoice& view) {
+    if (view.scan.empty()) return;
+    const std::string scan = view.scan.string();
+    if (!fs::exists(view.scan)) throw Error(fmt::format("--scan: there is no {}", scan));
+    if (!is_ct(view.scan))
+        throw Error(fmt::format("--scan: {} is no scan; give a CT: .nrrd, .nii, a folder of DICOM", scan));
+}
+
+/// The patch in which a plan is shown and changed.
+RunChoice run_of_plan(RunChoice choice, const fs::path& plan) {
+    const bool is_reconstruction = cases::state_of(cases::load_case_plan(plan)).reconstruction != nullptr;
+    choice.patch = is_reconstruction ? "planning-reconstruction" : "planning-trauma";
+    choice.overrides.assets = {"case=" + fs::absolute(plan).string()};
+    return choice;
+}
+
 /// The window and its content.
 class Viewer {
 public:
@@ -134,6 +151,7 @@ private:
         if (!layout) layout = layout_of_name(bench_->window().layout);
         desk_->layout = layout.value_or(Layout::patch);
         desk_->scene().use(view_.sight);
+        if (!view_.scan.empty()) desk_->slices().open(view_.scan);
         if (view_.reference.empty()) return;
         desk_->scopes().set_reference(view_.reference);
     }
@@ -155,11 +173,7 @@ private:
             RunChoice choice = choice_;
             choice.patch = wanted.open.string();
             choice.overrides = {};
-            if (kind_of_file(wanted.open) == FileKind::plan) {
-                const cases::CasePlan plan = cases::load_case_plan(wanted.open);
-                choice.patch = cases::state_of(plan).reconstruction ? "planning-reconstruction" : "planning-trauma";
-                choice.overrides.assets = {"case=" + fs::absolute(wanted.open).string()};
-            }
+            if (kind_of_file(wanted.open) == FileKind::plan) choice = run_of_plan(choice, wanted.open);
             choice.record.clear();
             open_patch(choice);
         } catch (const Error& error) {
@@ -224,6 +238,7 @@ public:
 }  // namespace
 
 int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted) {
+    check(choice.view);
     std::unique_ptr<Workbench> bench;
     bool goes_on = false;
     {
@@ -247,6 +262,7 @@ int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted
 }
 
 void watch_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted) {
+    check(choice.view);
     Viewer viewer(choice.view, interrupted);
     viewer.open_patch(choice);
     viewer.bench().run();
@@ -260,14 +276,15 @@ void watch_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupt
 }
 
 int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted) {
+    check(choice.view);
+    const bool is_plan = kind_of_file(choice.file) == FileKind::plan;
+    RunChoice patch;
+    if (is_plan) patch = run_of_plan(patch, choice.file);
+    else patch.patch = choice.file.string();
     Viewer viewer(choice.view, interrupted);
     if (choice.file.empty()) viewer.open_start_page();
     else if (fs::is_directory(choice.file)) viewer.open_take(choice.file);
-    else {
-        RunChoice patch;
-        patch.patch = choice.file.string();
-        viewer.open_patch(patch);
-    }
+    else viewer.open_patch(patch);
     viewer.show();
     return done;
 }

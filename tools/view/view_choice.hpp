@@ -18,6 +18,7 @@ struct ViewChoice {
     bool keep_running = false;                ///< closing the window does not end the run
     std::filesystem::path script;             ///< file of window commands
     std::filesystem::path reference;          ///< sound file whose spectrum is drawn behind those of the signals
+    std::filesystem::path scan;               ///< CT whose slices are shown beside the scene of a plan
     std::string layout;                       ///< "patch", "plan" or "train"; empty: as the patch was seen last
     double scale = 0.0;                       ///< scale of the content, 0: that of the screen
     int width = 1600, height = 1000;          ///< of the window when it opens, pixels
@@ -30,7 +31,7 @@ struct ViewedRunChoice : session::RunChoice {
 };
 
 struct FileViewChoice {
-    std::filesystem::path file;  ///< a take or a patch; empty: the start page
+    std::filesystem::path file;  ///< a take, a patch or a plan; empty: the start page
     ViewChoice view;
 };
 

@@ -274,6 +274,9 @@ reconstruct::Reconstruction jaw_of(double third) {
     all.flap.sites = {{"facial", reconstruct::VesselKind::artery, {0.0, 0.05, third}}};
     all.flap.plates = {{"plate", 7e-3, 2.5e-3, {{0, 0, 0}, {third, 0, 0}}, {{0, 0, 1}, {0, 0, 1}}, {}}};
     all.flap.plates[0].screws = {{{0.0, third, 0.0}, {0.0, 0.6, 0.8}, 12e-3, 2e-3}};
+    all.flap.plates[0].laid = {-third, 3};
+    all.flap.plates.push_back(
+        {"of another hand", 7e-3, 2.5e-3, {{0, 0, 0}, {third, 0, 0}}, {{0, 0, 1}, {0, 0, 1}}, {}});
     all.flap.implants = {{"molar", {third, 0.0, 0.0}, {0.0, 0.0, -1.0}, 4e-3, 14e-3}};
     all.flap.paddle = reconstruct::SkinPaddle{{0.0, third, 0.1}, 0.06, 0.04};
     all.flap.margin = third;
@@ -313,6 +316,10 @@ TEST_CASE("a plan carries a whole reconstruction, to the bit, and undo takes it 
     CHECK(found->flap.perforators[0].at == meant.flap.perforators[0].at);
     CHECK(found->flap.sites[0].at == meant.flap.sites[0].at);
     CHECK(found->flap.plates[0].screws[0].axis == meant.flap.plates[0].screws[0].axis);
+    REQUIRE(found->flap.plates[0].laid);
+    CHECK(found->flap.plates[0].laid->height == meant.flap.plates[0].laid->height);
+    CHECK(found->flap.plates[0].laid->screws_per_segment == 3);
+    CHECK_FALSE(found->flap.plates[1].laid);
     CHECK(found->flap.implants[0].head == meant.flap.implants[0].head);
     CHECK(found->flap.paddle->at == meant.flap.paddle->at);
     CHECK(found->flap.margin == meant.flap.margin);

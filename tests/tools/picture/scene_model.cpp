@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/scene_model.hpp"
 
+#include "assets/reconstruct/reconstruction.hpp"
 #include "devices/display/picture_maker.hpp"
 #include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
@@ -192,6 +193,49 @@ TEST_CASE("a body has the colours of the map that is used, and its own again wit
     model.use_map(nullptr, 1e-3);
     CHECK(draw() == own);
     CHECK(model.legend().scales.empty());
+}
+
+TEST_CASE("plates with their screws and implants are drawn where the plan has them, and picked by name") {
+    if (!can_render()) return;
+    auto all = std::make_shared<reconstruct::Reconstruction>();
+    all->flap.plates = {{"p1", 7e-3, 2.5e-3, {{-0.02, 0, 0}, {0.02, 0, 0}}, {{0, -1, 0}, {0, -1, 0}}, {}}};
+    all->flap.plates[0].screws = {{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, 12e-3, 2e-3}};
+    all->flap.implants = {{"i1", {0.0, 0.0, 0.05}, {0.0, 0.0, -1.0}, 4e-3, 14e-3}};
+    observe::Observer observer;
+    display::PictureMaker maker(128, 128);
+    SceneModel model({}, observer, maker.renderer());
+    model.update();
+    CHECK(model.parts().empty());
+    model.use_hardware(all);
+    display::Picture& picture = model.update();
+    REQUIRE(model.parts().size() == 2);
+    CHECK(model.parts()[0].name == "plate p1");
+    CHECK(model.parts()[1].name == "implant i1");
+    // The plate is 40 mm long, the screw ends 12 mm behind its contour, the implant reaches from 36 to 50 mm.
+    CHECK(model.bounds().low.x == Approx(-0.02).margin(2e-4));
+    CHECK(model.bounds().high.x == Approx(0.02).margin(2e-4));
+    CHECK(model.bounds().high.y == Approx(0.012).margin(1.1e-3));
+    CHECK(model.bounds().high.z == Approx(0.05).margin(2.1e-3));
+    const auto picked_at = [&](const Vec3& place) {
+        display::OrbitCamera camera;
+        camera.look_from(display::NamedView::front);
+        camera.fit(model.bounds(), 1.0);
+        const auto views = display::views_of(camera, picture.bounds, 128, 128, display::StereoMode::mono);
+        const auto seen = views[0].projection.seen(place);
+        REQUIRE(seen);
+        const auto picked =
+            maker.renderer().pick(model.update(), views[0], 64.0 * (seen->x + 1.0), 64.0 * (seen->y + 1.0));
+        return picked ? model.part_of(picked->mesh) : std::string();
+    };
+    CHECK(picked_at({0.015, 0.0, 0.0}) == "plate p1");
+    CHECK(picked_at({0.0, 0.0, 0.043}) == "implant i1");
+    CHECK(picked_at({0.015, 0.0, 0.043}).empty());
+    model.show_part("plate p1", false);
+    CHECK(picked_at({0.015, 0.0, 0.0}).empty());
+    // Undo to a plan without: nothing is left.
+    model.use_hardware(nullptr);
+    model.update();
+    CHECK(model.parts().empty());
 }
 
 TEST_CASE("a section shows in grey the density of the place that is cut, whatever the view and the plane") {

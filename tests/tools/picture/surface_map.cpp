@@ -82,6 +82,20 @@ struct Boxes {
 
 }  // namespace
 
+TEST_CASE("faces that nearly touch overlap nowhere, and those that lie in each other do") {
+    Boxes boxes;
+    for (const double gap : {0.05, -0.3}) {
+        INFO(gap << " mm");
+        REQUIRE(
+            boxes.folder.tactus("plan move " + boxes.plan + " b --pose " + std::to_string(gap - 1.0) + ",0,0,1,0,0,0")
+                .code == 0);
+        const auto gaps = study::plan_gaps(cases::load_case_plan(boxes.plan), boxes.folder.path, std::pair{0, 1});
+        REQUIRE(gaps.size() == 1);
+        CHECK((gaps[0].overlap > 0.0) == (gap < 0.0));
+        CHECK((gaps[0].gap.deepest > 0.1 * mm) == (gap < 0.0));
+    }
+}
+
 TEST_CASE("a map of gaps has on a face what the plan's gap says, and nothing where nothing faces it") {
     Boxes boxes;
     for (const double gap : {1.0, 0.5, -0.2}) {

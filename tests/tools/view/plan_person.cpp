@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person with a mouse and a keyboard puts fragments of a jaw together.
-#include "assets/bone/bone.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/display/camera.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/jaw_case.hpp"
+#include "tests/tools/view/front_view.hpp"
 #include "tests/tools/view/walk.hpp"
 
 #include <glm/geometric.hpp>
@@ -31,18 +29,6 @@ struct PlannerEyes : Eyes {
     cases::CasePlan plan() const { return cases::load_case_plan(folder / "out/case.plan.json"); }
 };
 
-/// The front view, as it is fitted to all fragments at their scanned places.
-display::OrbitCamera front_view(double aspect) {
-    display::Bounds all;
-    for (const auto& fragment : cases::load_case_plan(case_folder() / "case.plan.json").fragments)
-        for (const contact::SurfacePoint& p : bone::load_bone((case_folder() / fragment.file).string()).points)
-            all.add(p.position);
-    display::OrbitCamera camera;
-    camera.look_from(display::NamedView::front);
-    camera.fit(all, aspect);
-    return camera;
-}
-
 class Planner {
 public:
     explicit Planner(Walk& walk)
@@ -57,9 +43,8 @@ public:
     void press(const std::string& control) { walk_.press(control, "panel plan steps"); }
     /// The hand goes to what is seen there.
     void reach(const Vec3& point) {
-        const auto seen = camera_.projection(width() / height(), bounds_of(point)).seen(point);
-        const double x = scene_.left + 0.5 * (seen->x + 1.0) * width(),
-                     y = scene_.top + 0.5 * (1.0 - seen->y) * height();
+        const Vec3 at = place_in(scene_, camera_, point);
+        const double x = at.x, y = at.y;
         reached_ = fmt::format("reached at {:.0f}, {:.0f} of a scene from {:.0f}, {:.0f} to {:.0f}, {:.0f}", x, y,
                                scene_.left, scene_.top, scene_.right, scene_.bottom);
         person_.move(x, y);
@@ -146,13 +131,6 @@ public:
 private:
     double width() const { return scene_.right - scene_.left; }
     double height() const { return scene_.bottom - scene_.top; }
-    static display::Bounds bounds_of(const Vec3& point) {
-        display::Bounds box;
-        box.add(point - Vec3(0.2));
-        box.add(point + Vec3(0.2));
-        return box;
-    }
-
     Walk& walk_;
     Person& person_;
     PlannerEyes eyes_;

@@ -76,7 +76,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         walk.press("part fragment_01", "panel tree");
         press("hide in plan");
         CHECK(comes([&] { return cases::state_of(plan()).arrangement.is_hidden(0); }));
-        REQUIRE(walk.waits_for("alternative main"));
+        REQUIRE(walk.waits_for("alternative main", "panel plan steps"));
         press("alternative main");
         CHECK(comes([&] { return plan().current == 0 && !cases::state_of(plan()).arrangement.is_hidden(0); }));
         const std::string other = plan().alternatives[1].name;
@@ -116,7 +116,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         // Two points, kept, and written for Slicer.
         walk.measure();
         walk.press("keep measurement", "panel tree");
-        REQUIRE(walk.waits_for("save for Slicer"));
+        REQUIRE(walk.waits_for("save for Slicer", "panel tree"));
         walk.keep("measured");
         walk.press("save for Slicer", "panel tree");
         REQUIRE(comes([&] { return fs::exists(folder / "out/measurements-1.mrk.json"); }));

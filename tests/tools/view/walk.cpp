@@ -66,18 +66,21 @@ Outcome Walk::stop() {
 
 bool Walk::shows(const std::string& control) const { return eyes.spots().contains(control); }
 
-bool Walk::waits_for(const std::string& control) const {
-    return sees([&] { return shows(control); }) || sees([&] { return shows(control); });
+bool Walk::waits_for(const std::string& control, const std::string& panel) {
+    if (panel.empty()) return sees([&] { return shows(control); }) || sees([&] { return shows(control); });
+    for (int i = 0; i < 4; ++i)
+        if (scroll_to(control, panel)) return true;
+    return false;
 }
 
 bool Walk::waits_while(const std::string& control) const {
     return sees([&] { return !shows(control); });
 }
 
-void Walk::press(const std::string& control, const std::string& panel) {
+bool Walk::scroll_to(const std::string& control, const std::string& panel) {
     // First down to the end of the panel, then up to its beginning.
     constexpr int most_turns = 40;
-    for (int turn = 0; turn < most_turns && !shows(control) && !panel.empty(); ++turn) {
+    for (int turn = 0; turn < most_turns && !shows(control); ++turn) {
         const Spot over = eyes.spot(panel);
         person.move(0.5 * (over.left + over.right), 0.5 * (over.top + over.bottom));
         Person::wait(0.1);
@@ -86,6 +89,11 @@ void Walk::press(const std::string& control, const std::string& panel) {
         person.button(wheel, false);
         Person::wait(0.6);
     }
+    return shows(control);
+}
+
+void Walk::press(const std::string& control, const std::string& panel) {
+    if (!panel.empty()) scroll_to(control, panel);
     test::press(person, eyes, control);
 }
 

@@ -46,8 +46,8 @@ public:
     Outcome stop();
 
     bool shows(const std::string& control) const;
-    /// Waits for it, for a minute at most.
-    bool waits_for(const std::string& control) const;
+    /// Waits for it, for two minutes at most. With a panel: turns the wheel over it until the control is there.
+    bool waits_for(const std::string& control, const std::string& panel = {});
     bool waits_while(const std::string& control) const;
     /// Presses a control; turns the wheel over the panel where it must be until it is there.
     void press(const std::string& control, const std::string& panel = {});
@@ -68,6 +68,8 @@ public:
     Eyes eyes;
 
 private:
+    bool scroll_to(const std::string& control, const std::string& panel);
+
     std::string what_;
     int pictures_ = 0;
     std::future<Outcome> done_;

@@ -27,6 +27,10 @@ void add_view_options(VerbOptions& verb, view::ViewChoice& choice) {
     add_sight_options(verb, choice.sight, nullptr);
     verb.add("--layout", choice.layout, "panels of the window (default: as the patch was seen last)")
         .one_of({"patch", "plan", "train"});
+    verb.add(
+        "--scan", choice.scan,
+        "CT whose slices the layout 'plan' shows beside the scene: .nrrd, .nii, a folder of DICOM; in the frame of "
+        "the case (default: the one shown with this plan last, else what its bones hold)");
     verb.add("--view-scale", choice.scale, "scale of text and controls (default: that of the screen)").range(0.5, 4.0);
 }
 

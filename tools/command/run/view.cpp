@@ -13,9 +13,10 @@ int view_file(const view::FileViewChoice& choice) { return view::view_file(choic
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<view::FileViewChoice>();
-    verb.add("file", choice->file,
-             "folder of a take, made with --record, or a patch, which is opened and not run (default: a page to choose "
-             "from)");
+    verb.add(
+        "file", choice->file,
+        "folder of a take, made with --record, or a patch or a plan of a case, which is opened and not run (default: a "
+        "page to choose from)");
     add_view_options(verb, choice->view);
     return [choice] { return view_file(*choice); };
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tactus::picture {
 
@@ -95,25 +96,35 @@ display::PictureMesh ball_mesh(const Vec3& centre, double radius, const Vec3& co
     return picture_mesh(ball, {}, {&colour, 1});
 }
 
-void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,
-                  const reconstruct::Flap& flap) {
+std::vector<Hardware> hardware_of(const reconstruct::Flap& flap) {
+    std::vector<Hardware> all;
     for (const reconstruct::Plate& plate : flap.plates) {
+        Hardware& made = all.emplace_back("plate " + plate.name, plate_colour);
         for (const reconstruct::Block& block : reconstruct::blocks_of(plate))
-            meshes.push_back(picture_mesh(surface_of(block), {}, {&plate_colour, 1}));
+            made.meshes.push_back(picture_mesh(surface_of(block), {}, {&plate_colour, 1}));
         for (const reconstruct::Screw& screw : plate.screws) {
             // The head stands above the plate.
             const Vec3 top = screw.head - (plate.thickness + 0.8e-3) * screw.axis;
-            meshes.push_back(
+            made.meshes.push_back(
                 tube_mesh({screw.head, screw.head + screw.length * screw.axis}, 0.5 * screw.diameter, screw_colour));
-            meshes.push_back(tube_mesh({top, screw.head}, screw.diameter, screw_colour));
+            made.meshes.push_back(tube_mesh({top, screw.head}, screw.diameter, screw_colour));
         }
+    }
+    for (const reconstruct::DentalImplant& implant : flap.implants)
+        all.emplace_back("implant " + implant.name, implant_colour)
+            .meshes.push_back(tube_mesh({implant.head, implant.head + implant.length * implant.axis},
+                                        0.5 * implant.diameter, implant_colour));
+    return all;
+}
+
+void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,
+                  const reconstruct::Flap& flap) {
+    for (Hardware& one : hardware_of(flap))
+        for (display::PictureMesh& mesh : one.meshes) meshes.push_back(std::move(mesh));
+    for (const reconstruct::Plate& plate : flap.plates)
         if (!plate.points.empty()) labels.push_back({plate.name, plate.points[plate.points.size() / 2], plate_colour});
-    }
-    for (const reconstruct::DentalImplant& implant : flap.implants) {
-        meshes.push_back(tube_mesh({implant.head, implant.head + implant.length * implant.axis}, 0.5 * implant.diameter,
-                                   implant_colour));
+    for (const reconstruct::DentalImplant& implant : flap.implants)
         labels.push_back({implant.name, implant.head, implant_colour});
-    }
     for (const reconstruct::RecipientSite& site : flap.sites) {
         const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
         meshes.push_back(ball_mesh(site.at, 2e-3, colour));

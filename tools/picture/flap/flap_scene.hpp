@@ -8,6 +8,7 @@
 #include "tools/picture/report/plan_picture.hpp"
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tactus::picture {
@@ -23,6 +24,14 @@ display::PictureMesh picture_mesh(const geometry::TriangleSurface& surface, cons
 /// A closed tube about a line.
 display::PictureMesh tube_mesh(const std::vector<Vec3>& line, double radius, const Vec3& colour);
 display::PictureMesh ball_mesh(const Vec3& centre, double radius, const Vec3& colour);
+
+/// A plate with its screws, or an implant.
+struct Hardware {
+    std::string name;  ///< "plate p1", "implant i1"
+    Vec3 colour{0.0};
+    std::vector<display::PictureMesh> meshes;
+};
+std::vector<Hardware> hardware_of(const reconstruct::Flap& flap);
 
 /// Plates, screws, implants and sites, with labels for implants and sites.
 void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,

@@ -48,6 +48,7 @@ SceneModel::~SceneModel() {
     for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
+    for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     renderer_.meshes().remove(notes_mesh_);
 }
 
@@ -163,6 +164,7 @@ display::Picture& SceneModel::update() {
     show_bodies();
     show_targets();
     show_compared();
+    show_hardware();
     show_blades();
     show_balls();
     show_gripper();

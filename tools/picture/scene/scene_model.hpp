@@ -17,6 +17,10 @@
 #include <unordered_set>
 #include <vector>
 
+namespace tactus::reconstruct {
+struct Reconstruction;
+}
+
 namespace tactus::picture {
 
 /// Belongs to one renderer. Its context must be current in `update` and in the destructor.
@@ -58,6 +62,9 @@ public:
     /// Draws the fragments of the plan a second time from the next picture on, see-through and in another colour, where
     /// these poses of their files differ from those of the scene; empty: no longer. `name`: for the legend.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
+    /// The plates with their screws and the implants that are drawn from the next picture on, in the frame of the case;
+    /// at first those of the plan's file. Null: none.
+    void use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of);
     /// Whether sections show the density of what is cut, from the next picture on. Files are read beside the pictures, and
     /// sections are flat until then; `waits`: the next picture waits for them.
     void show_density(bool wanted, bool waits = false);
@@ -66,6 +73,15 @@ public:
     std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
     /// Poses of its fragments' files in that scene, as they are seen; none where one is hidden, or was not drawn yet.
     std::vector<std::optional<Pose>> plan_poses() const;
+    /// A fragment of the plan in the last picture: its surface and where it is drawn, in the frame of the case.
+    struct PlanPiece {
+        std::shared_ptr<const observe::SeenBody> body;
+        Vec3 colour{0.0};
+        Pose pose;
+        bool is_chosen = false;
+    };
+    /// By place; those that are hidden are missing.
+    const std::map<std::size_t, PlanPiece>& plan_pieces() const { return pieces_; }
     /// Parts that are marked, in the order in which they were chosen.
     const std::vector<std::string>& chosen_parts() const { return chosen_; }
     /// Marks a part, or no longer if it was the only one; `adds`: the others stay as they are. Empty: none.
@@ -117,6 +133,8 @@ private:
     void show_bodies();
     void show_targets();
     void show_compared();
+    void show_hardware();
+    bool is_chosen(const std::string& name) const;
     bool is_part_shown(const std::string& name, const Vec3& colour);
     void take_names();
     std::string name_of_body(const SceneOutline::Bodies& scene, std::size_t place) const;
@@ -142,7 +160,7 @@ private:
     void show_gripper();
     void show_force(const std::string& wrench, const Vec3& at);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
-    void mark(const BodyMesh& mesh, const Pose& pose);
+    void mark(const display::Bounds& bounds, const Pose& pose);
     /// The densities of a file: those of its bone, or of a plan's fragments in their order; empty: being read, or none.
     std::span<const volume::Grid> densities_of(const std::string& path);
     void find_scan(BodyMesh& mesh, const SceneOutline::Bodies& scene, std::size_t place);
@@ -179,11 +197,20 @@ private:
     std::map<std::string, Densities> densities_;  // by path
     std::vector<std::optional<Pose>> compared_;
     std::string compared_name_;
+    std::map<std::size_t, PlanPiece> pieces_;
     std::map<std::size_t, std::uint64_t> content_at_;  // of the plan's scene: what was seen last, by place
     bool has_density_ = false, waits_for_density_ = false, shows_grey_ = false;
     std::shared_ptr<const SurfaceMap> map_;
     double map_range_ = 1e-3;
     int map_number_ = 0;
+    struct HardwareMesh {
+        std::string name;
+        Vec3 colour{0.0};
+        display::MeshPool::Mesh mesh = -1;
+        display::Bounds bounds;
+    };
+    std::vector<HardwareMesh> hardware_;
+    std::shared_ptr<const reconstruct::Reconstruction> hardware_of_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;

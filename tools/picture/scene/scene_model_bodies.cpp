@@ -39,6 +39,7 @@ void SceneModel::take_names() {
                     is_coloured = is_coloured && plan.fragments[a].colour != plan.fragments[b].colour;
             for (const cases::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
+            use_hardware(cases::state_of(plan).reconstruction);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong
         }
@@ -145,6 +146,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
 
 void SceneModel::show_bodies() {
     shown_.clear();
+    pieces_.clear();
     bool has_paint = false;
     // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
     std::vector<const SceneOutline::Bodies*> scenes;
@@ -192,7 +194,8 @@ void SceneModel::show_bodies() {
             show(mesh->mesh, pose, mesh->bounds);
             find_scan(*mesh, *scene, i);
             show_scan(mesh->scan, mesh->body->home);
-            if (std::ranges::find(chosen_, name) != chosen_.end()) mark(*mesh, pose);
+            if (!scene->plan.empty()) pieces_[i] = {mesh->body, colour, pose, is_chosen(name)};
+            if (is_chosen(name)) mark(mesh->bounds, pose);
             has_paint = has_paint || mesh->has_paint;
             if (!held) continue;
             if (hand) {
@@ -216,10 +219,12 @@ void SceneModel::show_bodies() {
     if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
 }
 
-/// The bounding box of a chosen body.
-void SceneModel::mark(const BodyMesh& mesh, const Pose& pose) {
-    const std::array<Vec3, 8> corners = mesh.bounds.corners();
-    const double thick = 0.006 * mesh.bounds.radius();
+bool SceneModel::is_chosen(const std::string& name) const { return std::ranges::find(chosen_, name) != chosen_.end(); }
+
+/// The bounding box of a chosen part.
+void SceneModel::mark(const display::Bounds& bounds, const Pose& pose) {
+    const std::array<Vec3, 8> corners = bounds.corners();
+    const double thick = 0.006 * bounds.radius();
     for (std::size_t a = 0; a < corners.size(); ++a)
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (const std::size_t b = a ^ (std::size_t{1} << axis); b > a) {

@@ -203,6 +203,7 @@ std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& sta
 
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair) {
+    constexpr double least_depth = 5e-6;  // m
     const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
     const cases::PlanState state = cases::state_of(plan);
     std::vector<PlanGap> found;
@@ -210,7 +211,9 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
         const fit::MutualGap gap = fit::mutual_gap(placed_bone(a, at), placed_bone(b, bt));
-        const double overlap = fit::overlap_volume(a.bone.distance, at, b.map, bt);
+        // Surfaces that only touch share fractions of voxels, which are no overlap.
+        const bool is_inside = gap.deepest > least_depth;
+        const double overlap = is_inside ? fit::overlap_volume(a.bone.distance, at, b.map, bt) : 0.0;
         // What lies deep inside of another does not face it.
         if (!pair && !(gap.facing > 5e-6) && !(overlap > 5e-9)) return;
         found.push_back({i, j, gap, overlap});

@@ -97,7 +97,7 @@ std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& sta
 struct PlanGap {
     int first = 0, second = 0;
     fit::MutualGap gap;
-    double overlap = 0.0;  ///< m³
+    double overlap = 0.0;  ///< m³; 0 where no point of either is deeper than 5 µm in the other
 };
 /// Gaps of one pair, or of all visible pairs that face each other or lie in each other. Throws Error.
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,

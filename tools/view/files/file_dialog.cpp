@@ -157,12 +157,19 @@ void FileDialog::draw(const Fonts& fonts) {
     ImGui::SameLine();
     const bool cancelled = ImGui::Button("Cancel") || pressed(ImGuiKey_Escape);
     mark_spot("cancel file");
+    bool is_folder = false;
+    if (chooser_->takes_folders) {
+        ImGui::SameLine();
+        is_folder = ImGui::Button("Open this folder");
+        mark_spot("accept folder");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("the slices of a scan: a folder of DICOM files");
+    }
     if (cancelled) {
         chooser_.reset();
         return leave();
     }
-    if (entered || accepted) {
-        if (const auto file = chooser_->accept()) {
+    if (entered || accepted || is_folder) {
+        if (const auto file = is_folder ? chooser_->accept_folder() : chooser_->accept()) {
             const Done done = done_;
             chooser_.reset();
             leave();

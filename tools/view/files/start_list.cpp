@@ -104,6 +104,12 @@ FileKind kind_of_file(const fs::path& path) {
     return FileKind::unknown;
 }
 
+bool is_ct(const fs::path& path) {
+    const std::string name = lower(path.filename().string());
+    return kind_of_file(path) == FileKind::scan && !name.ends_with(".stl") && !name.ends_with(".ply") &&
+           !name.ends_with(".obj");
+}
+
 std::vector<std::string> endings_of_asset(std::string_view type_name) {
     const std::string type(type_name);
     if (type == "sound") return {".wav", ".flac", ".ogg", ".aiff", ".aif", ".mp3", ".w64"};

@@ -26,6 +26,8 @@ StartList start_list(const std::filesystem::path& library, const std::filesystem
 enum class FileKind { patch, take, plan, bone, scan, sound, table, unknown };
 /// By its ending, and of folders by what is in them. A folder that is no take may be a scan: DICOM.
 FileKind kind_of_file(const std::filesystem::path& path);
+/// A scan that is no mesh.
+bool is_ct(const std::filesystem::path& path);
 
 /// Endings of the files that an asset of this type is loaded from; empty: any.
 std::vector<std::string> endings_of_asset(std::string_view type_name);

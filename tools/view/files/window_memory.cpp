@@ -14,7 +14,7 @@ using file::Json;
 
 namespace {
 
-constexpr std::size_t most_recent = 20, most_layouts = 500;
+constexpr std::size_t most_recent = 20, most_layouts = 500, most_scans = 500;
 
 std::string name_of_file(const fs::path& path) {
     std::error_code ignored;
@@ -42,10 +42,14 @@ WindowMemory::WindowMemory(fs::path file) : file_(std::move(file)) {
             for (const auto& [path, name] : layouts->items())
                 if (const auto layout = layout_of_name(name.as_text()); layout && layouts_.size() < most_layouts)
                     layouts_[path] = *layout;
+        if (const Json* scans = root.find("scans"))
+            for (const auto& [plan, scan] : scans->items())
+                if (scans_.size() < most_scans) scans_[plan] = scan.as_text();
     } catch (const std::exception&) {
         // What is damaged is forgotten; it is no patch.
         recent_.clear();
         layouts_.clear();
+        scans_.clear();
     }
 }
 
@@ -69,13 +73,26 @@ void WindowMemory::keep_layout(const fs::path& patch, Layout layout) {
     save();
 }
 
+fs::path WindowMemory::scan_of(const fs::path& plan) const {
+    const auto found = scans_.find(name_of_file(plan));
+    return found == scans_.end() ? fs::path() : fs::path(found->second);
+}
+
+void WindowMemory::keep_scan(const fs::path& plan, const fs::path& scan) {
+    if (scans_.size() >= most_scans) scans_.clear();
+    scans_[name_of_file(plan)] = name_of_file(scan);
+    save();
+}
+
 void WindowMemory::save() const noexcept {
     if (file_.empty()) return;
     try {
-        Json root = Json::object(), layouts = Json::object();
+        Json root = Json::object(), layouts = Json::object(), scans = Json::object();
         for (const auto& [path, layout] : layouts_) layouts[path] = std::string(name_of(layout));
         root["recent"] = Json(recent_);
+        for (const auto& [plan, scan] : scans_) scans[plan] = scan;
         root["layouts"] = layouts;
+        root["scans"] = scans;
         fs::create_directories(file_.parent_path());
         file::write_durable_file(file_, root.dump(2) + "\n");
     } catch (const std::exception&) {

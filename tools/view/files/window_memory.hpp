@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window remembers from one time to the next: files opened last, and the layout of each. No user interface.
+// What the window remembers from one time to the next: files opened last, the layout of each, and
+// the scan of a plan. No user interface.
 #pragma once
 
 #include "tools/view/frame/layout.hpp"
@@ -27,12 +28,17 @@ public:
     std::optional<Layout> layout_of(const std::filesystem::path& patch) const;
     void keep_layout(const std::filesystem::path& patch, Layout layout);
 
+    /// The scan that was shown beside a plan last; empty: none. It may be gone.
+    std::filesystem::path scan_of(const std::filesystem::path& plan) const;
+    void keep_scan(const std::filesystem::path& plan, const std::filesystem::path& scan);
+
 private:
     void save() const noexcept;
 
     std::filesystem::path file_;
     std::vector<std::string> recent_;
     std::map<std::string, Layout> layouts_;
+    std::map<std::string, std::string> scans_;  ///< by plan
 };
 
 }  // namespace tactus::view

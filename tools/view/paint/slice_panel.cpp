@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#define GL_GLEXT_PROTOTYPES
-#include <GL/glcorearb.h>
-
 #include "tools/view/paint/slice_panel.hpp"
 
 #include "tools/view/spots.hpp"
@@ -13,10 +10,6 @@
 #include <cmath>
 
 namespace tactus::view {
-
-SlicePanel::~SlicePanel() {
-    if (texture_ != 0) glDeleteTextures(1, &texture_);
-}
 
 Point SlicePanel::place_of(const Vec3& position) const { return middle_ + plane_.pixel(position); }
 
@@ -30,19 +23,7 @@ void SlicePanel::refresh() {
                                      labels ? labels->number : 0, bench_.shows_certainty);
     const SliceOverlay overlay{&bench_.scan(), labels, bench_.colours(), bench_.shows_certainty};
     for (const auto& c : overlay.colours) wanted += fmt::format(" {:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-    if (wanted == shown_) return;
-    shown_ = wanted;
-    const SlicePicture picture = slice_picture(grid, slice_, bench_.cursor, bench_.window, overlay);
-    if (texture_ == 0) glGenTextures(1, &texture_);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    for (const GLenum edge : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-        glTexParameteri(GL_TEXTURE_2D, edge, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);  // voxels stay voxels
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, picture.width, picture.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                 picture.rgba.data());
-    glBindTexture(GL_TEXTURE_2D, 0);
+    texture_.show(wanted, [&] { return slice_picture(grid, slice_, bench_.cursor, bench_.window, overlay); });
 }
 
 void SlicePanel::use_tool(const SlicePlane& plane, Point middle) {
@@ -61,36 +42,6 @@ void SlicePanel::use_tool(const SlicePlane& plane, Point middle) {
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) painting.end();
 }
 
-void SlicePanel::steer(const SlicePlane& plane, Point middle) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
-    const Point by = point(io.MouseDelta);
-    if (ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 1.0f) ||
-        (io.KeyShift && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f)))
-        sight_.middle = sight_.middle + plane.position({0.0, 0.0}) - plane.position(by);
-    if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 1.0f)) {
-        const double span = bench_.window.high - bench_.window.low;
-        const double wide = std::max(1e-9, span * std::exp(0.005 * by.x)), level = 0.003 * span * by.y;
-        const double centre = 0.5 * (bench_.window.low + bench_.window.high) + level;
-        bench_.window = {centre - 0.5 * wide, centre + 0.5 * wide};
-    }
-    if (io.MouseWheel == 0.0f) return;
-    if (io.KeyCtrl) {
-        const Vec3 fixed = plane.position(point(io.MousePos) - middle);
-        const double factor = std::pow(1.2, static_cast<double>(io.MouseWheel));
-        const double before = sight_.pixels_per_m;
-        sight_.pixels_per_m = std::clamp(before * factor, 200.0, 100'000.0);
-        const SliceAxes axes = axes_of(slice_);
-        for (const int axis : {axes.right, axes.down})
-            sight_.middle[axis] = fixed[axis] + (sight_.middle[axis] - fixed[axis]) * before / sight_.pixels_per_m;
-        return;
-    }
-    const int normal = axes_of(slice_).normal;
-    Vec3 to = bench_.cursor;
-    to[normal] += static_cast<double>(io.MouseWheel) * bench_.scan().scan.spacing[normal];
-    bench_.move_cursor(to);
-}
-
 void SlicePanel::draw_marks(const Painter& paint, const SlicePlane& plane, Point middle, const Box& box,
                             double scale) const {
     const auto ring = [&](const Vec3& at, double radius, std::uint32_t ink, float width) {
@@ -104,13 +55,7 @@ void SlicePanel::draw_marks(const Painter& paint, const SlicePlane& plane, Point
         return colour(static_cast<std::uint32_t>(colours[label][0]) << 16 |
                       static_cast<std::uint32_t>(colours[label][1]) << 8 | colours[label][2]);
     };
-    // Linked cursor, open in the middle.
-    const Point c = middle + plane.pixel(bench_.cursor);
-    const double open = 10.0 * scale;
-    for (const double side : {-1.0, 1.0}) {
-        paint.line({c.x + side * open, c.y}, {side < 0.0 ? box.left : box.right, c.y}, colour(0x5ab0ff, 110));
-        paint.line({c.x, c.y + side * open}, {c.x, side < 0.0 ? box.top : box.bottom}, colour(0x5ab0ff, 110));
-    }
+    draw_slice_cursor(paint, middle + plane.pixel(bench_.cursor), box, scale);
     for (const auto& found : bench_.vessels())
         for (const vessel::Branch& branch : found->track.branches)
             for (const vessel::Node& node : branch.nodes)
@@ -136,38 +81,28 @@ void SlicePanel::draw(const Fonts& fonts) {
         double widest = 1e-3;
         for (int axis = 0; axis < 3; ++axis)
             widest = std::max(widest, bone.spacing[axis] * bone.size[static_cast<std::size_t>(axis)]);
-        sight_.pixels_per_m = 0.92 * std::min(size.x, size.y) / widest;
-        sight_.middle = bench_.cursor;
+        sight_.fit(size, widest, bench_.cursor);
     }
-    plane_ = {slice_, sight_.middle, sight_.pixels_per_m};
-    plane_.middle[axes_of(slice_).normal] = bench_.cursor[axes_of(slice_).normal];
+    plane_ = sight_.plane(slice_, bench_.cursor);
     middle_ = box.middle();
     ImGui::InvisibleButton(
         "slice", vec(size),
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     mark_spot(std::string(name_of(slice_)));
     use_tool(plane_, middle_);
-    steer(plane_, middle_);
+    Vec3 cursor = bench_.cursor;
+    steer_slice(plane_, middle_, grid.spacing[axes_of(slice_).normal], sight_, bench_.window, cursor);
+    if (cursor != bench_.cursor) bench_.move_cursor(cursor);
     refresh();
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     paint.list()->PushClipRect(vec({box.left, box.top}), vec({box.right, box.bottom}), true);
     paint.box(box, colour(0x000000));
     const auto corners = corners_of(grid, plane_);
-    paint.list()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)),
-                           vec(middle_ + corners[0]), vec(middle_ + corners[1]));
+    texture_.draw(paint, middle_ + corners[0], middle_ + corners[1]);
     draw_marks(paint, plane_, middle_, box, fonts.scale);
-    const double small = 12.0 * fonts.scale;
-    const int normal = axes_of(slice_).normal;
-    paint.text({box.left + 6.0, box.top + 4.0}, small, tone::dim,
-               fmt::format("{} {} {:.1f} mm", name_of(slice_), "xyz"[normal], bench_.cursor[normal] * 1e3));
+    draw_slice_words(paint, slice_, bench_.cursor, box, fonts.scale);
     if (bench_.labels() && bench_.labels()->is_preview)
-        paint.text_left_of({box.right - 6.0, box.top + 4.0}, small, tone::warm, "preview");
-    const auto edges = edges_of(slice_);
-    const Point m = box.middle();
-    paint.text({box.left + 6.0, m.y - 0.5 * small}, small, tone::text, edges[0]);
-    paint.text_left_of({box.right - 6.0, m.y - 0.5 * small}, small, tone::text, edges[1]);
-    paint.text({m.x, box.top + 4.0}, small, tone::text, edges[2]);
-    paint.text({m.x, box.bottom - small - 6.0}, small, tone::text, edges[3]);
+        paint.text_left_of({box.right - 6.0, box.top + 4.0}, 12.0 * fonts.scale, tone::warm, "preview");
     paint.list()->PopClipRect();
 }
 

@@ -73,6 +73,10 @@ void FlapPanel::lists(const reconstruct::Reconstruction& all) {
         Form form;
         form.kind = Kind::plate;
         if (!plate.screws.empty()) form.screw_length = static_cast<float>(plate.screws.front().length / mm);
+        if (plate.laid) {
+            form.height = static_cast<float>(plate.laid->height / mm);
+            form.screws = plate.laid->screws_per_segment;
+        } else form.note = "The plan does not say how this plate was laid: height and number of screws are guesses.";
         line("plate", plate, form, &reconstruct::Flap::plates);
     }
     for (const reconstruct::DentalImplant& implant : all.flap.implants) {
@@ -170,8 +174,10 @@ void FlapPanel::dialog() {
     switch (form_.kind) {
         case Kind::plate:
             ImGui::SliderInt("screws per segment", &form_.screws, 0, 6);
+            mark_spot("screws of the plate");
             ImGui::SliderFloat("screws, mm", &form_.screw_length, 1.0f, 40.0f, "%.1f");
             ImGui::SliderFloat("above the axes, mm", &form_.height, -15.0f, 15.0f, "%.1f");
+            mark_spot("height of the plate");
             break;
         case Kind::implant:
             places();
@@ -202,6 +208,7 @@ void FlapPanel::dialog() {
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (ImGui::Button("cancel")) ImGui::CloseCurrentPopup();
+    if (!form_.note.empty()) ImGui::TextDisabled("%s", form_.note.c_str());
     ImGui::TextDisabled("A step of the plan; the run begins again with it.");
     ImGui::PopItemWidth();
     ImGui::EndPopup();
@@ -209,7 +216,8 @@ void FlapPanel::dialog() {
 
 void FlapPanel::draw() {
     flap_.tend();
-    const reconstruct::Reconstruction* all = flap_.reconstruction();
+    if (run_.plan()) scene_.use_hardware(flap_.reconstruction());
+    const std::shared_ptr<const reconstruct::Reconstruction> all = flap_.reconstruction();
     if (!all) return;
     ImGui::TextWrapped("reconstruction (for research, not a medical device)");
     ImGui::BeginDisabled(flap_.is_changing());

@@ -25,7 +25,7 @@ private:
     /// What is asked for in the dialog; mm.
     struct Form {
         Kind kind = Kind::plate;
-        std::string name, file;
+        std::string name, file, note;
         std::array<float, 3> at{}, axis{0.0f, 0.0f, -1.0f};
         float diameter = 4.0f, length = 14.0f, screw_length = 12.0f, height = 0.0f, margin = 10.0f;
         int screws = 2;

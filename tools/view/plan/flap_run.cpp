@@ -126,6 +126,13 @@ void FlapRun::lay_plate(const std::string& name, int screws_per_segment, double 
         settings.screws_per_segment = screws_per_segment;
         settings.screw_length = screw_length;
         settings.height = height;
+        // What nobody is asked for stays as it is.
+        for (const reconstruct::Plate& known : all.flap.plates)
+            if (known.name == name) {
+                settings.width = known.width;
+                settings.thickness = known.thickness;
+                if (!known.screws.empty()) settings.screw_diameter = known.screws.front().diameter;
+            }
         reconstruct::Plate made = reconstruct::plate_on(study.inputs(), study.fibula(), settings);
         made.name = name;
         put_named(all.flap.plates, std::move(made));

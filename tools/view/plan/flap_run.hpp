@@ -24,7 +24,7 @@ public:
     /// Once per picture while it is seen.
     void tend();
     /// Of the plan as it is now; null: it has none.
-    const reconstruct::Reconstruction* reconstruction() const { return now_.get(); }
+    const std::shared_ptr<const reconstruct::Reconstruction>& reconstruction() const { return now_; }
 
     /// Verdicts of the plan as it is now: reach of each vessel, clearances, margin; then warnings.
     struct Verdicts {

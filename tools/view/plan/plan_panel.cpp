@@ -138,7 +138,9 @@ void PlanPanel::step_list() {
         case_.press("undo");
     if (button("redo step", case_.can_press("redo"), "of the plan")) case_.press("redo");
     if (!case_.plan()) return ImGui::TextDisabled("the run has written no plan yet");
-    ImGui::BeginChild("steps", ImVec2(0.0f, 0.0f));
+    // In a small panel, below what it shows first: some steps are seen at once.
+    const float least = 7.0f * ImGui::GetTextLineHeightWithSpacing();
+    ImGui::BeginChild("steps", ImVec2(0.0f, std::max(least, ImGui::GetContentRegionAvail().y)));
     const auto& steps = case_.steps();
     if (steps.empty()) ImGui::TextDisabled("no steps yet");
     for (const StepLine& step : steps) {

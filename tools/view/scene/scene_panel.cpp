@@ -88,6 +88,22 @@ std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() 
     return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
 }
 
+void ScenePanel::use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of) {
+    if (model_) model_->use_hardware(std::move(of));
+}
+
+const std::map<std::size_t, SceneModel::PlanPiece>& ScenePanel::plan_pieces() const {
+    static const std::map<std::size_t, SceneModel::PlanPiece> none;
+    return model_ ? model_->plan_pieces() : none;
+}
+
+std::string ScenePanel::plan_file() const {
+    if (model_)
+        for (const SceneOutline::Bodies& scene : model_->outline().scenes)
+            if (!scene.plan.empty()) return scene.plan;
+    return {};
+}
+
 void ScenePanel::compare(std::vector<std::optional<Pose>> poses, const std::string& name) {
     compared_ = std::move(poses);
     compared_name_ = name;
@@ -375,6 +391,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
                 paint.text(at + Point{8.0, 6.0}, 11.0 * fonts.scale, colour(0x1e293b),
                            sight_.display_file()->screens[i].name);
         }
+        draw_cursor(paint, corner, 1.0 / dense);
         draw_marks(paint, corner, 1.0 / dense);
         draw_hand(paint, corner, size, 1.0 / dense);
         if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);

@@ -15,7 +15,9 @@
 #include "tools/view/scene/scene_screens.hpp"
 #include "tools/view/workbench.hpp"
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -68,8 +70,16 @@ public:
     void set_map_range(double range);
     /// Of the plan in the scene, in its order; empty: not seen yet.
     std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
+    /// The fragments of a plan as they are drawn; empty: none was drawn yet.
+    const std::map<std::size_t, SceneModel::PlanPiece>& plan_pieces() const;
+    /// File of the plan in the scene, as the run began; empty: none.
+    std::string plan_file() const;
+    /// Draws the plates and implants of this one, in place of those of the plan's file.
+    void use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of);
     /// Draws the fragments of a plan a second time, at these poses of their files and in another colour; empty: no longer.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
+    /// A place that slices share, m; a click on a surface moves it. None: there are no slices.
+    std::optional<Vec3> cursor;
     bool is_measuring = false;
     bool is_siting = false;  ///< the next click on a bone moves the saw there
     bool has_few_tools = false;  ///< above the picture: views and the hand, as a trainee needs them
@@ -104,6 +114,10 @@ private:
     void draw_measurements();
     std::optional<display::Plane> clip_plane() const;
     std::optional<display::Picked> pick(Point pixel);
+    /// Where a place of the scene is seen in a view of a tile.
+    static std::optional<Point> place_in(const SceneScreens::Tile& tile, const display::DrawnView& view,
+                                         const Vec3& in_scene, Point corner, double pixel);
+    void draw_cursor(const Painter& paint, Point corner, double pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_hand(const Painter& paint, Point corner, Point size, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlays of the scene: measured points and the legend.
 #include "tools/view/scene/scene_panel.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
@@ -46,9 +47,10 @@ void ScenePanel::move_site(Point pixel) {
     is_siting = !bench_.cut_at(picked->position);
 }
 
-/// The part under the pointer; with Ctrl it is added to the chosen ones.
+/// The part under the pointer; with Ctrl it is added to the chosen ones. The cursor of the slices goes there.
 void ScenePanel::choose(Point pixel) {
     const auto picked = pick(pixel);
+    if (picked && cursor) cursor = picked->position;
     model_->choose_part(picked ? model_->part_of(picked->mesh) : std::string(), ImGui::GetIO().KeyCtrl);
     needs_picture_ = true;
 }
@@ -58,6 +60,37 @@ void ScenePanel::lead_hand(Point pixel) {
     if (const auto picked = pick(pixel)) hand_.go_to(picked->position);
 }
 
+std::optional<Point> ScenePanel::place_in(const SceneScreens::Tile& tile, const display::DrawnView& view,
+                                          const Vec3& in_scene, Point corner, double pixel) {
+    const auto at = view.projection.seen(in_scene);
+    if (!at) return std::nullopt;
+    const double across = pixel * tile.width / std::max(tile.picture_width, 1),
+                 down = pixel * tile.height / std::max(tile.picture_height, 1);
+    return corner + Point{pixel * tile.x + across * (view.x + 0.5 * (at->x + 1.0) * view.width),
+                          pixel * tile.y + down * 0.5 * (1.0 - at->y) * view.height};
+}
+
+/// Lines along the axes of the case, open in the middle.
+void ScenePanel::draw_cursor(const Painter& paint, Point corner, double pixel) {
+    if (!cursor) return;
+    constexpr double open = 2e-3, end = 10e-3;
+    for (const SceneScreens::Tile& tile : screens_.tiles())
+        for (const display::DrawnView& view : tile.views) {
+            for (int axis = 0; axis < 3; ++axis)
+                for (const double side : {-1.0, 1.0}) {
+                    Vec3 along{0.0};
+                    along[axis] = side;
+                    const auto from = place_in(tile, view, *cursor + open * along, corner, pixel),
+                               to = place_in(tile, view, *cursor + end * along, corner, pixel);
+                    if (from && to) paint.line(*from, *to, tone::cursor, 1.5);
+                }
+            if (const auto at = place_in(tile, view, *cursor, corner, pixel)) {
+                set_spot("scene cursor", {at->x - 1.0, at->y - 1.0, at->x + 1.0, at->y + 1.0});
+                paint.dot(*at, 2.0, tone::cursor);
+            }
+        }
+}
+
 void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
     if (marks_.empty()) return;
     const std::string text = picture::measurement_words({{}, marks_});
@@ -65,13 +98,9 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
     for (const SceneScreens::Tile& tile : screens_.tiles())
         for (const display::DrawnView& view : tile.views) {
             // Drawn for each eye at their 3-D position.
-            const double across = pixel * tile.width / std::max(tile.picture_width, 1),
-                         down = pixel * tile.height / std::max(tile.picture_height, 1);
             std::vector<Point> seen;
             for (const Vec3& mark : marks_)
-                if (const auto at = view.projection.seen(mark))
-                    seen.push_back(corner + Point{pixel * tile.x + across * (view.x + 0.5 * (at->x + 1.0) * view.width),
-                                                  pixel * tile.y + down * 0.5 * (1.0 - at->y) * view.height});
+                if (const auto at = place_in(tile, view, mark, corner, pixel)) seen.push_back(*at);
             if (seen.size() != marks_.size()) continue;
             for (std::size_t i = 0; i < seen.size(); ++i) {
                 if (i > 0) paint.line(seen[i - 1], seen[i], tone::chosen, 2.0);
@@ -89,15 +118,7 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
 void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, double pixel) {
     if (!hand_.is_there() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
     const SceneScreens::Tile& tile = screens_.tiles().front();
-    const display::DrawnView& view = tile.views.front();
-    const double across = pixel * tile.width / std::max(tile.picture_width, 1),
-                 down = pixel * tile.height / std::max(tile.picture_height, 1);
-    const auto seen = [&](const Vec3& in_scene) -> std::optional<Point> {
-        const auto at = view.projection.seen(in_scene);
-        if (!at) return std::nullopt;
-        return corner + Point{pixel * tile.x + across * (view.x + 0.5 * (at->x + 1.0) * view.width),
-                              pixel * tile.y + down * 0.5 * (1.0 - at->y) * view.height};
-    };
+    const auto seen = [&](const Vec3& in_scene) { return place_in(tile, tile.views.front(), in_scene, corner, pixel); };
     double limit = 20.0;  // N, where the patch sets none
     if (bench_.plan())
         for (const compile::PlanNode& node : bench_.plan()->nodes)

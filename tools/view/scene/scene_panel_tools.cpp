@@ -2,6 +2,7 @@
 // The buttons above the scene's picture.
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
 
 #include <cstdio>
 
@@ -30,7 +31,11 @@ void ScenePanel::tools() {
     if (next_button("reset")) reset();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: iso view, all visible, no clipping");
     if (has_few_tools) return hand_.tools();
-    if (next_button(is_measuring ? "measuring" : "measure")) {
+    const bool measures = is_measuring;
+    if (measures) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::chosen, 0.45));
+    const bool is_measure_pressed = next_button("measure");
+    if (measures) ImGui::PopStyleColor();
+    if (is_measure_pressed) {
         is_measuring = !is_measuring;
         marks_.clear();
         needs_picture_ = true;
