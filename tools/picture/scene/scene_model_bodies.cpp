@@ -39,6 +39,7 @@ void SceneModel::take_names() {
                     is_coloured = is_coloured && plan.fragments[a].colour != plan.fragments[b].colour;
             for (const cases::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
+            take_vessels(scene.plan, plan);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong
         }
