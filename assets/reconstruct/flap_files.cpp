@@ -127,7 +127,7 @@ std::vector<MarkedPoint> read_marks(const fs::path& path) {
     return marks_of_text(file::read_whole_file(path), path.string());
 }
 
-FlapVessel vessel_of_table(std::string_view text, const std::string& file) {
+FlapVessel vessel_of_table(std::string_view text, const std::string& file, int branch) {
     constexpr std::array<std::string_view, 5> wanted{"branch", "x_mm", "y_mm", "z_mm", "radius_mm"};
     std::array<std::size_t, 5> column{};
     FlapVessel vessel;
@@ -158,26 +158,27 @@ FlapVessel vessel_of_table(std::string_view text, const std::string& file) {
             if (error != std::errc{} || rest != cell.data() + cell.size() || !(std::abs(values[c]) <= farthest_mm))
                 throw Error(fmt::format("{}: line {}: '{}' is not a number", file, number, wanted[c]));
         }
-        if (values[0] != 0.0) continue;
+        if (values[0] != branch) continue;
         vessel.points.emplace_back(values[1] * mm, values[2] * mm, values[3] * mm);
         radii += values[4] * mm;
     }
-    if (vessel.points.size() < 2) throw Error(fmt::format("{}: its branch 0 has less than two points", file));
+    if (vessel.points.size() < 2) throw Error(fmt::format("{}: its branch {} has less than two points", file, branch));
     vessel.radius = radii / static_cast<double>(vessel.points.size());
     if (!(vessel.radius > 0.0)) throw Error(fmt::format("{}: 'radius_mm' must be above 0", file));
     return vessel;
 }
 
-FlapVessel read_vessel(const fs::path& path, VesselKind kind) {
+FlapVessel read_vessel(const fs::path& path, VesselKind kind, int branch) {
     std::string stem = path.filename().string();
     FlapVessel vessel;
     if (stem.ends_with(".mrk.json")) {
+        if (branch != 0) throw Error(fmt::format("{}: branches are told apart in tables (.csv) only", path.string()));
         stem.resize(stem.size() - 9);
         for (const MarkedPoint& mark : read_marks(path)) vessel.points.push_back(mark.at);
         if (vessel.points.size() < 2) throw Error(fmt::format("{}: a vessel needs two points", path.string()));
     } else if (stem.ends_with(".csv")) {
         stem.resize(stem.size() - 4);
-        vessel = vessel_of_table(file::read_whole_file(path), path.string());
+        vessel = vessel_of_table(file::read_whole_file(path), path.string(), branch);
     } else {
         throw Error(fmt::format("{}: a vessel is a table (.csv) or a curve (.mrk.json)", path.string()));
     }

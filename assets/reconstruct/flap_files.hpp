@@ -21,10 +21,10 @@ std::vector<MarkedPoint> read_marks(const std::filesystem::path& path);
 /// The same from the text of a file; `file` is the name in messages.
 std::vector<MarkedPoint> marks_of_text(std::string_view text, const std::string& file);
 
-/// A vessel from a table as 'tactus vessel' writes it (.csv; its branch 0, with the mean radius) or from a curve of 3D
-/// Slicer (.mrk.json). Its name is that of the file. Throws Error.
-FlapVessel read_vessel(const std::filesystem::path& path, VesselKind kind);
-FlapVessel vessel_of_table(std::string_view text, const std::string& file);
+/// A vessel from a table as 'tactus vessel' writes it (.csv; one of its branches, with the mean radius) or from a curve of
+/// 3D Slicer (.mrk.json). Its name is that of the file. Throws Error.
+FlapVessel read_vessel(const std::filesystem::path& path, VesselKind kind, int branch = 0);
+FlapVessel vessel_of_table(std::string_view text, const std::string& file, int branch = 0);
 
 /// "artery" or "vein" in the name of a mark. Throws Error for neither or both.
 VesselKind kind_in(const std::string& name, const std::string& where);

@@ -102,7 +102,7 @@ private:
     void assemble(double damping, bool with_curves) noexcept;
     bool go(bool has_move, int most_halvings, double drag, const Obstacle* bone, double& now) noexcept;
     void learn_curves() noexcept;
-    bool find_move(double damping, int most_rounds) noexcept;
+    int find_move(double damping, int most_rounds) noexcept;
     void measure() noexcept;
     void look_at(const Obstacle* bone, bool is_anew) noexcept;
     bool substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept;

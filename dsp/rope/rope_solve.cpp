@@ -13,7 +13,10 @@ namespace tactus::rope {
 namespace {
 
 constexpr int many_rounds = 4;  // of the active set, per iteration
+constexpr int few_halvings = 4, many_halvings = 10;  // of a step
+constexpr int most_failures = 2;  // searches for a lower sum that fail in contact, one after the other
 constexpr double least_damping = 1e-2;  // N/m
+constexpr double damping_in_contact = 1.0 / 400.0;  // of the stiffness of contact, at first
 
 }  // namespace
 
@@ -125,15 +128,16 @@ void Rope::assemble(double damping, bool with_curves) noexcept {
         }
 }
 
-/// The step to the minimum of the model. Its active set is what resists and touches at that minimum.
-bool Rope::find_move(double damping, int most_rounds) noexcept {
+/// The step to the minimum of the model. Its active set is what resists and touches at that minimum. Gives the rounds
+/// that it took; 0: there is no such step.
+int Rope::find_move(double damping, int most_rounds) noexcept {
     for (std::size_t n = 0; n < rest_.size(); ++n) resists_[n] = length_[n] > rest_[n];
     for (std::size_t n = 0; n < x_.size(); ++n) touching_[n] = depth_[n] > 0.0;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 1;; ++round) {
         assemble(damping, true);
         if (!band_.solve(move_)) {
             assemble(damping, false);
-            if (!band_.solve(move_)) return false;
+            if (!band_.solve(move_)) return 0;
         }
         bool is_same = true;
         for (std::size_t n = 0; n < rest_.size(); ++n) {
@@ -149,9 +153,8 @@ bool Rope::find_move(double damping, int most_rounds) noexcept {
             is_same = is_same && will == (touching_[n] != 0);
             touching_[n] = will;
         }
-        if (is_same) break;
+        if (is_same || round == most_rounds) return round;
     }
-    return true;
 }
 
 /// How the surface bends along the way of each point that touches it.
@@ -194,23 +197,34 @@ bool Rope::go(bool has_move, int most_halvings, double drag, const Obstacle* bon
     return false;
 }
 
+/// At an edge of bone, where the sum has a kink, the smallest sum is no point without force: where no step makes it less
+/// the substep ends.
 bool Rope::substep(double h, const Obstacle* bone, int most_iterations, RopeStep& report) noexcept {
     const double drag = material_.drag / h;
     assemble_base(drag);
     double now = potential(drag), damping = 0.0;
+    int failures = 0;
     for (int iteration = 0;; ++iteration) {
         const double residual = gradient(drag);
-        if (residual <= settings_.tolerance || iteration >= most_iterations) {
+        if (residual <= settings_.tolerance || iteration >= most_iterations || failures == most_failures) {
             if (!(residual <= report.residual)) report.residual = residual;
             return residual <= settings_.tolerance;
         }
         ++report.iterations;
         // Where the active set does not settle, its move may lead uphill. That of the present one never does.
-        const bool is_less =
-            go(find_move(damping, many_rounds), 4, drag, bone, now) || go(find_move(damping, 1), 12, drag, bone, now);
-        if (is_less) learn_curves();
-        damping = is_less ? 0.1 * damping : std::max(10.0 * damping, least_damping);
-        if (damping < least_damping) damping = 0.0;
+        const int rounds = find_move(damping, many_rounds);
+        bool is_less = go(rounds > 0, rounds == 1 ? many_halvings : few_halvings, drag, bone, now);
+        if (!is_less && rounds > 1) is_less = go(find_move(damping, 1) > 0, many_halvings, drag, bone, now);
+        if (is_less) {
+            learn_curves();
+            failures = 0;
+            damping = damping > 10.0 * least_damping ? 0.1 * damping : 0.0;
+        } else {
+            const bool touches = std::ranges::any_of(depth_, [](double depth) { return depth > 0.0; });
+            failures += touches;
+            damping =
+                std::max(10.0 * damping, touches ? damping_in_contact * settings_.contact_stiffness : least_damping);
+        }
     }
 }
 

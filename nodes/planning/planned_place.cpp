@@ -19,14 +19,14 @@ namespace tactus::nodes {
 struct PlannedPlace {
     static constexpr auto about =
         "Where the held piece goes in the plan. Near that place there is a fit, to which a coupling can pull the "
-        "piece: "
-        "wire it like fragment_matcher. The place is that beside the piece where it is nearest; another piece must be "
-        "nearer "
-        "by 1 mm. Planned places come from the last step of an alternative of the plan.";
+        "piece: wire it like fragment_matcher. The place is that beside the piece where it is nearest; another piece "
+        "must be nearer by 1 mm. While 'led' is true it stays with that piece, as long as it fits there. Planned "
+        "places come from the last step of an alternative of the plan.";
 
     In<tactus::coupling::Scene> scene{"the pieces, in the order of the plan"};
     In<double> held{"place of the held piece; -1: none"};
     In<Pose> pose{optional, "of the held piece, newer than in the scene: coupling.pose", "m"};
+    In<bool> led{optional, "the coupling pulls the piece to the target: as its 'guided'; open: false"};
     Out<Pose> target{"of the held piece at its planned place", "m"};
     Out<bool> fits{"the held piece is near its planned place"};
     Out<double> fragment{"place of the piece that the target is for; -1: none"};
@@ -85,6 +85,7 @@ struct PlannedPlace {
         const Pose now = Pose{seen.position, glm::normalize(seen.orientation)} * object.body.home.inverse();
         double least = std::numeric_limits<double>::infinity();
         std::size_t found = none;
+        const bool is_led = led.connected && led.get();
         for (std::size_t other = 0; other < places_.size() && other < scene->count; ++other) {
             if (!may_meet(n, other)) continue;
             const coupling::SceneObject& beside = scene->objects[other];
@@ -95,7 +96,9 @@ struct PlannedPlace {
             // Of points spread about the middle with this radius of gyration, a turn moves two thirds.
             const double off = std::hypot(away, std::sqrt(2.0 / 3.0) * 2.0 * std::sin(0.5 * by) * places_[n].gyration);
             // The piece beside which it was so far keeps it, unless another one is nearer by more than that.
-            const double held_back = off - (other == beside_ ? stays_with : 0.0);
+            const bool is_near = away <= reach && by <= turn;
+            const bool stays = other == beside_ && is_led && is_near;
+            const double held_back = stays ? -1.0 : off - (other == beside_ ? stays_with : 0.0);
             if (!(held_back < least)) continue;
             least = held_back;
             found = other;
@@ -103,7 +106,7 @@ struct PlannedPlace {
             distance = away;
             angle = by;
             gap = off;
-            fits = away <= reach && by <= turn;
+            fits = is_near;
             partner = static_cast<double>(other);
         }
         if (!fits.get()) partner = -1.0;
@@ -169,8 +172,8 @@ private:
     std::size_t beside_ = none;
 };
 
-TACTUS_NODE(PlannedPlace, scene, held, pose, target, fits, fragment, partner, distance, angle, gap, plan, alternative,
-            reach, turn, meets)
+TACTUS_NODE(PlannedPlace, scene, held, pose, led, target, fits, fragment, partner, distance, angle, gap, plan,
+            alternative, reach, turn, meets)
 TACTUS_VISUALS(PlannedPlace)
 
 }  // namespace tactus::nodes

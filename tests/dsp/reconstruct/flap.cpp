@@ -184,6 +184,27 @@ TEST_CASE("an artery whose vein changes sides is twisted by the angle between th
     }
 }
 
+TEST_CASE("a vessel that turns back at the bone is kinked, unless it is slack by the length of a wider bend") {
+    const FibulaInputs in = small_inputs();
+    const FibulaPlan plan = plan_fibula(in);
+    Flap flap = small_flap();
+    flap.vessels.pop_back();
+    const PlacedVessel at = placed(flap.vessels[0], parts_of(flap.vessels[0], in, plan), plan);
+    const Vec3 exit = at.lines[0].front(), back = glm::normalize(at.lines[0][1] - exit);
+    const double free = 0.89 * pedicle_length(in, flap), least = flap.limits.kink * flap.vessels[0].radius;
+    for (const double slack : {-1.0 * mm, 2.0 * mm, pi * least - 1.0 * mm, pi * least + 1.0 * mm, 30.0 * mm}) {
+        CAPTURE(slack);
+        flap.sites = {{"behind", VesselKind::artery, exit + (free - slack) * back}};
+        const FlapMeasures m = measure_flap(in, plan, flap, nullptr);
+        CHECK(m.reaches[0].bend_radius < least);
+        CHECK(m.reaches[0].slack == Approx(std::max(slack, 0.0)).margin(1e-6));
+        CHECK(has(m, FlapTrouble::kinked) == (slack < pi * least));
+    }
+    // Straight on there is no bend.
+    flap.sites = {{"ahead", VesselKind::artery, exit - (free - 2.0 * mm) * back}};
+    CHECK_FALSE(has(measure_flap(in, plan, flap, nullptr), FlapTrouble::kinked));
+}
+
 TEST_CASE("two plates that come near each other are warned of, and those that cross") {
     const FibulaInputs in = small_inputs();
     const FibulaPlan plan = plan_fibula(in);

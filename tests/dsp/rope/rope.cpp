@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 using namespace tactus;
@@ -342,6 +343,52 @@ TEST_CASE("a bone that does not say where its surface is gives no contact") {
     const RopeStep step = rope.step(1e-3, &fog);
     CHECK(step.is_solved);
     CHECK(step.contacts == 0);
+}
+
+TEST_CASE("a rope that rests where two surfaces of bone meet ends its tick when no step makes its energy less") {
+    // A groove with walls of 45°: the nearest wall, hence the direction of the force, jumps at its bottom.
+    struct Groove final : Obstacle {
+        mutable int looks = 0;
+        double distance(const Vec3& p, Vec3& normal) const noexcept override {
+            ++looks;
+            const double side = p.x < 0.0 ? 1.0 : -1.0;
+            normal = Vec3(side, 0.0, 1.0) / std::numbers::sqrt2;
+            return glm::dot(normal, p);
+        }
+        double free_way(const Vec3&, double, double) const noexcept override { return 0.0; }
+    };
+    const Groove groove;
+    RopeMaterial material = artery();
+    material.weight = 1.0;
+    material.friction = 0.0;
+    // The tube touches both walls where its middle is √2 radii above their line.
+    const double height = std::numbers::sqrt2 * material.radius;
+    std::vector<Vec3> line;
+    for (int n = 0; n <= 40; ++n) line.emplace_back(n % 2 ? 0.2e-3 : -0.2e-3, 2.5 * mm * n, height + 0.1 * mm);
+    Rope rope = rope_along(line, 41, 0.1, material);
+    rope.hold(0, line.front());
+    rope.hold(40, line.back());
+    int most = 0, unsolved = 0;
+    double before = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < 300; ++n) {
+        groove.looks = 0;
+        const RopeStep step = rope.step(tick, &groove);
+        most = std::max(most, groove.looks);
+        unsolved += !step.is_solved;
+        // Nothing moves it from outside.
+        CHECK(rope.energy() <= before + 1e-12);
+        before = rope.energy();
+    }
+    CAPTURE(most);
+    CHECK(unsolved > 0);
+    CHECK(most < 150 * 41);
+    // It has come to rest, though no point is without force.
+    const std::vector<Vec3> rests(rope.points().begin(), rope.points().end());
+    for (int n = 0; n < 50; ++n) rope.step(tick, &groove);
+    for (std::size_t n = 0; n < rests.size(); ++n) CHECK(glm::length(rope.points()[n] - rests[n]) < 1e-9);
+    double lowest = 1.0;
+    for (const Vec3& p : rope.points()) lowest = std::min(lowest, p.z);
+    CHECK(lowest > height - 0.05 * mm);
 }
 
 TEST_CASE("ropes that cannot be are refused") {

@@ -390,6 +390,18 @@ TEST_CASE("a piece between two others keeps the one that it is put beside: its t
     node.run(1);
     node.feed<double>("held", 1.0);
     CHECK(at(0.2 * mm) == 2.0);
+
+    // Led to its place it keeps its neighbour, however the hand moves, as long as it fits there.
+    jumps = 0;
+    node.connect("led").feed("led", true);
+    for (int n = 0; n < 200; ++n) CHECK(at(3.0 * mm * std::sin(0.1 * n)) == 2.0);
+    CHECK(jumps == 0);
+    const Pose target = node.last<Pose>("target");
+    CHECK(glm::length(target.position - (home.position + Vec3(4.0, 0.0, 0.0) * mm)) < 1e-12);
+    // 15 mm from that place it no longer fits there.
+    CHECK(at(-11.2 * mm) == 0.0);
+    node.feed("led", false);
+    CHECK(at(1.0 * mm) == 2.0);
 }
 
 TEST_CASE("a piece near its planned place is pulled to it, with the piece that it meets there") {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/scene_model.hpp"
 
+#include "assets/cases/plan_file.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "devices/display/picture_maker.hpp"
+#include "dsp/reconstruct/flap.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
 #include "tools/picture/scene/body_surface.hpp"
@@ -104,6 +107,39 @@ TEST_CASE("a pose or a force that is not a number is told, and not drawn") {
     model.update();
     REQUIRE(model.legend().warnings.size() == 1);
     CHECK(model.legend().warnings[0].find("hand.pose") != std::string::npos);
+    CHECK(model.triangles() == 0);
+}
+
+TEST_CASE("the vessels of a plan's scan are in the picture where they were scanned, until the plan is gone") {
+    if (!can_render()) return;
+    const TemporaryFolder folder;
+    const std::string file = (folder.path / "case.plan.json").string();
+    cases::CasePlan plan;
+    cases::PlanStep step;
+    step.kind = cases::StepKind::vessels;
+    step.vessels = std::make_shared<const std::vector<reconstruct::FlapVessel>>(std::vector<reconstruct::FlapVessel>{
+        {"carotid", reconstruct::VesselKind::artery, 2e-3, {Vec3(0.0), Vec3(0.02, 0.0, 0.0), Vec3(0.1, 0.0, 0.0)}},
+        {"jugular", reconstruct::VesselKind::vein, 4e-3, {Vec3(0.0, 0.01, 0.0), Vec3(0.1, 0.01, 0.0)}}});
+    cases::add_step(plan, step);
+    cases::save_case_plan(plan, file);
+    observe::Observer observer;
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {}, file}};
+    SceneModel model(outline, observer, maker.renderer());
+    model.update();
+    REQUIRE(model.parts().size() == 2);
+    CHECK(model.parts()[0].name == "carotid");
+    const std::size_t both = model.triangles();
+    CHECK(both > 100);
+    CHECK(model.bounds().low.x == Approx(0.0).margin(1e-6));
+    CHECK(model.bounds().high.y == Approx(14e-3).margin(0.1e-3));
+    model.show_part("jugular", false);
+    model.update();
+    CHECK(model.triangles() < both);
+    model.follow({});
+    model.update();
+    CHECK(model.parts().empty());
     CHECK(model.triangles() == 0);
 }
 

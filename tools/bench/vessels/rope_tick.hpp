@@ -10,8 +10,8 @@ namespace tactus::bench {
 struct RopeTickCost {
     std::vector<double> whole, rope;  ///< µs of processor time: of each tick, and of each rope in it, sorted
     std::size_t points = 0;           ///< of the three ropes together
-    double unsolved = 0.0;            ///< share of the ropes' ticks that ended at their most iterations
-    double touching = 0.0;            ///< share of the ticks in which pieces touched
+    double unsolved = 0.0;  ///< share of the ropes' ticks that ended with a larger unbalanced force than asked
+    double touching = 0.0;  ///< share of the ticks in which pieces touched
 };
 
 /// The bundled reconstruction in its gap, with all pieces in contact: two stumps, three joined segments in the hand, and

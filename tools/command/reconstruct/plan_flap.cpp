@@ -27,11 +27,12 @@ using reconstruct::Reconstruction;
 constexpr double mm = 1e-3;
 
 struct FlapChoice : PlanChoice {
-    std::string name, kind;
+    std::string name, kind, of_scan;
     fs::path file;
+    int branch = 0;
     bool remove = false, perforators = false;
     std::vector<double> at, axis;
-    std::optional<double> radius, margin, clearance, perforator, over, kink, twist;
+    std::optional<double> along, radius, margin, clearance, perforator, over, kink, twist;
     double diameter = 4.0, length = 14.0, height = 0.0, screw_length = 12.0;
     int screws = 2;
 };
@@ -92,27 +93,49 @@ int implant(const FlapChoice& choice) {
     });
 }
 
+reconstruct::VesselKind kind_of(const FlapChoice& choice, const std::string& name, const char* what) {
+    if (choice.kind.empty()) return reconstruct::kind_in(name, fmt::format("without --kind, the {}'s name", what));
+    return choice.kind == "vein" ? reconstruct::VesselKind::vein : reconstruct::VesselKind::artery;
+}
+
+bool is_table(const fs::path& file) { return file.extension() == ".csv"; }
+
+/// One of the scan, or from a file.
+reconstruct::FlapVessel found_vessel(const FlapChoice& choice) {
+    if (choice.of_scan.empty())
+        return reconstruct::read_vessel(choice.file, reconstruct::VesselKind::artery, choice.branch);
+    return study::vessel_of_scan(cases::load_case_plan(choice.plan), choice.of_scan);
+}
+
 int vessel(const FlapChoice& choice) {
+    if (!choice.remove && choice.file.empty() == choice.of_scan.empty())
+        throw Error(
+            "a vessel needs --file, a table (.csv) or a curve (.mrk.json), or --of-scan, the name of one that the "
+            "plan has of its scan");
     study::change_vessels(choice.plan, [&](std::vector<reconstruct::FlapVessel>& vessels) {
         if (choice.remove) return take_away(vessels, choice.name, "vessel");
-        if (choice.file.empty()) throw Error("a vessel needs --file, a table (.csv) or a curve (.mrk.json)");
-        const auto kind = choice.kind.empty() ? reconstruct::kind_in(choice.name, "without --kind, the vessel's name")
-                          : choice.kind == "vein" ? reconstruct::VesselKind::vein
-                                                  : reconstruct::VesselKind::artery;
-        reconstruct::FlapVessel read = reconstruct::read_vessel(choice.file, kind);
-        read.name = choice.name;
-        if (choice.radius) read.radius = *choice.radius * mm;
-        put(vessels, std::move(read));
+        reconstruct::FlapVessel found = found_vessel(choice);
+        if (choice.of_scan.empty() || !choice.kind.empty()) found.kind = kind_of(choice, choice.name, "vessel");
+        found.name = choice.name;
+        if (choice.radius) found.radius = *choice.radius * mm;
+        put(vessels, std::move(found));
     });
     return show_change(choice);
 }
 
 void add_site(Flap& flap, const FlapChoice& choice, const std::string& name, const Vec3& at) {
     if (choice.perforators) return put(flap.perforators, {name, at});
-    const auto kind = choice.kind.empty()     ? reconstruct::kind_in(name, "without --kind, the site's name")
-                      : choice.kind == "vein" ? reconstruct::VesselKind::vein
-                                              : reconstruct::VesselKind::artery;
-    put(flap.sites, {name, kind, at});
+    put(flap.sites, {name, kind_of(choice, name, "site"), at});
+}
+
+/// On a vessel that was followed in a scan of the neck.
+void add_site_on_vessel(Flap& flap, const FlapChoice& choice) {
+    if (choice.name.empty()) throw Error("a site on a vessel needs a name");
+    const reconstruct::FlapVessel on = found_vessel(choice);
+    const Vec3 at = study::place_along(on, choice.along ? *choice.along * mm : study::length_of(on));
+    if (choice.of_scan.empty() || !choice.kind.empty() || choice.perforators)
+        return add_site(flap, choice, choice.name, at);
+    put(flap.sites, {choice.name, on.kind, at});
 }
 
 int site(const FlapChoice& choice) {
@@ -120,8 +143,12 @@ int site(const FlapChoice& choice) {
         if (choice.remove)
             return choice.perforators ? take_away(all.flap.perforators, choice.name, "perforator")
                                       : take_away(all.flap.sites, choice.name, "site");
-        if (choice.file.empty() == choice.at.empty())
-            throw Error("a site needs a place: --at X Y Z, or --file MARKS.mrk.json for all of its marks");
+        if (!choice.file.empty() + !choice.at.empty() + !choice.of_scan.empty() != 1)
+            throw Error(
+                "a site needs a place: --at X Y Z, --file MARKS.mrk.json for all of its marks, or a vessel: --file "
+                "VESSEL.csv or --of-scan NAME");
+        if (!choice.of_scan.empty() || is_table(choice.file)) return add_site_on_vessel(all.flap, choice);
+        if (choice.along) throw Error("--along is a way on a vessel: give --file VESSEL.csv or --of-scan NAME");
         if (!choice.at.empty()) {
             if (choice.name.empty()) throw Error("--at needs a name");
             return add_site(all.flap, choice, choice.name, in_metres(choice.at));
@@ -205,32 +232,44 @@ Verb plan_implant_verb() {
 }
 
 Verb plan_vessel_verb() {
-    return {"vessel", "add a vessel that 'tactus vessel' followed: of a reconstruction the donor's, else of the case",
-            [](VerbOptions& verb) -> Action {
-                const auto choice = choice_of(verb);
-                verb.add("name", choice->name, "name of the vessel; one of that name is replaced").required();
-                verb.add("--file", choice->file, "table of 'tactus vessel' (.csv) or curve of 3D Slicer (.mrk.json)");
-                verb.add("--kind", choice->kind, "default: as its name says").one_of({"artery", "vein"});
-                verb.add("--radius", choice->radius, "mm (default: of the table; of a curve 1.5)").range(0.1, 10.0);
-                verb.flag("--remove", choice->remove, "take it away");
-                return [choice] { return vessel(*choice); };
-            }};
+    return {
+        "vessel", "add a vessel that 'tactus vessel' followed: of a reconstruction the donor's, else of the case",
+        [](VerbOptions& verb) -> Action {
+            const auto choice = choice_of(verb);
+            verb.add("name", choice->name, "name of the vessel; one of that name is replaced").required();
+            verb.add("--file", choice->file, "table of 'tactus vessel' (.csv) or curve of 3D Slicer (.mrk.json)");
+            verb.add("--branch", choice->branch, "branch of the table").range(0, 10000).shows_default();
+            verb.add(
+                "--of-scan", choice->of_scan,
+                "take a vessel that the plan has of its scan into its reconstruction, which must be in that frame");
+            verb.add("--kind", choice->kind, "default: as its name says, or as in the scan").one_of({"artery", "vein"});
+            verb.add("--radius", choice->radius, "mm (default: of the table; of a curve 1.5)").range(0.1, 10.0);
+            verb.flag("--remove", choice->remove, "take it away");
+            return [choice] { return vessel(*choice); };
+        }};
 }
 
 Verb plan_site_verb() {
-    return {"site", "mark vessels of the neck to which the flap's can be joined, or perforators of the leg",
-            [](VerbOptions& verb) -> Action {
-                const auto choice = choice_of(verb);
-                verb.add("name", choice->name, "name of the mark; one of that name is replaced");
-                verb.add("--at", choice->at, "X Y Z, mm; sites in the frame of the jaw, perforators in the donor's")
-                    .count(3);
-                verb.add("--file", choice->file,
-                         "take the mark of that name from a file of 3D Slicer (.mrk.json), or all of its marks");
-                verb.add("--kind", choice->kind, "default: as its name says").one_of({"artery", "vein"});
-                verb.flag("--perforator", choice->perforators, "perforators of the leg instead of sites of the neck");
-                verb.flag("--remove", choice->remove, "take it away");
-                return [choice] { return site(*choice); };
-            }};
+    return {
+        "site", "mark vessels of the neck to which the flap's can be joined, or perforators of the leg",
+        [](VerbOptions& verb) -> Action {
+            const auto choice = choice_of(verb);
+            verb.add("name", choice->name, "name of the mark; one of that name is replaced");
+            verb.add("--at", choice->at, "X Y Z, mm; sites in the frame of the jaw, perforators in the donor's")
+                .count(3);
+            verb.add("--file", choice->file,
+                     "take the mark of that name from a file of 3D Slicer (.mrk.json), or all of its marks; or a "
+                     "place on a vessel of a table of 'tactus vessel' (.csv)");
+            verb.add("--branch", choice->branch, "branch of the table").range(0, 10000).shows_default();
+            verb.add("--of-scan", choice->of_scan, "a place on a vessel that the plan has of its scan");
+            verb.add("--along", choice->along,
+                     "mm on the vessel from its first point to the site (default: its last point)")
+                .range(0.0, 10000.0);
+            verb.add("--kind", choice->kind, "default: as its name says, or as in the scan").one_of({"artery", "vein"});
+            verb.flag("--perforator", choice->perforators, "perforators of the leg instead of sites of the neck");
+            verb.flag("--remove", choice->remove, "take it away");
+            return [choice] { return site(*choice); };
+        }};
 }
 
 Verb plan_margin_verb() {

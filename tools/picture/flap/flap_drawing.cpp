@@ -134,6 +134,13 @@ constexpr const char* view_names[] = {"seen from the front; up: medial", "seen f
 
 }  // namespace
 
+double ankle_end(const reconstruct::FibulaInputs& inputs) {
+    const Vec3 along = glm::normalize(inputs.line_direction);
+    double low = infinity;
+    for (const Vec3& v : donor_of(inputs).vertices) low = std::min(low, glm::dot(v - inputs.line_point, along));
+    return low;
+}
+
 Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                      const reconstruct::Flap& flap) {
     constexpr double width = 900.0, left = 20.0, high = 230.0;
@@ -220,8 +227,11 @@ Figure osteotomy_drawing(const reconstruct::FibulaInputs& inputs, const reconstr
             const double meets = along_of(view, plane, side);
             const FigurePoint p = place.point(meets, side);
             figure.line({{p.x, p.y - 3.0}, {p.x, p.y + 3.0}}, ink, 2.0);
-            figure.text({p.x, upper ? p.y - 12.0 : p.y + 20.0}, fmt::format("{:.1f} mm", meets * to_mm), 10.5, ink,
-                        display::TextAnchor::middle);
+            // Beside the cut, on the side that it leaves free.
+            const double tilt = std::min(std::abs(lean(view, plane)), 60.0) * std::numbers::pi / 180.0;
+            const double away = 16.0 * std::tan(tilt) + 6.0;
+            figure.text({p.x + away, upper ? p.y - 10.0 : p.y + 18.0}, fmt::format("{:.1f} mm", meets * to_mm), 10.5,
+                        ink);
         }
         const FigurePoint name = place.point(at + (keeps_knee_side ? 0.5 : -0.5) * reach, centre - 1e-3);
         figure.text(name, fmt::format("segment {}", segment + 1), 11.0, ink, display::TextAnchor::middle);

@@ -15,6 +15,9 @@ namespace tactus::picture {
 display::Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                               const reconstruct::Flap& flap);
 
+/// m along the line from its point to the donor's end at the ankle. `inputs` have a donor.
+double ankle_end(const reconstruct::FibulaInputs& inputs);
+
 /// One cut in the same two views, with its angles and where it meets the surface, mm from the end at the ankle.
 display::Figure osteotomy_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                                   std::size_t segment, std::size_t end);

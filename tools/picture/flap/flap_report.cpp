@@ -77,15 +77,17 @@ LabelledPicture jaw_picture(const cases::CasePlan& plan, const Measured& m, cons
 }
 
 ReportTable osteotomies(const Measured& m) {
-    ReportTable table{
-        {"cut", "on the line, mm from line point", "leans medially, °", "leans anteriorly, °", "area, mm²"}, {}};
+    ReportTable table{{"cut", "from the ankle's end, mm", "on the line, mm from line point", "leans medially, °",
+                       "leans anteriorly, °", "area, mm²"},
+                      {}};
     const auto& segments = m.study->fibula().segments;
+    const double ankle = ankle_end(m.study->inputs());
     for (std::size_t n = 0; n < segments.size(); ++n)
         for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
             const FibulaSegment& s = segments[n];
             table.rows.push_back({fmt::format("segment {}, at plane {} of the jaw", n + 1, n + end + 1),
-                                  mm(s.along_line[end]), degrees(s.lean_medial[end]), degrees(s.lean_anterior[end]),
-                                  mm2(s.area[end])});
+                                  mm(s.along_line[end] - ankle), mm(s.along_line[end]), degrees(s.lean_medial[end]),
+                                  degrees(s.lean_anterior[end]), mm2(s.area[end])});
         }
     return table;
 }
@@ -201,7 +203,9 @@ ReportTable operation(const Measured& m) {
             cuts.emplace_back(plan.segments[n].along_line[end],
                               fmt::format("segment {} at its plane {}", n + 1, n + end + 1));
     std::ranges::sort(cuts);
-    for (const auto& [at, name] : cuts) add(fmt::format("Fibula: cut for {}, {} mm along the line.", name, mm(at)));
+    const double ankle = ankle_end(in);
+    for (const auto& [at, name] : cuts)
+        add(fmt::format("Fibula: cut for {}, {} mm from the ankle.", name, mm(at - ankle)));
     for (std::size_t n = 0; n < plan.segments.size(); ++n)
         add(fmt::format("Place segment {} between planes {} and {}.", n + 1, n + 1, n + 2));
     for (const reconstruct::Plate& plate : m.study->flap().plates)

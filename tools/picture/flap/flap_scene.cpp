@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/flap/flap_scene.hpp"
 
+#include "dsp/vessel/line_branch.hpp"
 #include "dsp/vessel/tube_surface.hpp"
 
 #include <glm/geometric.hpp>
@@ -62,20 +63,7 @@ display::PictureMesh picture_mesh(const geometry::TriangleSurface& surface, cons
 }
 
 display::PictureMesh tube_mesh(const std::vector<Vec3>& line, double radius, const Vec3& colour) {
-    vessel::Branch branch;
-    for (const Vec3& p : line) {
-        if (!branch.nodes.empty() && glm::length(p - branch.nodes.back().position) < 1e-7) continue;
-        vessel::Node node;
-        node.position = p;
-        node.radius = radius;
-        branch.nodes.push_back(node);
-    }
-    for (std::size_t n = 0; n < branch.nodes.size(); ++n) {
-        const Vec3 way =
-            branch.nodes[std::min(n + 1, branch.nodes.size() - 1)].position - branch.nodes[n > 0 ? n - 1 : 0].position;
-        branch.nodes[n].direction = glm::length(way) > 0.0 ? glm::normalize(way) : Vec3(0.0, 0.0, 1.0);
-    }
-    return picture_mesh(vessel::tube_surface(branch), {}, {&colour, 1});
+    return picture_mesh(vessel::tube_surface(vessel::branch_of_line(line, radius)), {}, {&colour, 1});
 }
 
 display::PictureMesh ball_mesh(const Vec3& centre, double radius, const Vec3& colour) {

@@ -366,7 +366,8 @@ ReportList alternatives(const cases::CasePlan& plan) {
 /// What a reader must know before anything else.
 void add_warnings(const Case& c, const std::vector<std::string>& overlaps, std::vector<ReportBlock>& out) {
     ReportList all{{}, true};
-    if (!study::is_in_one_part(c.state))
+    // The pieces of a reconstruction lie where its planes say, not where surfaces fit.
+    if (!c.state.reconstruction && !study::is_in_one_part(c.state))
         all.items.emplace_back("The fragments are not all connected by fits that hold.");
     for (std::size_t n = 0; n < c.fragments.size(); ++n)
         if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
@@ -385,7 +386,7 @@ void add_warnings(const Case& c, const std::vector<std::string>& overlaps, std::
 /// Which fragments are connected by fits.
 void add_connections(const Case& c, std::vector<ReportBlock>& out) {
     ReportList list{study::connection_words(c.plan, c.state)};
-    if (list.items.empty()) return;
+    if (c.state.reconstruction || list.items.empty()) return;
     out.emplace_back(Heading{"Connections"});
     out.emplace_back(std::move(list));
 }

@@ -71,16 +71,30 @@ void add_scale(LabelledPicture& picture, const Camera& camera) {
         {picture.bar_x + 0.5 * picture.bar_length, picture.bar_y - 12.0, 'm', 13.0, fmt::format("{:g} mm", mm), {}});
 }
 
+/// Pixels of a name with its mark, about.
+double width_of(const std::string& name) {
+    const auto letters = std::ranges::count_if(name, [](char c) { return (c & 0xc0) != 0x80; });
+    return 24.0 + 7.0 * static_cast<double>(letters);
+}
+
 /// Each name at the middle of its fragment; one that would hide another goes below it.
 void add_names(Texts& texts, const Camera& camera, std::span<const PictureLabel> labels) {
-    constexpr double wide = 100.0;  // pixels
     std::vector<std::pair<std::array<double, 2>, const PictureLabel*>> placed;
     for (const PictureLabel& label : labels) placed.emplace_back(camera.pixel(label.at), &label);
     std::ranges::sort(placed, [](const auto& a, const auto& b) { return a.first[1] < b.first[1]; });
     for (std::size_t n = 0; n < placed.size(); ++n) {
         auto& [x, y] = placed[n].first;
-        for (std::size_t k = 0; k < n; ++k)
-            if (std::abs(placed[k].first[0] - x) < wide) y = std::max(y, placed[k].first[1] + line);
+        const double wide = width_of(placed[n].second->text);
+        const auto hides = [&](std::size_t other) {
+            const auto [left, level] = placed[other].first;
+            return x < left + width_of(placed[other].second->text) && left < x + wide &&
+                   std::abs(y - level) < line - 0.5;
+        };
+        for (bool is_moved = true; is_moved;) {
+            is_moved = false;
+            for (std::size_t k = 0; k < n; ++k)
+                if (hides(k)) y = placed[k].first[1] + line, is_moved = true;
+        }
         texts.push_back({x + 7.0, y, 's', 13.0, placed[n].second->text, placed[n].second->colour});
     }
 }

@@ -47,6 +47,9 @@ SceneModel::~SceneModel() {
     }
     for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
+    for (const auto& [file, vessels] : vessels_)
+        for (const PlanVessel& vessel : vessels.all)
+            for (const VesselPart& part : vessel.parts) renderer_.meshes().remove(part.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     renderer_.meshes().remove(notes_mesh_);
@@ -94,6 +97,7 @@ void SceneModel::follow(SceneOutline outline) {
     });
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
+    forget_vessels();
     take_names();
     is_fitting_ = true;
     waits_ = 0;
@@ -170,6 +174,7 @@ display::Picture& SceneModel::update() {
     show_gripper();
     show_guides();
     show_ropes();
+    show_vessels();
     show_tasks();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);

@@ -8,6 +8,7 @@
 #include "tools/picture/scene/scene_outline.hpp"
 #include "tools/picture/scene/surface_map.hpp"
 
+#include <filesystem>
 #include <future>
 #include <map>
 #include <memory>
@@ -19,6 +20,9 @@
 
 namespace tactus::reconstruct {
 struct Reconstruction;
+}
+namespace tactus::cases {
+struct CasePlan;
 }
 
 namespace tactus::picture {
@@ -152,6 +156,24 @@ private:
     };
     void show_guides();
     void show_ropes();
+    struct VesselPart {
+        display::MeshPool::Mesh mesh = -1;
+        display::Bounds bounds;
+        int place = -1;  ///< in the scene of the body that it rides on; -1: it lies where it was scanned
+    };
+    struct PlanVessel {
+        std::string name;
+        Vec3 colour{0.0};
+        std::vector<VesselPart> parts;
+    };
+    struct PlanVessels {
+        std::vector<PlanVessel> all;
+        std::string problem;  ///< why some are missing
+    };
+    void add_vessel_part(PlanVessel& to, const std::vector<Vec3>& line, double radius, int place);
+    void take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan);
+    void forget_vessels();
+    void show_vessels();
     void show_tasks();
     TaskMesh make_task(const std::string& path);
     void remove(const TaskMesh& task);
@@ -188,6 +210,7 @@ private:
         display::Bounds bounds;
     };
     std::map<std::string, RopeMesh> ropes_;  // by port
+    std::map<std::string, PlanVessels> vessels_;  // by the plan's file
     std::map<std::uint64_t, BodyMesh> bodies_;
     struct Densities {
         std::future<std::vector<volume::Grid>> reading;

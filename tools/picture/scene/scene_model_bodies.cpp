@@ -40,6 +40,7 @@ void SceneModel::take_names() {
             for (const cases::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
             use_hardware(cases::state_of(plan).reconstruction);
+            take_vessels(scene.plan, plan);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong
         }

@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "tools/study/planning/vessel_export.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -58,7 +59,7 @@ Json plane_markup(const std::string& name, const reconstruct::Plane& plane) {
 
 class Writer {
 public:
-    explicit Writer(const fs::path& out) : out_(out) {}
+    Writer(const fs::path& out, std::string mesh_type) : out_(out), mesh_type_(std::move(mesh_type)) {}
 
     void write(const std::string& name, const Json& made) {
         const Json json{{"@schema",
@@ -72,10 +73,14 @@ public:
         file::write_whole_file(out_ / file, json.dump(2) + "\n");
         files_.push_back(file);
     }
+    void write_vessel(const std::string& name, const std::vector<Vec3>& line, double radius) {
+        export_vessel(name, line, radius, {mesh_type_, ".vtp"}, out_, files_);
+    }
     std::vector<std::string> files() { return std::move(files_); }
 
 private:
     fs::path out_;
+    std::string mesh_type_;
     std::vector<std::string> files_;
 };
 
@@ -97,8 +102,8 @@ std::string file_name_of(const std::string& name) {
 
 std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                                      const reconstruct::Flap& flap, const reconstruct::FlapMeasures& measures,
-                                     const fs::path& out) {
-    Writer writer(out);
+                                     const fs::path& out, const std::string& mesh_type) {
+    Writer writer(out, mesh_type);
     for (std::size_t n = 0; n < inputs.planes.size(); ++n) {
         const std::size_t segment = std::min(n, plan.segments.size() - 1), end = n > segment ? 1 : 0;
         const reconstruct::FibulaSegment& s = plan.segments[segment];
@@ -115,7 +120,13 @@ std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, co
         for (std::size_t n = 0; n < vessel.lines.size(); ++n) {
             const std::string name = fmt::format("vessel-{}-{}", vessel.name, n == 0 ? "on-bone" : "pedicle");
             writer.write(name, markup("Curve", name, named(vessel.name, vessel.lines[n])));
+            writer.write_vessel(name, vessel.lines[n], vessel.radius);
         }
+    for (const reconstruct::FlapVessel& vessel : flap.vessels) {
+        const std::string name = fmt::format("vessel-{}-in-leg", vessel.name);
+        writer.write(name, markup("Curve", name, named(vessel.name, vessel.points)));
+        writer.write_vessel(name, vessel.points, vessel.radius);
+    }
     for (const reconstruct::Plate& plate : flap.plates) {
         writer.write("plate-" + plate.name, markup("Curve", plate.name, named(plate.name, plate.points)));
         for (std::size_t n = 0; n < plate.screws.size(); ++n) {

@@ -10,6 +10,7 @@
 #include "tools/study/planning/flap_export.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_case.hpp"
+#include "tools/study/planning/vessel_export.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -132,7 +133,18 @@ ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::pat
     if (state.reconstruction) {
         FlapStudy study(plan, state, folder);
         written.push_back(
-            {"reconstruction", {}, export_flap(study.inputs(), study.fibula(), study.flap(), study.measures(), out)});
+            {"reconstruction",
+             {},
+             export_flap(study.inputs(), study.fibula(), study.flap(), study.measures(), out, "." + format)});
+    }
+    if (state.vessels) {
+        std::vector<std::string> taken;
+        for (const ExportedFragment& one : written) taken.insert(taken.end(), one.files.begin(), one.files.end());
+        const auto before = static_cast<std::ptrdiff_t>(taken.size());
+        for (const reconstruct::FlapVessel& one : *state.vessels)
+            export_vessel("vessel-" + one.name, one.points, one.radius, {"." + format, ".vtp", ".mrk.json"}, out,
+                          taken);
+        written.push_back({"vessels", {}, {taken.begin() + before, taken.end()}});
     }
     return exported;
 }

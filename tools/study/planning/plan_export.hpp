@@ -17,7 +17,8 @@ struct ExportedFragment {
 };
 
 struct ExportedPlan {
-    /// Of the shown fragments. A reconstruction has a last entry of that name, with its markups (flap_export.hpp).
+    /// Of the shown fragments. A reconstruction has an entry of that name, with its markups (flap_export.hpp); the vessels
+    /// of a case have one named "vessels", in the frame of the scan.
     std::vector<ExportedFragment> written;
     std::vector<std::string> left_out;  ///< names of the hidden fragments
 };

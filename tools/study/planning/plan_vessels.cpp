@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_vessels.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/reconstruct/flap.hpp"
 #include "tools/study/planning/flap_study.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -40,6 +44,32 @@ VesselClearance::Nearest nearest(const FlapVessel& vessel, const cases::PlanStat
 }
 
 }  // namespace
+
+const FlapVessel& vessel_of_scan(const cases::CasePlan& plan, const std::string& name) {
+    std::vector<std::string> names;
+    for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step) {
+        if (!step->vessels) continue;
+        for (const FlapVessel& one : *step->vessels) {
+            if (one.name == name) return one;
+            if (std::ranges::find(names, one.name) == names.end()) names.push_back(one.name);
+        }
+    }
+    if (names.empty())
+        throw Error(
+            "the plan has no vessels of its scan; 'tactus plan vessel' adds them before there is a reconstruction");
+    throw Error(fmt::format("the scan of the plan has no vessel '{}'; it has: {}", name, fmt::join(names, ", ")));
+}
+
+Vec3 place_along(const FlapVessel& vessel, double along) {
+    double left = along;
+    for (std::size_t n = 1; n < vessel.points.size(); ++n) {
+        const Vec3 way = vessel.points[n] - vessel.points[n - 1];
+        const double length = glm::length(way);
+        if (left <= length) return length > 0.0 ? vessel.points[n - 1] + left / length * way : vessel.points[n];
+        left -= length;
+    }
+    throw Error(fmt::format("the vessel is {:.1f} mm long, less than {:.1f} mm", length_of(vessel) * 1e3, along * 1e3));
+}
 
 double length_of(const FlapVessel& vessel) {
     double length = 0.0;

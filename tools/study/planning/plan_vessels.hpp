@@ -18,7 +18,14 @@ namespace tactus::study {
 void change_vessels(const std::filesystem::path& plan,
                     const std::function<void(std::vector<reconstruct::FlapVessel>&)>& change);
 
+/// A vessel of the scan of a plan's case, as the last step that names it has it, also one of another alternative. Throws
+/// Error when there is none of that name.
+const reconstruct::FlapVessel& vessel_of_scan(const cases::CasePlan& plan, const std::string& name);
+
 double length_of(const reconstruct::FlapVessel& vessel);  ///< m
+
+/// The place `along` m from the first point of a vessel. Throws Error when it is not that long.
+Vec3 place_along(const reconstruct::FlapVessel& vessel, double along);
 
 /// A vessel of the case against the fragments that are shown.
 struct VesselClearance {

@@ -2,6 +2,7 @@
 #include "tools/view/paint/bone_panel.hpp"
 
 #include "dsp/vessel/tube_surface.hpp"
+#include "tools/picture/scene/triangle_patch.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -14,35 +15,6 @@
 #include <numbers>
 
 namespace tactus::view {
-
-namespace {
-
-geometry::SurfacePatch patch_of(const geometry::TriangleSurface& surface, const std::array<std::uint8_t, 4>& ink) {
-    geometry::SurfacePatch patch;
-    std::vector<Vec3> normals(surface.vertices.size(), Vec3(0.0));
-    for (const auto& t : surface.triangles) {
-        const auto corner = [&](std::size_t n) { return surface.vertices[static_cast<std::size_t>(t[n])]; };
-        const Vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
-        for (const int v : t) {
-            normals[static_cast<std::size_t>(v)] += normal;
-            patch.triangles.push_back(static_cast<std::uint32_t>(v));
-        }
-    }
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-        geometry::SurfaceVertex vertex;
-        const double length = std::max(1e-30, glm::length(normals[v]));
-        for (int axis = 0; axis < 3; ++axis) {
-            vertex.position[static_cast<std::size_t>(axis)] = static_cast<float>(surface.vertices[v][axis]);
-            vertex.normal[static_cast<std::size_t>(axis)] =
-                static_cast<std::int16_t>(32767.0 * normals[v][axis] / length);
-        }
-        vertex.colour = ink;
-        patch.vertices.push_back(vertex);
-    }
-    return patch;
-}
-
-}  // namespace
 
 BonePanel::BonePanel(PaintBench& bench)
     : bench_(bench), making_(std::async(std::launch::async, [&bench] { return bone_mesh(bench.scan()); })) {}
@@ -105,7 +77,8 @@ void BonePanel::steer(Point size) {
 void BonePanel::add_vessels() {
     for (; vessels_ < bench_.vessels().size(); ++vessels_)
         for (const vessel::Branch& branch : bench_.vessels()[vessels_]->track.branches) {
-            const geometry::SurfacePatch patch = patch_of(vessel::tube_surface(branch), {214, 48, 49, 255});
+            const geometry::SurfacePatch patch =
+                picture::triangle_patch(vessel::tube_surface(branch), {214, 48, 49, 255});
             if (patch.triangles.empty()) continue;
             display::DrawnMesh drawn;
             drawn.mesh = renderer_->meshes().make();

@@ -247,8 +247,12 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
     // For 3D Slicer: the planes map to each other by the transforms that are exported.
     REQUIRE(made.folder.tactus("plan export " + made.plan + " -o " + (made.folder.path / "out").string()).code == 0);
     for (const char* name : {"segment-1.stl", "segment-1.tfm", "fibula-cut-1-2.mrk.json", "jaw-plane-2.mrk.json",
-                             "vessel-artery-on-bone.mrk.json", "vessel-artery-pedicle.mrk.json", "sites.mrk.json"})
+                             "vessel-artery-on-bone.mrk.json", "vessel-artery-pedicle.mrk.json", "sites.mrk.json",
+                             "vessel-artery-pedicle.stl", "vessel-comitant-on-bone.vtp", "vessel-comitant-in-leg.vtp"})
         CHECK(fs::exists(made.folder.path / "out" / name));
+    // In the leg a vessel has the length of its table.
+    const json in_leg = json::parse(test::slurp(made.folder.path / "out" / "vessel-artery-in-leg.mrk.json"));
+    CHECK(in_leg["markups"][0]["controlPoints"].size() > 2);
     const json cut = json::parse(test::slurp(made.folder.path / "out" / "jaw-plane-2.mrk.json"))["markups"][0];
     CHECK(cut["type"] == "Plane");
     CHECK(cut["coordinateSystem"] == "LPS");
@@ -270,4 +274,62 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
     const std::size_t start = bytes.rfind("startxref\n");
     REQUIRE(start != std::string::npos);
     CHECK(bytes.compare(std::stoul(bytes.substr(start + 10)), 4, "xref") == 0);
+}
+
+TEST_CASE("a vessel that was followed in a scan becomes a pedicle of the flap, or a site on it", "[slow]") {
+    const FlapCase made;
+    const test::Folder& folder = made.folder;
+    // 100 mm along x, of the neck; its branch 1 leaves it downwards.
+    const auto neck = folder.write("neck.csv",
+                                   "branch,x_mm,y_mm,z_mm,radius_mm\n0,0,0,0,2\n0,60,0,0,2\n0,100,0,0,2\n"
+                                   "1,60,0,0,1\n1,60,0,-20,1\n");
+    // It is in the plan before there is a reconstruction.
+    folder.write("bone.obj", "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    REQUIRE(folder.tactus("plan new " + made.plan + " " + (folder.path / "bone.obj").string()).code == 0);
+    REQUIRE(made.change("vessel", "carotid --kind artery --file " + neck.string()).code == 0);
+    const fs::path out = folder.path / "scan-out";
+    REQUIRE(folder.tactus("plan export " + made.plan + " -o " + out.string()).code == 0);
+    for (const char* type : {".stl", ".vtp", ".mrk.json"})
+        CHECK(fs::exists(out / ("vessel-carotid" + std::string(type))));
+    CHECK_THAT(test::slurp(out / "vessel-carotid.vtp"), ContainsSubstring("100.000000 0.000000 0.000000"));
+
+    const std::string inputs = folder.write("inputs.json", made.whole().dump()).string();
+    REQUIRE(folder.tactus("plan reconstruct " + made.plan + " " + inputs + " --alternative flap").code == 0);
+    const auto site = [&](const std::string& name) {
+        const json shown = made.shown();
+        for (const json& one : shown["sites"])
+            if (one["name"] == name) return one;
+        return json();
+    };
+    REQUIRE(made.change("site", "high --of-scan carotid --along 75").code == 0);
+    CHECK(site("high")["at_mm"] == json{75.0, 0.0, 0.0});
+    CHECK(site("high")["kind"] == "artery");
+    REQUIRE(made.change("site", "'end of the vein' --file " + neck.string() + " --branch 1").code == 0);
+    CHECK(site("end of the vein")["at_mm"] == json{60.0, 0.0, -20.0});
+    CHECK(site("end of the vein")["kind"] == "vein");
+    REQUIRE(made.change("vessel", "second --of-scan carotid").code == 0);
+    REQUIRE(made.change("vessel", "third --kind vein --branch 1 --file " + neck.string()).code == 0);
+    int found = 0;
+    const json shown = made.shown();
+    for (const json& one : shown["vessels"]) {
+        if (one["name"] == "second") found += one["kind"] == "artery" && one["radius_mm"] == 2.0;
+        if (one["name"] == "third") found += one["kind"] == "vein" && one["radius_mm"] == 1.0;
+    }
+    CHECK(found == 2);
+
+    const std::string before = test::slurp(made.plan);
+    for (const auto& [verb, words, why] :
+         {std::array{"site", "high --of-scan carotid --along 101", "100.0 mm long, less than 101.0 mm"},
+          {"site", "high --of-scan jugular", "has no vessel 'jugular'; it has: carotid"},
+          {"site", "high --at 1 2 3 --along 5", "--along is a way on a vessel"},
+          {"site", "high --at 1 2 3 --of-scan carotid", "needs a place"},
+          {"vessel", "second --of-scan jugular", "has no vessel 'jugular'"},
+          {"vessel", "second --file neck.mrk.json --of-scan carotid", "a vessel needs --file"}}) {
+        CAPTURE(words);
+        const test::Outcome refused = made.change(verb, words);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, ContainsSubstring(why));
+    }
+    CHECK(made.change("vessel", "second --branch 7 --file " + neck.string()).code == 2);
+    CHECK(test::slurp(made.plan) == before);
 }

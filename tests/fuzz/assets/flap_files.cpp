@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a flap is read from, tables of vessels, marks and inputs: any text is read or refused with one message, and what is
+// read is finite.
+#include "assets/reconstruct/flap_files.hpp"
+#include "assets/file/json.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
+#include "dsp/core/error.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+namespace {
+
+using namespace tactus;
+
+template <class Read>
+void read_or_refuse_text(const Read& read) {
+    try {
+        read();
+    } catch (const Error& error) {
+        if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
+    }
+}
+
+void check(const reconstruct::FlapVessel& vessel) {
+    if (!(vessel.radius > 0.0) || vessel.points.size() < 2) std::abort();
+    for (const Vec3& p : vessel.points)
+        if (!is_finite(p)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    for (const int branch : {0, 1})
+        read_or_refuse_text([&] { check(reconstruct::vessel_of_table(text, "vessel.csv", branch)); });
+    read_or_refuse_text([&] {
+        for (const reconstruct::MarkedPoint& mark : reconstruct::marks_of_text(text, "marks.mrk.json"))
+            if (!is_finite(mark.at) || mark.name.empty() || mark.name.find('\n') != std::string::npos) std::abort();
+    });
+    read_or_refuse_text([&] {
+        const reconstruct::Flap flap = reconstruct::flap_of_inputs(file::Json::parse(text), "inputs.json");
+        for (const reconstruct::FlapVessel& vessel : flap.vessels) check(vessel);
+        for (const reconstruct::RecipientSite& site : flap.sites)
+            if (!is_finite(site.at)) std::abort();
+    });
+    return 0;
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vessels of a plan: those of the scan where they were scanned, those of a flap on the segments that they run along.
+#include "assets/cases/plan_file.hpp"
+#include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/reconstruct/pedicle.hpp"
+#include "dsp/vessel/line_branch.hpp"
+#include "dsp/vessel/tube_surface.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
+#include "tools/picture/scene/scene_model.hpp"
+#include "tools/picture/scene/triangle_patch.hpp"
+#include "tools/study/planning/flap_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tactus::picture {
+
+using namespace scene_colours;
+
+namespace {
+
+Vec3 colour_of(const reconstruct::FlapVessel& vessel) {
+    return vessel.kind == reconstruct::VesselKind::vein ? vein_colour : artery_colour;
+}
+
+/// Places of the segments in the scene of a plan.
+std::vector<int> segments_of(const cases::CasePlan& plan, const cases::PlanState& state) {
+    std::vector<int> segments;
+    for (const int piece : state.pieces)
+        if (study::is_segment(plan.fragments[static_cast<std::size_t>(piece)].name)) segments.push_back(piece);
+    return segments;
+}
+
+}  // namespace
+
+void SceneModel::add_vessel_part(PlanVessel& to, const std::vector<Vec3>& line, double radius, int place) {
+    const geometry::TriangleSurface tube = vessel::tube_surface(vessel::branch_of_line(line, radius));
+    if (tube.triangles.empty()) return;
+    const geometry::SurfacePatch patch = triangle_patch(tube, geometry::packed_colour(to.colour, 1.0));
+    to.parts.push_back({renderer_.meshes().make(), display::bounds_of(patch), place});
+    renderer_.meshes().set_part(to.parts.back().mesh, 0, patch);
+}
+
+void SceneModel::take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan) {
+    const cases::PlanState state = cases::state_of(plan);
+    PlanVessels& taken = vessels_[file.string()];
+    const auto add = [&](const reconstruct::FlapVessel& vessel) -> PlanVessel& {
+        return taken.all.emplace_back(PlanVessel{vessel.name, colour_of(vessel), {}});
+    };
+    if (!state.reconstruction) {
+        if (!state.vessels) return;
+        for (const reconstruct::FlapVessel& vessel : *state.vessels)
+            add_vessel_part(add(vessel), vessel.points, vessel.radius, -1);
+        return;
+    }
+    try {
+        const reconstruct::Reconstruction& made = *state.reconstruction;
+        reconstruct::FibulaInputs inputs = made.inputs;
+        inputs.donor = reconstruct::read_surface(cases::file_of(made.donor.file, file.parent_path()));
+        const reconstruct::FibulaPlan fibula = reconstruct::plan_fibula(inputs);
+        const std::vector<int> segments = segments_of(plan, state);
+        for (const reconstruct::FlapVessel& vessel : made.flap.vessels) {
+            PlanVessel& one = add(vessel);
+            for (const reconstruct::VesselPart& part : reconstruct::parts_of(vessel, inputs, fibula))
+                if (part.kind == reconstruct::VesselPart::Kind::attached && part.segment < segments.size())
+                    add_vessel_part(one, part.points, vessel.radius, segments[part.segment]);
+        }
+    } catch (const Error& error) {
+        taken.problem = fmt::format("the vessels of the flap are not drawn: {}", error.message());
+    }
+}
+
+void SceneModel::forget_vessels() {
+    std::erase_if(vessels_, [&](const auto& known) {
+        const bool is_gone =
+            std::ranges::find(outline_.scenes, known.first, &SceneOutline::Bodies::plan) == outline_.scenes.end();
+        for (const PlanVessel& vessel : known.second.all)
+            for (const VesselPart& part : vessel.parts)
+                if (is_gone) renderer_.meshes().remove(part.mesh);
+        if (is_gone) named_.erase(known.first);
+        return is_gone;
+    });
+}
+
+void SceneModel::show_vessels() {
+    const std::vector<std::optional<Pose>> poses = plan_poses();
+    for (const auto& [file, vessels] : vessels_) {
+        if (!vessels.problem.empty()) legend_.warnings.push_back(vessels.problem);
+        for (const PlanVessel& vessel : vessels.all) {
+            const auto pose_of_part = [&](const VesselPart& part) {
+                const auto place = static_cast<std::size_t>(part.place);
+                return part.place < 0 ? Pose{} : place < poses.size() ? poses[place] : std::optional<Pose>{};
+            };
+            // Where ropes are in the scene they are the vessels of its flap.
+            const bool is_rope = !outline_.ropes.empty() && !vessel.parts.empty() && vessel.parts[0].place >= 0;
+            if (vessel.parts.empty() || is_rope || !is_part_shown(vessel.name, vessel.colour)) continue;
+            for (const VesselPart& part : vessel.parts) {
+                const std::optional<Pose> pose = pose_of_part(part);
+                if (!pose) continue;
+                part_of_mesh_.emplace_back(picture_.meshes.size(), vessel.name);
+                show(part.mesh, *pose, part.bounds);
+            }
+            legend_.entries.push_back({vessel.name, vessel.colour});
+        }
+    }
+}
+
+}  // namespace tactus::picture
