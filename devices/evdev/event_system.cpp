@@ -2,8 +2,11 @@
 #include "devices/evdev/event_system.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -43,11 +46,12 @@ public:
         return {all.begin(), all.end()};
     }
     std::string attribute(const std::string& path, const std::string& name) override {
-        // /dev/input/by-id holds links. Above the event device is the input device, above that the device at its bus.
-        std::error_code failure;
-        const fs::path device = fs::canonical(path, failure);
-        if (failure) return {};
-        std::ifstream file(fs::path("/sys/class/input") / device.filename() / "device/device" / name);
+        // By its number, since /dev/input/by-id holds links. Above the event device is the input device, above that the
+        // device at its bus.
+        struct stat node{};
+        if (::stat(path.c_str(), &node) != 0) return {};
+        std::ifstream file(fs::path("/sys/dev/char") /
+                           fmt::format("{}:{}/device/device", major(node.st_rdev), minor(node.st_rdev)) / name);
         std::string text;
         std::getline(file, text);
         return text;
