@@ -21,11 +21,11 @@ void add(std::atomic<std::uint64_t>& count, std::uint64_t more) noexcept {
 CardInput::CardInput(std::shared_ptr<audio::InputRing> ring, double rate, double margin_s)
     : ring_(std::move(ring)), rate_(rate), margin_(std::llround(margin_s * rate)) {}
 
-/// So that the end of the call comes a whole callback and the margin behind what the card has heard by now.
+/// So that the end of the call comes a whole callback and the margin behind what the card had heard when it was due.
 bool CardInput::place(const audio::InputRing::View& card, std::int64_t first, std::int64_t count,
-                      std::int64_t now_ns) noexcept {
-    const double since = static_cast<double>(now_ns - card.steady_ns) * 1e-9 * rate_;
-    const std::int64_t heard = card.captured + std::clamp<std::int64_t>(std::llround(since), 0, card.largest);
+                      std::int64_t due_ns) noexcept {
+    const double since = static_cast<double>(due_ns - card.steady_ns) * 1e-9 * rate_;
+    const std::int64_t heard = card.captured + std::min<std::int64_t>(std::llround(since), card.largest);
     const std::int64_t offset = first + count - (heard - card.largest - margin_);
     if (was_placed_ && first - offset < heard_until_) return false;
     offset_ = offset;
@@ -36,15 +36,15 @@ bool CardInput::place(const audio::InputRing::View& card, std::int64_t first, st
     return true;
 }
 
-void CardInput::look(std::int64_t first, std::int64_t count, std::int64_t now_ns) noexcept {
+void CardInput::look(std::int64_t first, std::int64_t count, std::int64_t due_ns) noexcept {
     const audio::InputRing::View card = ring_->view();
     // A card that is lost is not late.
-    is_silent_ = card.captured == 0 || now_ns - card.steady_ns > longest_silence_ns;
+    is_silent_ = card.captured == 0 || due_ns - card.steady_ns > longest_silence_ns;
     if (is_silent_) {
         is_placed_ = false;
         return;
     }
-    if (!is_placed_ && !place(card, first, count, now_ns)) {
+    if (!is_placed_ && !place(card, first, count, due_ns)) {
         is_silent_ = true;
         add(missed_, static_cast<std::uint64_t>(count));
         return;
@@ -63,9 +63,9 @@ void CardInput::look(std::int64_t first, std::int64_t count, std::int64_t now_ns
     if (too_much_ > patience) is_placed_ = false;
 }
 
-void CardInput::read(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t now_ns) noexcept {
+void CardInput::read(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t due_ns) noexcept {
     if (looked_at_ != first) {
-        look(first, static_cast<std::int64_t>(count), now_ns);
+        look(first, static_cast<std::int64_t>(count), due_ns);
         looked_at_ = first;
     }
     if (!is_silent_ && ring_->read(first - offset_, count, channel, into)) return;

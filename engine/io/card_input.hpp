@@ -19,8 +19,9 @@ public:
     /// `margin_s`: what waits in case the card is late.
     CardInput(std::shared_ptr<audio::InputRing> ring, double rate, double margin_s);
 
-    /// Group's thread; wait-free. Channel from 0. All channels are read for the same activations.
-    void read(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t now_ns) noexcept;
+    /// Group's thread; wait-free. Channel from 0. All channels are read for the same activations. `due_ns`: steady time at
+    /// which the call should begin; how late the thread is does not change the distance.
+    void read(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t due_ns) noexcept;
 
     // Any thread.
     int channels() const { return ring_->channels(); }
@@ -34,10 +35,10 @@ public:
     double latency_s() const noexcept { return latency_s_.load(std::memory_order_relaxed); }
 
 private:
-    void look(std::int64_t first, std::int64_t count, std::int64_t now_ns) noexcept;
+    void look(std::int64_t first, std::int64_t count, std::int64_t due_ns) noexcept;
     /// False: the card has not gone far enough since.
     bool place(const audio::InputRing::View& card, std::int64_t first, std::int64_t count,
-               std::int64_t now_ns) noexcept;
+               std::int64_t due_ns) noexcept;
 
     std::shared_ptr<audio::InputRing> ring_;
     double rate_;

@@ -2,7 +2,6 @@
 #include "engine/io/sound_card.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <span>
 #include <utility>
 
@@ -18,9 +17,8 @@ SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, CardUse use, std::shared_p
     if (inputs) input_.emplace(std::move(inputs), rate(), use_.margin_s);
 }
 
-void SoundCard::hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept {
-    const std::int64_t now = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-    input_->read(channel, first, into, count, now);
+void SoundCard::hear(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t due_ns) noexcept {
+    input_->read(channel, first, into, count, due_ns);
     if (first == heard_) return;
     heard_ = first;
     // Nodes write after all that is heard in a call. An edit may bring the first one, or take the last one away.

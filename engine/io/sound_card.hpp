@@ -53,9 +53,9 @@ public:
     /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
     bool write(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
 
-    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1; wait-free. While no
-    /// node writes, silence is played, so that the clock follows the card.
-    void hear(int channel, std::int64_t first, float* into, std::size_t count) noexcept;
+    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1, which were due at
+    /// `due_ns`; wait-free. While no node writes, silence is played, so that the clock follows the card.
+    void hear(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t due_ns) noexcept;
 
     // Control thread.
     int inputs() const { return input_ ? input_->channels() : 0; }

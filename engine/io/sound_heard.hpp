@@ -19,8 +19,9 @@ struct SoundHeard {
     int channel = 0;  ///< from 0
     std::vector<float> file;  ///< from activation 0 on
 
-    /// Fills the port with activations first … first + count − 1. Group's thread; wait-free.
-    void fill(std::int64_t first, int count) noexcept;
+    /// Fills the port with activations first … first + count − 1, which were due at steady time `due_ns`. Group's thread;
+    /// wait-free.
+    void fill(std::int64_t first, int count, std::int64_t due_ns) noexcept;
 };
 
 }  // namespace tactus::io

@@ -54,8 +54,8 @@ void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elaps
     log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
-void Decisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept {
-    heard.fill(tick, frames);
+void Decisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept {
+    heard.fill(tick, frames, due_ns);
     note_heard(heard, tick, frames);
 }
 

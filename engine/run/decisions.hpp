@@ -108,8 +108,8 @@ public:
     /// Puts the device's state into its port. `elapsed` in flicks since the last call. When the thread was left behind in
     /// the driver, `driver` says so.
     virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
-    /// Fills the port with the activations of the call. Wait-free.
-    virtual void hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept;
+    /// Fills the port with the activations of the call, due at steady time `due_ns`. Wait-free.
+    virtual void hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept;
     virtual LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                              int frames) noexcept = 0;
     /// What the call gives is not published on `link`.

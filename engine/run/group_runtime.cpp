@@ -61,7 +61,7 @@ bool GroupRuntime::ready() const noexcept {
 }
 
 void GroupRuntime::acquire(int frames) noexcept {
-    for (io::SoundHeard* heard : program_->heard) decisions_->hear(*heard, next_, frames);
+    for (io::SoundHeard* heard : program_->heard) decisions_->hear(*heard, next_, frames, due_ns);
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
     for (build::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
 }

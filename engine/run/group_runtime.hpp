@@ -34,6 +34,7 @@ public:
     std::vector<build::GroupProgram*> scheduled;  ///< programs known before the run, in order
     bool times_nodes = true;
     Flicks now = 0;  ///< logical time of the call that runs
+    std::int64_t due_ns = 0;  ///< live: steady time at which it should have begun. Own thread only.
     observe::GroupTelemetry telemetry;
 
     /// Next activation to run. Own thread only.

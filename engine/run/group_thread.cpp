@@ -116,6 +116,7 @@ void LiveRun::work(GroupRuntime& group) {
         // It may have ended before it took its first program.
         if (!group.has_program()) continue;
         const std::int64_t computed_before = thread_ns();
+        group.due_ns = due;
         group.call(group.max_frames);
         busy_until = steady_ns();
         telemetry.execution.add(busy_until - begin);

@@ -109,8 +109,8 @@ void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flic
     log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
-void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames) noexcept {
-    heard.fill(tick, frames);
+void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept {
+    heard.fill(tick, frames, due_ns);
     for (std::int64_t at = tick; at < tick + frames; ++at) {
         // The first that reaches so far: each one reaches further than the one before.
         const TimingRecord* const record = find(TimingKind::heard, heard.id, at);

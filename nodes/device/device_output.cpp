@@ -184,12 +184,15 @@ private:
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
+            still_ticks_ = control::ForceLimits{}.stale_ticks;
             ++faults_;
             well_for_ = 0.0;
             if (is_lateness(last_fault_)) late_.lose();
         }
         const DeviceSample& s = port_->sample;
-        const bool is_good = s.valid && is_valid(s.pose) && s.counter != counter_;
+        // A device may give samples less often than this ticks.
+        still_ticks_ = s.counter != counter_ ? 0 : still_ticks_ + 1;
+        const bool is_good = s.valid && is_valid(s.pose) && still_ticks_ < control::ForceLimits{}.stale_ticks;
         well_for_ = is_good && !s.taken ? well_for_ + tick.elapsed_seconds() : 0.0;
         if (is_lateness(last_fault_)) return return_from_lateness(is_good);
         if (last_fault_ == Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
@@ -237,7 +240,7 @@ private:
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
     double felt_ = 0.0, off_s_ = 0.0, off_from_ = 0.0, off_until_ = 0.0, asked_ = 0.0;
     std::int64_t asked_ticks_ = 0;
-    std::int64_t counter_ = 0, faults_ = 0, returns_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
+    std::int64_t counter_ = 0, still_ticks_ = 0, faults_ = 0, returns_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
     std::string name_;
     control::Fault last_fault_ = control::Fault::none;
     bool in_fault_ = false;

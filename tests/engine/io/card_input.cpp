@@ -45,7 +45,7 @@ struct Bench {
             while (static_cast<double>(captured + 256) <= std::min(now, stop * rate))
                 callback(ns_of(static_cast<double>(captured + 256)));
             for (int channel = 0; channel < 2; ++channel)
-                input.read(channel, first, heard[channel].data(), 48, ns_of(now));
+                input.read(channel, first, heard[channel].data(), 48, ns_of(static_cast<double>(first + 48)));
             first += 48;
             for (int i = 0; i < 48; ++i) {
                 const float x = heard[0][static_cast<std::size_t>(i)];
@@ -71,6 +71,15 @@ TEST_CASE("a group hears every frame of a card at one distance, however its thre
     CHECK(*bench.offsets.begin() >= 256 + 240 - 48);
     CHECK(*bench.offsets.begin() <= 256 + 240 + 256 + 48);
     CHECK(bench.input.latency_s() == Approx((256.0 + 240.0) / rate));
+}
+
+TEST_CASE("what a card is heard at does not change when the first call is late") {
+    Bench in_time, late;
+    in_time.run(0.3);
+    late.run(0.3, 0.09);
+    REQUIRE(in_time.offsets.size() == 1);
+    REQUIRE(late.offsets.size() == 1);
+    CHECK(std::abs(*late.offsets.begin() - *in_time.offsets.begin()) <= 1);
 }
 
 TEST_CASE("frames that come too late are silence and counted, none is heard twice, and the distance is chosen anew") {
@@ -181,7 +190,7 @@ TEST_CASE("without a card a file is heard from activation 0 on, and silence afte
     io::SoundHeard heard;
     heard.port.samples.resize(4);
     heard.file = {1.0F, 2.0F, 3.0F, 4.0F, 5.0F};
-    heard.fill(3, 4);
+    heard.fill(3, 4, 0);
     CHECK(heard.port.first == 3);
     CHECK(heard.port.samples == std::vector<float>{4.0F, 5.0F, 0.0F, 0.0F});
 }

@@ -92,7 +92,7 @@ TEST_CASE(
     card.open({""});
     std::vector<float> heard(2);
     const auto call = [&](std::int64_t first, bool plays) {
-        for (int channel = 0; channel < 2; ++channel) card.hear(channel, first, heard.data(), 2);
+        for (int channel = 0; channel < 2; ++channel) card.hear(channel, first, heard.data(), 2, 0);
         const float values[] = {static_cast<float>(first), static_cast<float>(first + 1)};
         if (plays) card.channel(0).write(first, values, 2, sizeof(float));
     };

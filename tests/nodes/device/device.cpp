@@ -99,6 +99,36 @@ TEST_CASE("device_output lets go, and says why, when the device stops delivering
     CHECK(std::get<std::string>(node.report().sections.at("force").at("fault")).find("stopped") != std::string::npos);
 }
 
+TEST_CASE("forces return to a device that gives fewer samples than there are ticks, after its samples were bad") {
+    for (const std::int64_t ticks : {1, 2, 5, 9}) {
+        CAPTURE(ticks);
+        NodeHarness node("device_output", servo);
+        node.device_feed = [&](std::int64_t k, DevicePort& port) {
+            port.sample = sample_at(0.0, k / ticks);
+            if (k >= 500 && k < 520) port.sample.valid = false;
+        };
+        node.feed<Wrench>("wrench", [](std::int64_t k) {
+            return k < 300 || (k > 1000 && k < 1700) ? Wrench{} : Wrench{{2.0, 0.0, 0.0}, {}};
+        });
+        node.prepare();
+        node.run(2000);
+        CHECK(node.values<Wrench>("applied")[490].force.x == Approx(2.0));
+        CHECK(node.values<Wrench>("applied")[900].force.x == 0.0);
+        CHECK(node.last<Wrench>("applied").force.x == Approx(2.0));
+    }
+    // One whose samples do not come back stays without.
+    NodeHarness node("device_output", servo);
+    node.device_feed = [](std::int64_t k, DevicePort& port) {
+        port.sample = sample_at(0.0, std::min<std::int64_t>(k, 500));
+    };
+    node.feed<Wrench>("wrench", [](std::int64_t k) {
+        return k < 300 || k > 2000 ? Wrench{{k < 300 ? 0.0 : 2.0, 0.0, 0.0}, {}} : Wrench{};
+    });
+    node.prepare();
+    node.run(3000);
+    CHECK(node.last<Wrench>("applied").force.x == 0.0);
+}
+
 TEST_CASE("device_output tells what the hand felt, and since when forces were off while the patch asked for some") {
     NodeHarness node("device_output", servo);
     node.set("recover_after", "0 s");

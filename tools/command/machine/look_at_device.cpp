@@ -112,6 +112,10 @@ void print(const DeviceLook& look, const ThreadedDevice& device, const DeviceSam
     } else fmt::print("  no valid pose: is the device calibrated?\n");
     fmt::print("  buttons {:#x}, {:.0f} samples/s, largest force {:.2f} N\n", sample.buttons, rate,
                opened.info.max_force);
+    if (!(opened.info.max_force > 0.0)) {
+        fmt::print("  this driver is untested on hardware; the device has no motors\n");
+        return;
+    }
     fmt::print("  this driver is untested on hardware; push directions of this device are {}\n",
                confirmed ? "confirmed" : fmt::format("not confirmed: tactus devices --verify {}", look.driver));
 }

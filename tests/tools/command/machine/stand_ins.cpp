@@ -163,6 +163,10 @@ TEST_CASE("the library's scenes run with a tracked tool, and their takes repeat 
         pose.position = place_at(t);
         server->send(openigtlink::transform_message("Stylus", pose, t));
     });
+    const Outcome probe = Folder().tactus("devices --probe openigtlink");
+    INFO(probe.out << probe.err);
+    CHECK(probe.out.find("the device has no motors") != std::string::npos);
+    CHECK(probe.out.find("--verify") == std::string::npos);
     runs_everywhere_with("openigtlink", false);
 }
 
