@@ -3,6 +3,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/view/walk.hpp"
 
 #include <fmt/format.h>
@@ -74,6 +75,82 @@ TEST_CASE(
         press("undo step");
         CHECK(sees([&] { return flap_of(walk.folder.path, 4).plates.size() == 1; }));
         walk.keep("undone");
+        walk.stop();
+    }
+}
+
+TEST_CASE("a planner with a mouse adds a vessel, a site and a margin, and a plate keeps how it was laid",
+          "[display][live]") {
+    for (const WalkWindow& window : walk_windows(usual_window)) {
+        Walk walk(window, "forms");
+        if (!walk.is_possible()) return;
+        walk.start(
+            "run planning-reconstruction --view --layout plan --set hand.device=mouse --audio none --out out --seconds "
+            "400 --json",
+            400.0);
+        // While a change is made no form opens.
+        const auto opens = [&](const std::string& control, const std::string& field) {
+            REQUIRE(walk.waits_for(control, "panel plan steps"));
+            REQUIRE(walk.until([&] { return walk.shows(field); }, [&] { walk.press(control, "panel plan steps"); }));
+        };
+        int run = 1;
+        const auto apply = [&] {
+            walk.press("apply to the plan");
+            ++run;
+            REQUIRE(sees([&] { return fs::exists(walk.folder.path / fmt::format("out-{}/case.plan.json", run)); }));
+        };
+        const auto type_into = [&](const std::string& control, const std::string& text) {
+            walk.press(control);
+            walk.person.type(text);
+        };
+        const auto slide_to = [&](const std::string& control, const std::string& number) {
+            walk.person.key("Control_L", true);
+            walk.press(control);
+            walk.person.key("Control_L", false);
+            walk.person.type(number);
+            walk.person.tap("Return");
+            Person::wait(0.5);
+        };
+        opens("+ plate", "name of the part");
+        type_into("name of the part", "p1");
+        slide_to("screws of the plate", "3");
+        slide_to("height of the plate", "-2.5");
+        walk.keep("plate");
+        apply();
+        const reconstruct::Plate laid = flap_of(walk.folder.path, run).plates.at(0);
+        REQUIRE(laid.laid);
+        CHECK(laid.laid->screws_per_segment == 3);
+        CHECK(laid.laid->height == Approx(-2.5e-3));
+        REQUIRE(walk.waits_for("part plate p1", "panel tree"));
+
+        // Opened and applied as it is, it stays as it is.
+        opens("plate p1", "apply to the plan");
+        walk.keep("plate-again");
+        apply();
+        const reconstruct::Plate again = flap_of(walk.folder.path, run).plates.at(0);
+        CHECK(again.points == laid.points);
+        CHECK(again.screws.size() == laid.screws.size());
+
+        opens("margin...", "margin of the tumour");
+        slide_to("margin of the tumour", "7");
+        apply();
+        CHECK(flap_of(walk.folder.path, run).margin == Approx(7e-3));
+
+        const std::size_t vessels = flap_of(walk.folder.path, run).vessels.size();
+        opens("+ vessel", "name of the part");
+        type_into("name of the part", "second");
+        fs::copy(library_folder() / "cases/fibula-flap/vein.csv", walk.folder.path / "vein.csv");
+        type_into("file of the vessel", "vein.csv");
+        walk.keep("vessel");
+        apply();
+        REQUIRE(flap_of(walk.folder.path, run).vessels.size() == vessels + 1);
+        CHECK(flap_of(walk.folder.path, run).vessels.back().name == "second");
+
+        opens("+ site", "name of the part");
+        type_into("name of the part", "lingual");
+        apply();
+        CHECK(flap_of(walk.folder.path, run).sites.back().name == "lingual");
+        walk.keep("site");
         walk.stop();
     }
 }

@@ -126,3 +126,46 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         walk.stop();
     }
 }
+
+TEST_CASE("a planner with a mouse gives an alternative another name, but not that of another one", "[display][live]") {
+    for (const WalkWindow& window : walk_windows(usual_window)) {
+        Walk walk(window, "name");
+        if (!walk.is_possible()) return;
+        walk.start(
+            "run planning-trauma --view --layout plan --set hand.device=mouse --audio none --out out --seconds 150 "
+            "--json",
+            150.0);
+        const auto plan = [&](const char* out) {
+            const fs::path file = walk.folder.path / out / "case.plan.json";
+            return fs::exists(file) ? cases::load_case_plan(file) : cases::CasePlan{};
+        };
+        const auto name = [&](const std::string& old, const std::string& wanted) {
+            REQUIRE(walk.waits_for("alternative " + old, "panel plan steps"));
+            const Spot at = walk.eyes.spot("alternative " + old);
+            for (int n = 0; n < 2; ++n) {
+                walk.person.click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
+                Person::wait(0.05);
+            }
+            REQUIRE(walk.waits_for("name of the alternative"));
+            walk.person.type(wanted);
+            walk.person.tap("Return");
+            CHECK(walk.waits_while("name of the alternative"));
+        };
+        REQUIRE(walk.waits_for("part fragment_02"));
+        REQUIRE(sees([&] { return fs::exists(walk.folder.path / "out/case.plan.json"); }));
+        walk.press("new from here", "panel plan steps");
+        REQUIRE(sees([&] { return plan("out").alternatives.size() == 2; }));
+        name("main", "before");
+        // A new run begins with it; the other one, its steps and which one is current stay.
+        REQUIRE(walk.waits_for("alternative before", "panel plan steps"));
+        REQUIRE(sees([&] { return plan("out-2").alternatives.size() == 2; }));
+        CHECK(plan("out-2").alternatives[0].name == "before");
+        CHECK(plan("out-2").steps.size() == plan("out").steps.size());
+        const std::string other = plan("out-2").alternatives[1].name;
+        name("before", other);
+        walk.keep("refused");
+        CHECK(walk.shows("alternative before"));
+        CHECK_FALSE(fs::exists(walk.folder.path / "out-3"));
+        walk.stop();
+    }
+}

@@ -65,6 +65,11 @@ std::vector<StepLine> step_lines(const cases::CasePlan& plan) {
     return lines;
 }
 
+fs::path free_plan(const fs::path& folder) {
+    for (int n = 1;; ++n)
+        if (fs::path free = folder / fmt::format("changed-{}.plan.json", n); !fs::exists(free)) return free;
+}
+
 CaseRun::~CaseRun() {
     if (observer_)
         for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);

@@ -27,6 +27,9 @@ struct StepLine {
 /// The steps on the way to the tip of the current alternative, the first step first.
 std::vector<StepLine> step_lines(const cases::CasePlan& plan);
 
+/// A file that is not there, for a plan that was changed beside its run: "changed-1.plan.json" and so on.
+std::filesystem::path free_plan(const std::filesystem::path& folder);
+
 class CaseRun {
 public:
     explicit CaseRun(Workbench& bench) : bench_(bench) {}

@@ -187,6 +187,7 @@ void FlapPanel::dialog() {
             break;
         case Kind::vessel:
             ImGui::InputTextWithHint("file", ".csv of 'tactus vessel', or .mrk.json of 3D Slicer", &form_.file);
+            mark_spot("file of the vessel");
             ImGui::Checkbox("vein", &form_.is_vein);
             break;
         case Kind::site:
@@ -196,6 +197,7 @@ void FlapPanel::dialog() {
         case Kind::margin:
             ImGui::InputTextWithHint("tumour", "a closed mesh; empty: as it is", &form_.file);
             ImGui::SliderFloat("margin, mm", &form_.margin, 0.0f, 50.0f, "%.1f");
+            mark_spot("margin of the tumour");
             break;
     }
     const bool can = (!has_name || !form_.name.empty()) && (form_.kind != Kind::vessel || !form_.file.empty());

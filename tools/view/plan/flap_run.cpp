@@ -44,11 +44,6 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
     return verdicts;
 }
 
-fs::path free_plan(const fs::path& folder) {
-    for (int n = 1;; ++n)
-        if (fs::path free = folder / fmt::format("changed-{}.plan.json", n); !fs::exists(free)) return free;
-}
-
 }  // namespace
 
 void FlapRun::tend() {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/plan/plan_alternatives.hpp"
 
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <chrono>
@@ -51,15 +54,61 @@ void PlanAlternatives::tend() {
     });
 }
 
+void PlanAlternatives::ask_name() {
+    const cases::CasePlan* const plan = run_.plan();
+    if (plan) ask_name(plan->current, plan->alternatives[static_cast<std::size_t>(plan->current)].name);
+}
+
+void PlanAlternatives::ask_name(int place, const std::string& name) {
+    renamed_ = place;
+    name_ = name;
+    wants_focus_ = true;
+}
+
+/// Enter takes the name, Escape and a click elsewhere leave the old one.
+void PlanAlternatives::name_field(int place) {
+    if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool is_entered =
+        ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    mark_spot("name of the alternative");
+    if (is_entered) rename(place);
+    if (is_entered || ImGui::IsItemDeactivated()) renamed_ = -1;
+}
+
+void PlanAlternatives::rename(int place) {
+    try {
+        cases::CasePlan plan = cases::load_case_plan(run_.file());
+        const auto n = static_cast<std::size_t>(place);
+        if (n >= plan.alternatives.size() || plan.alternatives[n].name == name_) return;
+        if (name_.empty() || find(plan, name_) >= 0)
+            throw Error(fmt::format(
+                "an alternative cannot be named '{}': a name must not be empty, nor that of another", name_));
+        plan.alternatives[n].name = name_;
+        const std::filesystem::path file = free_plan(run_.file().parent_path());
+        cases::save_case_plan(plan, file);
+        changed_ = file;
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+    }
+}
+
 void PlanAlternatives::list(const cases::CasePlan& plan) {
     for (int n = 0; n < static_cast<int>(plan.alternatives.size()); ++n) {
         const std::string& name = plan.alternatives[static_cast<std::size_t>(n)].name;
         ImGui::PushID(n);
+        if (renamed_ == n) {
+            name_field(n);
+            ImGui::PopID();
+            continue;
+        }
         const bool is_current = n == plan.current;
         if (ImGui::RadioButton(name.c_str(), is_current) && !is_current) run_.go_to_alternative(n);
         mark_spot("alternative " + name);
+        if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) ask_name(n, name);
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", is_current ? "the scene shows this one" : "the scene goes to this one");
+            ImGui::SetTooltip("%s; double click: another name, with which the run begins again",
+                              is_current ? "the scene shows this one" : "the scene goes to this one");
         if (!is_current) {
             ImGui::SameLine();
             bool is_compared = compared_ == name;

@@ -9,6 +9,7 @@
 #include <array>
 #include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::view {
@@ -23,8 +24,16 @@ public:
     /// Draws this one over the current one; empty: none.
     void compare(const std::string& name) { compared_ = name; }
 
+    /// Asks for another name of the current one.
+    void ask_name();
+    /// The plan with another name, which a new run begins with; empty: none. Taken once.
+    std::filesystem::path take_changed() { return std::exchange(changed_, {}); }
+
 private:
     void list(const cases::CasePlan& plan);
+    void ask_name(int place, const std::string& name);
+    void name_field(int place);
+    void rename(int place);
 
     using Numbers = std::array<AlternativeNumbers, 2>;
 
@@ -36,6 +45,10 @@ private:
     std::vector<std::string> differences_;
     std::future<Numbers> counting_;
     std::vector<std::string> numbers_;
+    std::filesystem::path changed_;
+    int renamed_ = -1;  ///< place of the alternative whose name is asked for
+    bool wants_focus_ = false;
+    std::string name_;
 };
 
 }  // namespace tactus::view

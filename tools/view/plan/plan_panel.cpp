@@ -154,8 +154,8 @@ void PlanPanel::step_list() {
 }
 
 void PlanPanel::begin_again() {
-    const std::filesystem::path changed = flap_.flap().take_changed();
-    if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
+    for (const std::filesystem::path& changed : {flap_.flap().take_changed(), alternatives_.take_changed()})
+        if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
 }
 
 void PlanPanel::draw(const Fonts&) {

@@ -99,7 +99,7 @@ void PlanSlices::follow_cursor(Point size) {
     if (!scene_.cursor) move_cursor(known_cursor_);
 }
 
-void PlanSlices::draw_outlines(const Painter& paint, const SlicePlane& plane, Point middle) {
+void PlanSlices::draw_outlines(const Painter& paint, const SlicePlane& plane, Point middle, double scale) {
     constexpr double least_step = 1.5;  // pixels
     std::vector<ImVec2> points;
     for (const PlanOutlines::Piece& piece :
@@ -114,11 +114,10 @@ void PlanSlices::draw_outlines(const Painter& paint, const SlicePlane& plane, Po
                                static_cast<double>(at.y - points.back().y)) >= least_step)
                     points.push_back(at);
             }
+            const double wide = piece.is_chosen ? 3.0 : piece.is_scanned ? 1.0 : 2.0;
             paint.list()->AddPolyline(points.data(), static_cast<int>(points.size()),
                                       ink_of(piece.colour, piece.is_scanned ? 150 : 255), ImDrawFlags_None,
-                                      piece.is_chosen    ? 3.0f
-                                      : piece.is_scanned ? 1.0f
-                                                         : 2.0f);
+                                      static_cast<float>(scale * wide));
         }
 }
 
@@ -151,7 +150,7 @@ void PlanSlices::slice(std::size_t number, Point size, const Fonts& fonts) {
         const auto corners = corners_of(scan.grid, plane);
         textures_[number].draw(paint, box.middle() + corners[0], box.middle() + corners[1]);
     }
-    draw_outlines(paint, plane, box.middle());
+    draw_outlines(paint, plane, box.middle(), fonts.scale);
     const Point at = box.middle() + plane.pixel(*scene_.cursor);
     draw_slice_cursor(paint, at, box, fonts.scale);
     set_spot("cursor " + name, {at.x - 1.0, at.y - 1.0, at.x + 1.0, at.y + 1.0});

@@ -47,7 +47,7 @@ private:
     void tend();
     void head(const Fonts& fonts);
     void slice(std::size_t number, Point size, const Fonts& fonts);
-    void draw_outlines(const Painter& paint, const SlicePlane& plane, Point middle);
+    void draw_outlines(const Painter& paint, const SlicePlane& plane, Point middle, double scale);
     void move_cursor(const Vec3& to);
     void follow_cursor(Point size);
 
