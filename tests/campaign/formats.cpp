@@ -129,6 +129,19 @@ fs::path small_case(const fs::path& folder) {
     return made;
 }
 
+/// A plan with vessels, files of others, and the inputs of a reconstruction.
+fs::path small_flap(const fs::path& folder, const fs::path& texts) {
+    const fs::path made = folder / "flap";
+    fs::create_directories(made);
+    fs::copy_file(folder / "assets_stl/closed.stl", made / "a.stl");
+    for (const char* const text :
+         {"flap_files.seeds/vessel.csv", "flap_files.seeds/marks.mrk.json", "fibula_inputs.seeds/three.json"})
+        fs::copy_file(texts / "assets" / text, made / fs::path(text).filename());
+    make_by_command({"plan", "new", "case.plan.json", "a.stl"}, made);
+    make_by_command({"plan", "vessel", "case.plan.json", "artery", "--file", "vessel.csv"}, made);
+    return made;
+}
+
 /// A training task beside the label map of what it spares.
 fs::path small_task(const fs::path& folder) {
     const fs::path made = folder / "task";
@@ -204,8 +217,14 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .open = unpack,
          .close = pack},
         {.name = "plan",
-         .seeds = {seed("assets/plan.seeds/eventful.json")},
+         .seeds = {seed("assets/plan.seeds/eventful.json"), seed("assets/plan.seeds/reconstruction.json")},
          .verbs = {{"plan", "show", "FILE"}, {"plan", "show", "FILE", "--json"}}},
+        {.name = "flap",
+         .seeds = {small_flap(folder, texts)},
+         .verbs = {{"plan", "fibula", "FILE/three.json"},
+                   {"plan", "vessel", "FILE/case.plan.json", "artery", "--file", "FILE/vessel.csv"},
+                   {"plan", "vessel", "FILE/case.plan.json", "vein", "--file", "FILE/marks.mrk.json"},
+                   {"plan", "report", "FILE/case.plan.json", "-o", "out.html"}}},
         {.name = "case",
          .seeds = {small_case(folder)},
          .verbs = {{"plan", "gap", "FILE/case.plan.json"}, {"plan", "export", "FILE/case.plan.json", "--out", "out"}}},
