@@ -31,7 +31,7 @@ constexpr const char* format_key = "tactus_format";
 constexpr std::int32_t newest_format = 3, sparse_format = 3, dense_format = 2;
 // Limits of a sparse file: dense samples per stored sample, and dense samples in all.
 constexpr double most_claimed = 4096.0, most_samples = 1e9;
-constexpr const char* points_key = "points";
+constexpr const char *points_key = "points", *border_key = "scanned border";
 
 // Calls visit(leaf, first, end) for every block of 8 x 8 x 8 samples: those of the grid in [first, end).
 template <typename Visit>
@@ -191,6 +191,7 @@ void add_meta(const VdbPair& vdb, const Bone& bone) {
     for (const auto& grid : {vdb.distance, vdb.density}) add_text(*grid, "bone", bone.name);
     vdb.distance->insertMeta("colour", openvdb::Vec3DMetadata({bone.colour.x, bone.colour.y, bone.colour.z}));
     if (!bone.points.empty()) add_text(*vdb.distance, points_key, to_bytes(bone.points));
+    if (!bone.border.faces.empty()) add_text(*vdb.distance, border_key, border_bytes(bone.border));
     for (const auto& [key, value] : bone.provenance)
         add_text(*vdb.distance, std::string(provenance_prefix) + key, value);
 }
@@ -253,6 +254,8 @@ std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
             bone.colour = {colour->value().x(), colour->value().y(), colour->value().z()};
         if (const std::string points = text_of(*parts.distance, points_key); !points.empty())
             bone.points = points_from(points, file);
+        if (const std::string border = text_of(*parts.distance, border_key); !border.empty())
+            bone.border = border_from(border, file);
         bone.distance = from_vdb(*parts.distance, version >= sparse_format, file);
         parts.distance.reset();
         bone.density = from_vdb(*parts.density, version >= sparse_format, file);

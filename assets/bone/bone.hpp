@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/scanned_border.hpp"
 #include "dsp/volume/grid.hpp"
 
 #include <filesystem>
@@ -25,10 +26,13 @@ struct Bone {
 
     /// Surface points for contact, with outward normals, areas and labels, in the frame of the grids. May be empty.
     std::vector<contact::SurfacePoint> points;
+
+    /// Where its label touched others in the scan, in the frame of the grids. See surface_points.hpp.
+    contact::ScannedBorder border;
 };
 
 /// Writes one OpenVDB file. A single bone's float grids are called "distance" and "density", those of several
-/// "NAME.distance" and "NAME.density"; colour, provenance and surface points are metadata of the distance grid. All
+/// "NAME.distance" and "NAME.density"; colour, provenance, surface points and scanned border are metadata of the distance grid. All
 /// bones of a file share one frame; their grids may differ. The same bones give the same bytes. A checksum follows the
 /// OpenVDB data; other programs ignore it. The file is written atomically. Throws Error when a bone's grids do not
 /// match, when two bones have the same name, when there is none, or when the file cannot be written.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import_steps.hpp"
 
+#include "assets/bone/surface_points.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/volume/length_unit.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 
@@ -124,8 +124,8 @@ void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run)
 
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
     if (!options.pointshell) return;
-    bone.points = contact::sample_surface(
-        bone.distance, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
+    bone.points =
+        surface_points(bone, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
     bone.provenance["pointshell"] =
         fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
     summary.points = bone.points.size();

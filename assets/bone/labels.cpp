@@ -68,6 +68,26 @@ volume::Grid mask_of(const volume::Grid& labels, int label, std::size_t& count) 
     return mask;
 }
 
+// Faces of the label's voxels beside voxels of other labels.
+contact::ScannedBorder border_of(const volume::Grid& labels, int label) {
+    contact::ScannedBorder border{{}, labels.spacing};
+    const auto wanted = static_cast<float>(label);
+    for (int k = 0; k < labels.size[2]; ++k)
+        for (int j = 0; j < labels.size[1]; ++j)
+            for (int i = 0; i < labels.size[0]; ++i)
+                for (int axis = 0; axis < 3; ++axis) {
+                    std::array<int, 3> next{i, j, k};
+                    const auto a = static_cast<std::size_t>(axis);
+                    if (++next[a] >= labels.size[a]) continue;
+                    const float here = labels.at(i, j, k), there = labels.at(next[0], next[1], next[2]);
+                    if (here == there || here == 0.0f || there == 0.0f || (here != wanted && there != wanted)) continue;
+                    Vec3 middle = labels.position(i, j, k);
+                    middle[axis] += 0.5 * labels.spacing[axis];
+                    border.faces.push_back(middle);
+                }
+    return border;
+}
+
 // Grey values on both sides of the edge of a label.
 struct Grey {
     const volume::Grid& labels;
@@ -256,6 +276,7 @@ Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, c
     bone.provenance["frame"] = "LPS";
     bone.provenance["label"] = std::to_string(segment.label);
     bone.provenance["surface"] = surface;
+    bone.border = border_of(labels, segment.label);
     return bone;
 }
 

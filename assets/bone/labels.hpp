@@ -31,7 +31,8 @@ std::vector<int> labels_in(const volume::Grid& labels);
 /// shifted as a whole to keep the volume of the labelled voxels. Where the label borders on background and the CT's
 /// grey values cross the level that separates both sides best, the surface follows that crossing instead. Density comes
 /// from the CT; without a CT it is assumed, as for a mesh. `voxels` (may be null) receives the number of labelled
-/// samples. Throws Error for a label without samples.
+/// samples. Its border has the faces between it and other labels. Throws Error for a label
+/// without samples.
 Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how,
                    const RunJobs& run = run_in_turn, std::size_t* voxels = nullptr);
 

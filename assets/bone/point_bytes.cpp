@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -13,9 +14,21 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr std::string_view mark = "TACTUSPOINTS0001";
+constexpr std::string_view mark = "TACTUSPOINTS0001", border_mark = "TACTUSBORDER0001";
 constexpr std::size_t head_size = mark.size() + 8, point_size = 7 * 8 + 1;
+constexpr std::size_t place_size = 3 * 8;
 static_assert(std::endian::native == std::endian::little, "bone files are little-endian");
+
+void append(std::string& bytes, const Vec3& place) {
+    const double numbers[3] = {place.x, place.y, place.z};
+    bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
+}
+
+Vec3 place_at(const char* bytes) {
+    double numbers[3];
+    std::memcpy(numbers, bytes, sizeof numbers);
+    return {numbers[0], numbers[1], numbers[2]};
+}
 
 }  // namespace
 
@@ -55,6 +68,36 @@ std::vector<contact::SurfacePoint> points_from(std::string_view bytes, const std
         at += point_size;
     }
     return points;
+}
+
+std::string border_bytes(const contact::ScannedBorder& border) {
+    std::string bytes(border_mark);
+    bytes.reserve(head_size + (border.faces.size() + 1) * place_size);
+    const std::uint64_t count = border.faces.size();
+    bytes.append(reinterpret_cast<const char*>(&count), 8);
+    append(bytes, border.voxel);
+    for (const Vec3& face : border.faces) append(bytes, face);
+    return bytes;
+}
+
+contact::ScannedBorder border_from(std::string_view bytes, const std::string& file) {
+    if (!bytes.starts_with(border_mark))
+        throw Error(fmt::format("{}: its scanned border has a format that this program does not read", file));
+    std::uint64_t count = 0;
+    if (bytes.size() >= head_size) std::memcpy(&count, bytes.data() + border_mark.size(), 8);
+    if (bytes.size() < head_size + place_size || (bytes.size() - head_size) % place_size != 0 ||
+        (bytes.size() - head_size) / place_size - 1 != count)
+        throw Error(fmt::format("{}: the number of faces of its scanned border differs from the stated count", file));
+    const char* at = bytes.data() + head_size;
+    contact::ScannedBorder border{std::vector<Vec3>(count), place_at(at)};
+    if (!is_finite(border.voxel) || !(std::min({border.voxel.x, border.voxel.y, border.voxel.z}) > 0.0))
+        throw Error(fmt::format("{}: the voxels of its scanned border have no size", file));
+    for (Vec3& face : border.faces) {
+        at += place_size;
+        face = place_at(at);
+        if (!is_finite(face)) throw Error(fmt::format("{}: a face of its scanned border is not a number", file));
+    }
+    return border;
 }
 
 }  // namespace tactus::bone

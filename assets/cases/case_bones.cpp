@@ -2,13 +2,13 @@
 #include "assets/cases/case_bones.hpp"
 
 #include "assets/bone/import.hpp"
+#include "assets/bone/surface_points.hpp"
 #include "assets/cases/mesh_unit.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/propose_paint.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "assets/volume/scan_volume.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
     try {
         loaded.bone = bone_from_file(file_of(fragment.file, folder), run);
         std::vector<contact::SurfacePoint>& points = loaded.bone.points;
-        if (points.empty()) points = contact::sample_surface(loaded.bone.distance, {});
+        points = bone::surface_points(loaded.bone);
         if (points.empty()) throw Error("has no surface");
         loaded.was_painted = std::ranges::any_of(
             points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });

@@ -13,7 +13,7 @@ std::size_t paint_fracture(std::span<contact::SurfacePoint> points, const contac
     std::vector<Vec3> inside;
     for (contact::SurfacePoint& p : points) {
         const volume::Sample here = bone.sample(into_bone.apply(p.position));
-        if (!here.inside || !(here.value < -depth)) continue;
+        if (!here.inside || !(here.value < -depth) || p.label == contact::surface_label::as_scanned) continue;
         p.label = contact::surface_label::fracture;
         inside.push_back(p.position);
     }

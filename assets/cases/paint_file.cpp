@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/contact/scanned_border.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/fit/surface_brush.hpp"
@@ -99,8 +100,7 @@ void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view t
     const double radius =
         json.contains("radius_mm") ? radius_of(json["radius_mm"], file, "'radius_mm'") : stroke_radius;
     const auto paint = strokes_of(json, "paint", radius, file), erase = strokes_of(json, "erase", radius, file);
-    if (!keep)
-        for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+    if (!keep) contact::remove_paint(points);
     fit::SurfaceBrush brush({points.begin(), points.end()});
     for (const Stroke& s : paint) brush.stroke(s.place, s.radius, contact::surface_label::fracture);
     for (const Stroke& s : erase) brush.stroke(s.place, s.radius, contact::surface_label::none);

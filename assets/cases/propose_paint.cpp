@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/propose_paint.hpp"
 
+#include "dsp/contact/scanned_border.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/geometry/neighbours.hpp"
@@ -31,12 +32,15 @@ std::vector<double> roughness_of(std::span<const contact::SurfacePoint> points, 
     return rough;
 }
 
-/// Labels the connected patches of broken points that are large enough, and nothing else.
+/// Labels the connected patches of broken points that are large enough, and nothing else. Those as scanned stay so.
 std::size_t label_patches(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken, double near,
                           double least_area) {
-    for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+    contact::remove_paint(points);
+    const auto is_broken = [&](std::size_t i) {
+        return broken[i] != 0 && points[i].label != contact::surface_label::as_scanned;
+    };
     std::size_t count = 0;
-    for (const auto& patch : geometry::patches_of(points, near, [&](std::size_t i) { return broken[i] != 0; })) {
+    for (const auto& patch : geometry::patches_of(points, near, is_broken)) {
         double area = 0.0;
         for (const std::size_t i : patch) area += points[i].area;
         if (area < least_area) continue;

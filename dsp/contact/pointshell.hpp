@@ -12,9 +12,10 @@
 
 namespace tactus::contact {
 
-/// Label of a surface point. Other values are free for the user.
+/// Label of a surface point. Other values are free for the user. Points `as_scanned` lie where fragments touch in their
+/// scan (scanned_border.hpp): no paint covers them, and they belong to no face and no outer contour of a fit.
 namespace surface_label {
-inline constexpr std::uint8_t none = 0, fracture = 1;
+inline constexpr std::uint8_t none = 0, fracture = 1, as_scanned = 255;
 }
 
 /// One point of a surface. Body frame, m.
@@ -40,7 +41,7 @@ struct alignas(64) ShellChunk {
 /// evenly spread points from its children's chunks, each representing those nearest to it: a coarser shell nested in
 /// the finer.
 struct ShellNode {
-    Vec3 centre{0.0, 0.0, 0.0};   ///< one of its points, body frame, m
+    Vec3 centre{0.0, 0.0, 0.0};  ///< one of its points, body frame, m
     double radius = 0.0;  ///< greatest distance from the centre to any point of the node, m
     std::uint32_t first_point = 0, points = 0;  ///< its points, adjacent in the shell's arrays
     std::uint32_t first_child = 0, children = 0;  ///< at most 4, adjacent in `nodes`; none in a leaf

@@ -149,7 +149,9 @@ void take_outline(FitSurface& made, std::span<const contact::SurfacePoint> point
     std::vector<Vec3> positions, normals;
     for (const contact::SurfacePoint& point : points) {
         const Vec3 p = point.position - made.centre;
-        if (point.label == options.paint || point.label == options.other_paint) continue;
+        if (point.label == options.paint || point.label == options.other_paint ||
+            point.label == contact::surface_label::as_scanned)
+            continue;
         if (!(glm::length(point.normal) > 0.5)) continue;
         if (glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high))) continue;
         // The edge itself is rounded, and some unpainted points may be fracture too.

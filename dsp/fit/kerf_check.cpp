@@ -45,8 +45,8 @@ std::vector<Spot> cortex_of(const KerfSide& side, const Pose& pose) {
     std::vector<Spot> spots;
     for (const contact::SurfacePoint& point : side.points) {
         const Vec3 p = point.position - face.centre;
-        if (point.label == contact::surface_label::fracture || !(glm::dot(p, p) < radius * radius) ||
-            !(glm::length(point.normal) > 0.5))
+        if (point.label == contact::surface_label::fracture || point.label == contact::surface_label::as_scanned ||
+            !(glm::dot(p, p) < radius * radius) || !(glm::length(point.normal) > 0.5))
             continue;
         bool is_rim = false;
         for (std::size_t n = 0; n < face.position.size() && !is_rim; n += stride) {

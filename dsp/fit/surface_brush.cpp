@@ -38,7 +38,8 @@ SurfaceBrush::SurfaceBrush(std::vector<contact::SurfacePoint> points)
     }
     for (std::size_t n = 0; n < points_.size(); ++n) {
         order_[cubes_[index_of(cell_of(points_[n].position))].end++] = static_cast<std::uint32_t>(n);
-        if (points_[n].label == contact::surface_label::none) continue;
+        if (points_[n].label == contact::surface_label::none || points_[n].label == contact::surface_label::as_scanned)
+            continue;
         ++labelled_;
         area_ += points_[n].area;
     }
@@ -76,7 +77,8 @@ void SurfaceBrush::stroke(const Vec3& middle, double radius, std::uint8_t label)
         for (std::uint32_t n = cube.first; n < cube.end; ++n) {
             contact::SurfacePoint& p = points_[order_[n]];
             const Vec3 difference = p.position - middle;
-            if (p.label != label && glm::dot(difference, difference) <= radius * radius) {
+            if (p.label != label && p.label != contact::surface_label::as_scanned &&
+                glm::dot(difference, difference) <= radius * radius) {
                 const bool was = p.label != contact::surface_label::none, is = label != contact::surface_label::none;
                 p.label = label;
                 if (was != is) {

@@ -20,13 +20,13 @@ public:
 
     explicit SurfaceBrush(std::vector<contact::SurfacePoint> points);
 
-    /// Labels the points within `radius` (m) of a position.
+    /// Labels the points within `radius` (m) of a position, but those as scanned.
     void stroke(const Vec3& middle, double radius, std::uint8_t label) noexcept;
     /// Distance to the nearest point, m; at most `farthest`.
     double distance(const Vec3& place) const noexcept;
 
     std::span<const contact::SurfacePoint> points() const noexcept { return points_; }
-    /// Number of points with a label other than surface_label::none, and their area, m².
+    /// Number of points with a label other than `none` and `as_scanned`, and their area, m².
     std::size_t labelled() const noexcept { return labelled_; }
     double area() const noexcept { return area_; }
 

@@ -9,7 +9,8 @@ namespace tactus::vessel {
 
 namespace {
 
-/// A vessel this wide does not end by getting thin: most of its radii are certain. Shorter ones are seen too little.
+/// A vessel this wide does not end by getting thin: most of its radii are certain. Shorter side branches are seen too
+/// little.
 bool is_well_seen(const Branch& branch) {
     std::vector<double> radii;
     std::size_t certain = 0;
@@ -20,7 +21,7 @@ bool is_well_seen(const Branch& branch) {
     }
     if (radii.empty() || 2 * certain < radii.size()) return false;
     std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2));
-    return branch.length() >= 6.0 * radii[radii.size() / 2];
+    return branch.parent < 0 || branch.length() >= 6.0 * radii[radii.size() / 2];
 }
 
 bool is_open(End end) { return end == End::contrast || end == End::noise; }

@@ -16,7 +16,7 @@ struct TrackWarning {
 
 /// Branch by branch: narrowings of 50 % and more, lost stretches, and ends where the contrast is lost or the vessel is not told
 /// from noise, of vessels that are wide enough to be seen further: a narrowing of 85 % over four radii looks like that. None
-/// of those for branches shorter than six radii.
+/// of those for side branches shorter than six radii.
 std::vector<TrackWarning> warnings_of(const Track& track);
 
 /// "narrowed by 70 ± 5 % against 4.00 mm at 1.0, 2.0, 3.0", with ", uncertain" where it is; LPS, mm.

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::vessel {
 
@@ -53,6 +54,7 @@ public:
         cut_forked_ends();
         for (Branch& branch : found_.track.branches)
             branch.stenosis = measured_stenosis(search_, found_.track.noise, branch);
+        narrow_roots();
         found_.track.seed_node = std::min(found_.track.seed_node, found_.track.branches[0].nodes.size() - 1);
         return std::move(found_);
     }
@@ -74,6 +76,13 @@ private:
         search_.sampling = found_.track.noise.sampling(scan_);
     }
 
+    /// Why a branch ends at its refined end: what was followed beyond it, and was cut, showed no vessel.
+    static End end_at(const Node& node, const Vec3& followed_to, End end) {
+        const bool is_cut = glm::length(node.position - followed_to) > 2.0 * node.radius;
+        const bool is_beyond = end == End::border || end == End::length || end == End::meets_track;
+        return is_cut && is_beyond ? End::contrast : end;
+    }
+
     bool follow_seed(const Tube& start, const Vec3& seed) {
         Tube back = start;
         back.direction = -back.direction;
@@ -89,9 +98,9 @@ private:
         tubes.insert(tubes.end(), ahead.tubes.begin(), ahead.tubes.end());
         Branch branch;
         branch.nodes = refined_nodes(search_, tubes, start.contrast, start.centre, true, true);
-        branch.start = behind.end;
-        branch.end = ahead.end;
         if (!is_vessel(branch)) return false;
+        branch.start = end_at(branch.nodes.front(), tubes.front().centre, behind.end);
+        branch.end = end_at(branch.nodes.back(), tubes.back().centre, ahead.end);
         for (std::size_t n = 0; n < branch.nodes.size(); ++n)
             if (glm::length(branch.nodes[n].position - seed) <
                 glm::length(branch.nodes[found_.track.seed_node].position - seed))
@@ -158,9 +167,9 @@ private:
         tubes.insert(tubes.end(), ahead.tubes.begin(), ahead.tubes.end());
         Branch branch;
         branch.nodes = refined_nodes(search_, tubes, start.contrast, start.centre, false, true);
-        branch.end = ahead.end;
-        branch.meets = ahead.meets;
         if (!is_vessel(branch) || branch.length() < 5e-3) return;
+        branch.end = end_at(branch.nodes.back(), tubes.back().centre, ahead.end);
+        branch.meets = branch.end == End::meets_track ? ahead.meets : -1;
         branch.parent = static_cast<int>(index);
         attach(branch, found_.track.branches[index], leaves);
         add(std::move(branch));
@@ -224,6 +233,7 @@ private:
         }
         for (Node& node : branch.nodes) node.along += gap;
         branch.nodes.insert(branch.nodes.begin(), joining.begin(), joining.end());
+        joining_.push_back(joining.size());
         // The parent, and its blur, are part of what is measured up to here.
         for (const Node& node : branch.nodes) {
             branch.free_from = node.along;
@@ -237,6 +247,19 @@ private:
         if (branch.parent_node == 0 && parent.parent >= 0) {
             branch.parent = parent.parent;
             branch.parent_node = parent.parent_node;
+        }
+    }
+
+    /// Within the fork the lumen narrows from the parent's radius to that of the branch.
+    void narrow_roots() {
+        std::vector<Branch>& branches = found_.track.branches;
+        for (std::size_t b = 1; b < branches.size(); ++b) {
+            Branch& branch = branches[b];
+            const std::size_t count = std::min(joining_[b - 1], branch.nodes.size() - 1);
+            const Node& root =
+                branches[static_cast<std::size_t>(branch.parent)].nodes[static_cast<std::size_t>(branch.parent_node)];
+            for (std::size_t n = 0; n < count; ++n)
+                branch.nodes[n].radius = std::lerp(root.radius, branch.nodes[count].radius, double(n) / double(count));
         }
     }
 
@@ -285,6 +308,8 @@ private:
     Search search_;
     Followed found_;
     std::vector<Taken> taken_;
+    std::vector<std::size_t>
+        joining_;  ///< nodes of the straight piece from the parent's axis, of each branch but the first
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/surface_points.hpp"
 #include "assets/segment/stroke_recorder.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/fit/surface_brush.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
@@ -41,11 +41,9 @@ struct Brush {
 
     void prepare(const Setup& setup) {
         name_ = setup.name;
-        std::vector<contact::SurfacePoint> points = bone->points;
-        if (points.empty()) points = contact::sample_surface(bone->distance, {});
+        std::vector<contact::SurfacePoint> points = bone::surface_points(*bone);
         if (points.empty()) setup.fail("bone '" + bone.name + "' has no surface");
-        if (start_clean)
-            for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+        if (start_clean) contact::remove_paint(points);
         if (!label.value.empty() && !segment::is_label_name(label.value))
             setup.fail("'label' is one line of 1 to 200 bytes of UTF-8");
         strokes_ = std::make_unique<segment::StrokeRecorder>(most_strokes, most_points);

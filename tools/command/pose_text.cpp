@@ -21,4 +21,11 @@ Pose pose_of_text(const std::string& text, std::string_view option) {
     return {pose.position, glm::normalize(pose.orientation)};
 }
 
+std::string left_out_words(std::string_view name, double area) {
+    return fmt::format(
+        "{}: {:.0f} mm² touch another fragment in the scan; they are left out of fits, as they show where it was "
+        "scanned",
+        name, area * 1e6);
+}
+
 }  // namespace tactus::command

@@ -31,4 +31,7 @@ inline constexpr std::string_view as_scanned_note =
     "the fit only reproduces the scanned position: the border between two labels fits itself wherever the fragments "
     "lie, so it does not show where they belong; compare with the healthy side ('tactus plan mirror')";
 
+/// About the surface that fits leave out, of a fragment or a file; `area` in m².
+std::string left_out_words(std::string_view name, double area);
+
 }  // namespace tactus::command

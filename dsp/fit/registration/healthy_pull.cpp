@@ -17,7 +17,9 @@ HealthyPull::HealthyPull(std::span<const contact::SurfacePoint> points, const He
     : settings_(settings) {
     std::vector<const contact::SurfacePoint*> outside;
     for (const contact::SurfacePoint& p : points)
-        if (p.label != contact::surface_label::fracture && glm::length(p.normal) > 0.5) outside.push_back(&p);
+        if (p.label != contact::surface_label::fracture && p.label != contact::surface_label::as_scanned &&
+            glm::length(p.normal) > 0.5)
+            outside.push_back(&p);
     if (!settings.side || outside.empty()) return;
     const std::size_t stride = (outside.size() + settings.most_points - 1) / settings.most_points;
     double area = 0.0;

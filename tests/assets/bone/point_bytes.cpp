@@ -67,3 +67,26 @@ TEST_CASE("surface points that are damaged, too few, too many or of another form
     broken[1].area = std::nan("");
     CHECK_THROWS_AS(bone::points_from(bone::to_bytes(broken), "f"), Error);
 }
+
+TEST_CASE("a scanned border is saved with its bone, and a damaged one is refused") {
+    const TemporaryFolder folder;
+    bone::Bone bone;
+    bone.distance = {{2, 3, 2}, Vec3(0.0), Vec3(1e-3), std::vector<float>(12, 1e-3f)};
+    bone.density = bone.distance;
+    bone.border = {{Vec3(1e-3, 1.0 / 3.0, -2e-3), Vec3(0.0, 4e-3, 5e-3)}, Vec3(0.9e-3, 0.9e-3, 2e-3)};
+    bone::save_bone(bone, folder / "one.vdb");
+    const contact::ScannedBorder back = bone::load_bone(folder / "one.vdb").border;
+    CHECK(back.faces == bone.border.faces);
+    CHECK(back.voxel == bone.border.voxel);
+
+    const std::string whole = bone::border_bytes(bone.border);
+    CHECK(bone::border_from(whole, "f").faces == bone.border.faces);
+    for (std::size_t length = 0; length < whole.size(); ++length)
+        CHECK_THROWS_AS(bone::border_from(std::string_view(whole).substr(0, length), "f"), Error);
+    CHECK_THROWS_AS(bone::border_from(whole + "x", "f"), Error);
+    bone.border.voxel.y = 0.0;
+    CHECK_THROWS_AS(bone::border_from(bone::border_bytes(bone.border), "f"), Error);
+    bone.border.voxel.y = 1e-3;
+    bone.border.faces[1].z = std::nan("");
+    CHECK_THROWS_AS(bone::border_from(bone::border_bytes(bone.border), "f"), Error);
+}

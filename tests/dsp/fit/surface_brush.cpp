@@ -72,3 +72,18 @@ TEST_CASE("a brush far away meets nothing, and neither does one on a surface wit
     CHECK(none.labelled() == 0);
     CHECK(none.distance(Vec3(0.0)) == fit::SurfaceBrush::farthest);
 }
+
+TEST_CASE("a brush neither paints nor erases what is as scanned, and does not count it") {
+    std::vector<contact::SurfacePoint> points;
+    for (int n = 0; n < 10; ++n)
+        points.push_back({Vec3(n * mm, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), 1e-6,
+                          n < 4 ? contact::surface_label::as_scanned : contact::surface_label::none});
+    fit::SurfaceBrush brush(points);
+    CHECK(brush.labelled() == 0);
+    brush.stroke(Vec3(0.0), 100.0 * mm, contact::surface_label::fracture);
+    CHECK(brush.labelled() == 6);
+    CHECK(brush.area() == Approx(6e-6));
+    brush.stroke(Vec3(0.0), 100.0 * mm, contact::surface_label::none);
+    CHECK(brush.labelled() == 0);
+    for (std::size_t n = 0; n < 4; ++n) CHECK(brush.points()[n].label == contact::surface_label::as_scanned);
+}

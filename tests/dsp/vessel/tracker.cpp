@@ -140,6 +140,55 @@ TEST_CASE("a narrowing that ends a track is warned of") {
     CHECK(is_said);
 }
 
+TEST_CASE("a narrowing that ends a short track of a wide vessel is warned of, and not taken for the scan's end",
+          "[slow]") {
+    using Shape = simulate::TrueStenosis::Shape;
+    struct Row {
+        simulate::TrueStenosis truth;
+        double noise;
+        std::uint64_t seed;
+    };
+    // Where one is followed on for a while in noise, up to the border of the scan; the track is cut back.
+    for (const Row& row : {Row{{.radius = 5.652,
+                                .percent = 87.587,
+                                .length = 5.2575,
+                                .shape = Shape::cosine,
+                                .aside = 0.391,
+                                .direction = glm::normalize(Vec3(0.2552057, 0.9202242, 0.2967447))},
+                               0.33671,
+                               7033},
+                           Row{{.radius = 5.985,
+                                .percent = 88.41,
+                                .length = 4.4284,
+                                .shape = Shape::flat,
+                                .direction = glm::normalize(Vec3(0.513359, 0.8514983, 0.1068323))},
+                               0.087973,
+                               7030}}) {
+        CAPTURE(row.seed);
+        const VesselCase one = simulate::stenosis_case(row.truth, row.seed, row.noise);
+        const vessel::Track track = vessel::follow(one.scan, one.seed).track;
+        REQUIRE(track.branches.size() == 1);
+        const vessel::Branch& branch = track.branches[0];
+        CHECK(branch.length() < 7.0 * one.radius);
+        CHECK((branch.end == vessel::End::contrast || branch.end == vessel::End::noise));
+        const auto warnings = vessel::warnings_of(track);
+        CHECK(std::ranges::any_of(
+            warnings, [&](const vessel::TrackWarning& warning) { return warning.node + 1 == branch.nodes.size(); }));
+    }
+}
+
+TEST_CASE("at a fork the radius narrows from that of the parent to that of the branch", "[slow]") {
+    const VesselCase one = simulate::branch_case(4.0, 60.0, 1.0, 101);
+    const vessel::Track track = vessel::follow(one.scan, one.seed).track;
+    REQUIRE(track.branches.size() > 1);
+    for (std::size_t b = 1; b < track.branches.size(); ++b) {
+        const vessel::Branch& branch = track.branches[b];
+        const vessel::Node& root =
+            track.branches[static_cast<std::size_t>(branch.parent)].nodes[static_cast<std::size_t>(branch.parent_node)];
+        CHECK(branch.nodes.front().radius == Approx(root.radius).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("an even vessel is not narrowed", "[slow]") {
     for (const double radius : {2.0, 3.0, 4.0}) {
         CAPTURE(radius);

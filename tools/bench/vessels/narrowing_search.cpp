@@ -48,6 +48,8 @@ struct Outcome {
     double percent = 0.0, error = 0.0;
     bool is_uncertain = false;
     bool is_said = false;  ///< a warning stands where the track ends
+    vessel::End end = vessel::End::contrast;  ///< there
+    double length = 0.0;  ///< of the branch that ends, in radii of the phantom
 };
 
 Outcome outcome_of(const Draw& draw, std::uint64_t index) {
@@ -63,6 +65,10 @@ Outcome outcome_of(const Draw& draw, std::uint64_t index) {
         passes = passes || glm::dot(node.position - middle, along) > 0.5 * draw.truth.length * one.radius;
     if (!passes) {
         out.what = Outcome::ended;
+        const bool is_at_end =
+            glm::length(branch.nodes.back().position - middle) < glm::length(branch.nodes.front().position - middle);
+        out.end = is_at_end ? branch.end : branch.start;
+        out.length = branch.length() / one.radius;
         for (const vessel::TrackWarning& warning : vessel::warnings_of(track))
             out.is_said =
                 out.is_said || (warning.branch == 0 && glm::length(branch.nodes[warning.node].position - middle) <
@@ -85,13 +91,23 @@ Json narrowing_search(int draws) {
         outcomes[index] = outcome_of(drawn(index), index);
     });
     int ended = 0, said = 0, ended_below_80 = 0, none = 0, uncertain = 0, off_by_10 = 0, measured = 0;
-    Json wrong = Json::array();
+    Json wrong = Json::array(), unsaid = Json::array();
     for (std::size_t n = 0; n < outcomes.size(); ++n) {
         const Outcome& out = outcomes[n];
         ended += out.what == Outcome::ended;
         said += out.what == Outcome::ended && out.is_said;
         ended_below_80 += out.what == Outcome::ended && drawn(n).truth.percent < 80.0;
         none += out.what == Outcome::none;
+        if (out.what == Outcome::ended && !out.is_said) {
+            const Draw draw = drawn(n);
+            unsaid.push_back({{"draw", n},
+                              {"radius_voxels", draw.truth.radius},
+                              {"length_radii", draw.truth.length},
+                              {"percent", draw.truth.percent},
+                              {"noise", draw.noise},
+                              {"end", std::string(vessel::reason_of(out.end))},
+                              {"branch_radii", out.length}});
+        }
         if (out.what == Outcome::ended || out.what == Outcome::none) continue;
         uncertain += out.is_uncertain;
         if (out.is_uncertain) continue;
@@ -118,6 +134,7 @@ Json narrowing_search(int draws) {
             {"not_followed", none},
             {"end_at_it", ended},
             {"end_with_warning", said},
+            {"end_without", unsaid},
             {"end_below_80_percent", ended_below_80},
             {"uncertain", uncertain},
             {"certain", measured},
@@ -133,6 +150,13 @@ void print_search(const Json& row) {
         row["draws"].get<int>(), row["certain"].get<int>(), row["off_by_10"].get<int>(), row["off_by_15"].get<int>(),
         row["uncertain"].get<int>(), row["end_at_it"].get<int>(), row["end_with_warning"].get<int>(),
         row["end_below_80_percent"].get<int>(), row["not_followed"].get<int>());
+    for (const Json& one : row["end_without"])
+        fmt::print(
+            "  draw {}: R {:.1f} voxels, {:.0f} % over {:.1f} R, noise {:.2f}: ends without a warning after {:.0f} R, "
+            "where {}\n",
+            one["draw"].get<int>(), one["radius_voxels"].get<double>(), one["percent"].get<double>(),
+            one["length_radii"].get<double>(), one["noise"].get<double>(), one["branch_radii"].get<double>(),
+            one["end"].as_text());
     for (const Json& one : row["wrong"])
         fmt::print(
             "  draw {}: R {:.1f} voxels, {:.0f} % over {:.1f} R{}, aside {:.1f}, noise {:.2f}: read {:.0f} ± {:.0f} "

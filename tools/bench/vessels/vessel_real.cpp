@@ -126,6 +126,9 @@ Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pi
                                                static_cast<int>(n / (width * height)))[at];
             from = std::min(from, along), to = std::max(to, along);
         }
+    double track_from = 1e9, track_to = -1e9;
+    for (const Vec3& place : places_of(track))
+        track_from = std::min(track_from, place[at]), track_to = std::max(track_to, place[at]);
     const std::vector<Vec3> peer = follow_ridge(grid, seed, 3e-3);
     int ridge = 0;
     for (const Vec3& place : peer) ridge += holds(grid, near, place);
@@ -138,6 +141,7 @@ Json thorax(const std::filesystem::path& folder, const std::filesystem::path& pi
             {"in_bone_or_stent", bright},
             {"dimmer_than_lumen", dim},
             {axis == 2 ? "region_z_mm" : "region_y_mm", {from * 1e3, to * 1e3}},
+            {axis == 2 ? "track_z_mm" : "track_y_mm", {track_from * 1e3, track_to * 1e3}},
             {"ridge_length_mm", peer.empty() ? 0.0 : 0.2 * 1.5 * double(peer.size())},
             {"ridge_inside", peer.empty() ? 0.0 : double(ridge) / double(peer.size())}};
 }

@@ -5,6 +5,7 @@
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
+#include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/bones/intact_side.hpp"
 
@@ -43,7 +44,7 @@ std::string doubt_words(const FractureSurfaceChoice& choice) {
 
 Json json_of(const FractureSurfaceChoice& choice, const study::FractureSurface& found,
              const std::vector<cases::PaintedFace>& faces) {
-    Json json{{"file", choice.out.string()}, {"faces", Json::array()}};
+    Json json{{"file", choice.out.string()}, {"as_scanned_mm2", found.as_scanned * 1e6}, {"faces", Json::array()}};
     if (found.intact) {
         json["intact"] = {{"file", choice.settings.intact.string()}, {"on_main", residual_json(found.intact->on_main)}};
         if (found.intact->on_bone) json["intact"]["on_bone"] = residual_json(*found.intact->on_bone);
@@ -64,7 +65,8 @@ void print_laid(const char* where, const fit::Registration& r) {
                r.p90 * 1e3);
 }
 
-void print(const study::FractureSurface& found, const std::vector<cases::PaintedFace>& faces) {
+void print(const FractureSurfaceChoice& choice, const study::FractureSurface& found,
+           const std::vector<cases::PaintedFace>& faces) {
     if (found.intact) print_laid("on the main fragment", found.intact->on_main);
     if (found.intact && found.intact->on_bone) print_laid("on this one, by itself", *found.intact->on_bone);
     for (const cases::PaintedFace& f : faces) {
@@ -72,6 +74,7 @@ void print(const study::FractureSurface& found, const std::vector<cases::Painted
         fmt::print("{:.0f} mm² about {:.1f} {:.1f} {:.1f} mm, looking along {:.2f} {:.2f} {:.2f}\n", f.area * 1e6, p.x,
                    p.y, p.z, f.normal.x, f.normal.y, f.normal.z);
     }
+    if (found.as_scanned > 0.0) fmt::print("{}\n", left_out_words(choice.settings.bone.string(), found.as_scanned));
     if (faces.empty()) fmt::print("no fracture surface found; paint it by hand, or lower --roughness\n");
 }
 
@@ -94,7 +97,7 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     }
     if (choice.json) fmt::print("{}\n", json_of(choice, found, faces).dump(2));
     else {
-        print(found, faces);
+        print(choice, found, faces);
         if (is_doubtful(found)) fmt::print("! {}\n", doubt_words(choice));
     }
     return faces.empty() || is_doubtful(found) ? answer_is_no : done;

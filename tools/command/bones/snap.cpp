@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 namespace tactus::command {
 
@@ -90,11 +91,12 @@ Json json_of(const study::Snapped& found) {
     json["time_ms"] = 1e3 * found.seconds;
     json["iterations"] = found.fit.iterations;
     json["paint"] = {{"moving", found.moving.paint}, {"fixed", found.fixed.paint}};
+    json["as_scanned_mm2"] = {{"moving", 1e6 * found.moving.as_scanned}, {"fixed", 1e6 * found.fixed.as_scanned}};
     json["painted_mm2"] = {{"moving", painted_mm2(found.moving)}, {"fixed", painted_mm2(found.fixed)}};
     return json;
 }
 
-void print(const study::Snapped& found) {
+void print(const SnapChoice& choice, const study::Snapped& found) {
     const fit::Fit& fit = found.fit;
     const Vec3 p = fit.pose.position * 1e3;
     const Quat q = fit.pose.orientation;
@@ -107,12 +109,15 @@ void print(const study::Snapped& found) {
         fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_rotation ? "turn about" : "slide along", f.axis.x,
                    f.axis.y, f.axis.z);
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
+    const study::SnapSettings& files = choice.settings;
+    for (const auto& [side, file] : {std::pair(&found.moving, &files.moving), {&found.fixed, &files.fixed}})
+        if (side->as_scanned > 0.0) fmt::print("{}\n", left_out_words(file->string(), side->as_scanned));
 }
 
 int snap(const SnapChoice& choice) {
     const study::Snapped found = study::snap_files(settings_of(choice));
     if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
-    else print(found);
+    else print(choice, found);
     return found.fit.verdict == fit::FitVerdict::fit ? done : answer_is_no;
 }
 

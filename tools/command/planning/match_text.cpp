@@ -24,4 +24,10 @@ void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, con
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
 }
 
+void print_left_out(const cases::CasePlan& plan, const study::PlanMatching& matching, const fit::Arrangement& shown) {
+    for (int n = 0; n < static_cast<int>(shown.size()); ++n)
+        if (const double area = matching.as_scanned_area(n); area > 0.0 && !shown.is_hidden(n))
+            fmt::print("{}\n", left_out_words(plan.fragments[static_cast<std::size_t>(n)].name, area));
+}
+
 }  // namespace tactus::command

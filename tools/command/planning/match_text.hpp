@@ -39,6 +39,17 @@ Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found, cons
             {"paint", found.was_painted ? "file" : "proposed"}};
 }
 
+/// {fragment: mm²} and a line for each, of the shown fragments that touch another one in the scan: fits leave that out.
+template <class Json>
+Json left_out_json(const cases::CasePlan& plan, const study::PlanMatching& matching, const fit::Arrangement& shown) {
+    Json json = Json::object();
+    for (int n = 0; n < static_cast<int>(shown.size()); ++n)
+        if (const double area = matching.as_scanned_area(n); area > 0.0 && !shown.is_hidden(n))
+            json[plan.fragments[static_cast<std::size_t>(n)].name] = area * 1e6;
+    return json;
+}
+void print_left_out(const cases::CasePlan& plan, const study::PlanMatching& matching, const fit::Arrangement& shown);
+
 /// Prints one line on standard output, and one for the reason.
 void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, const std::string& reason);
 

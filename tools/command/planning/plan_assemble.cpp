@@ -50,7 +50,7 @@ Told told_of(const cases::CasePlan& plan, const study::PlanMatching& matching, c
             : made.is_locked_apart[n]
                 ? "it is locked, and so is what it would go to; unlock one of them ('tactus plan unlock')"
             : matching.faces_of(stays.match.moving) == 0
-                ? "it has no painted fracture; paint it, see 'tactus fracture-surface'"
+                ? study::no_fracture_words(matching.as_scanned_area(stays.match.moving))
                 : study::why_not_placed(plan, matching, state.arrangement, stays, fit::Arrangement::none,
                                         study::MatchWay::anywhere);
         told.reasons.push_back(std::move(reason));
@@ -68,8 +68,8 @@ std::vector<std::string> part_of(const cases::CasePlan& plan, const study::PlanA
     return names;
 }
 
-Json json_of(const cases::CasePlan& plan, const study::PlanAssembly& made, const Told& told,
-             const cases::PlanState& state, bool is_done) {
+Json json_of(const cases::CasePlan& plan, const study::PlanMatching& matching, const study::PlanAssembly& made,
+             const Told& told, const cases::PlanState& state, bool is_done) {
     Json placed = Json::array(), stays = Json::array(), residuals = Json::array();
     for (const study::PlanMatch& p : made.placed) placed.push_back(match_json<Json>(plan, p, ""));
     for (std::size_t n = 0; n < made.stays.size(); ++n) {
@@ -90,6 +90,7 @@ Json json_of(const cases::CasePlan& plan, const study::PlanAssembly& made, const
             {"placed", placed},
             {"stays", stays},
             {"residuals", residuals},
+            {"as_scanned_mm2", left_out_json<Json>(plan, matching, state.arrangement)},
             {"assemblies", study::assembly_names(plan, state)},
             {"problems", told.problems}};
 }
@@ -122,8 +123,11 @@ int assemble(const PlanChoice& choice) {
     // All steps are written at once: a command that is stopped leaves the plan as it was.
     if (!made.placed.empty()) cases::save_case_plan(plan, choice.plan);
     const bool is_done = study::is_in_one_part(state) && told.problems.empty();
-    if (choice.json) fmt::print("{}\n", json_of(plan, made, told, state, is_done).dump(2));
-    else print(plan, made, told, state);
+    if (choice.json) fmt::print("{}\n", json_of(plan, matching, made, told, state, is_done).dump(2));
+    else {
+        print(plan, made, told, state);
+        print_left_out(plan, matching, state.arrangement);
+    }
     return is_done ? done : answer_is_no;
 }
 

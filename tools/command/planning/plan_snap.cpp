@@ -30,8 +30,8 @@ int snap_fragment(const SnapChoice& choice) {
     if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
     study::PlanMatching matching(plan, folder, fit_way(choice));
     if (matching.faces_of(moving) == 0)
-        throw Error(
-            fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
+        throw Error(fmt::format("fragment '{}': {}", choice.names[0],
+                                study::no_fracture_words(matching.as_scanned_area(moving))));
     const study::MatchWay way = choice.mode == "global" ? study::MatchWay::anywhere : study::MatchWay::near;
     const study::PlanMatch found = way == study::MatchWay::anywhere
                                        ? matching.anywhere(a, moving, only)
@@ -46,12 +46,14 @@ int snap_fragment(const SnapChoice& choice) {
     if (choice.json) {
         using file::Json;
         Json json = match_json<Json>(plan, found, reason);
+        json["as_scanned_mm2"] = left_out_json<Json>(plan, matching, a);
         if (target)
             json["target"] = {{"median_before_mm", 1e3 * target->before},
                               {"median_there_mm", has_place ? Json(1e3 * target->there) : Json(nullptr)}};
         fmt::print("{}\n", json.dump(2));
     } else {
         print_match(plan, found, reason);
+        print_left_out(plan, matching, a);
         if (target)
             fmt::print("from the healthy side: median {:.2f} mm where it was{}\n", 1e3 * target->before,
                        has_place ? fmt::format(", {:.2f} mm {}", 1e3 * target->there,

@@ -81,8 +81,9 @@ void propose_by_facing(std::vector<contact::SurfacePoint>& points, const Fractur
         cases::propose_facing(points, points_of_fragment(other, note), options);
         for (std::size_t n = 0; n < points.size(); ++n) faces[n] = faces[n] || is_painted(points[n]);
     }
+    contact::remove_paint(points);
     for (std::size_t n = 0; n < points.size(); ++n)
-        points[n].label = faces[n] ? contact::surface_label::fracture : contact::surface_label::none;
+        if (faces[n]) points[n].label = contact::surface_label::fracture;
 }
 
 /// Labels the points proposed by the selected methods. A patch may fall into faces: small ones are left out, too.
@@ -112,9 +113,11 @@ std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, co
 }  // namespace
 
 FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings) {
-    FractureSurface out{settings.whole ? bone_of_file(settings.bone) : bone::Bone{}, std::nullopt, ""};
+    FractureSurface out;
+    if (settings.whole) out.bone = bone_of_file(settings.bone);
     std::vector<contact::SurfacePoint>& points = out.bone.points;
     if (points.empty()) points = points_of_fragment(settings.bone, out.note);
+    else contact::mark_as_scanned(points, out.bone.border);
     const bool has_paint = std::ranges::any_of(points, is_painted);
     const bool is_asked = !settings.facing.empty() || !settings.intact.empty();
     const std::vector<contact::SurfacePoint> before = points;
@@ -123,6 +126,7 @@ FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings
         for (std::size_t n = 0; n < points.size(); ++n)
             if (is_painted(before[n])) points[n].label = contact::surface_label::fracture;
     if (!settings.paint.empty()) cases::paint_from_file(points, settings.paint, settings.correct);
+    out.as_scanned = contact::as_scanned_area(points);
     return out;
 }
 

@@ -37,6 +37,7 @@ struct LaidIntact {
 struct FractureSurface {
     bone::Bone bone;  ///< its points are labelled; only they are there unless `whole`
     std::optional<LaidIntact> intact;
+    double as_scanned = 0.0;  ///< m² that touch another fragment in the scan: no paint covers them
     std::string note;  ///< about a kept result (see kept_result.hpp) that was no use; else empty
 };
 

@@ -3,6 +3,7 @@
 
 #include "assets/bone/mesh_part.hpp"
 #include "assets/bone/point_bytes.hpp"
+#include "assets/bone/surface_points.hpp"
 #include "assets/cases/mesh_unit.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/contact/sample_surface.hpp"
@@ -24,7 +25,7 @@ namespace tactus::study {
 namespace {
 
 // To be raised with every change of code that changes which points a file gives: import of meshes and scans, sampling.
-constexpr int sampling = 1;
+constexpr int sampling = 2;
 
 constexpr std::size_t most_files = 32;
 constexpr std::string_view format_line = "tactus kept points 1\n";
@@ -113,8 +114,7 @@ std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::pat
         std::vector<contact::SurfacePoint> points;
         if (is_mesh(path)) points = points_of_mesh(path);
         if (!points.empty()) return points;
-        bone::Bone bone = bone_of_file(path);
-        return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : std::move(bone.points);
+        return bone::surface_points(bone_of_file(path));
     });
 }
 

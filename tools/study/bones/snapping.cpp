@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/snapping.hpp"
 
+#include "assets/bone/surface_points.hpp"
 #include "assets/cases/paint_file.hpp"
 #include "assets/cases/propose_paint.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/as_scanned.hpp"
 #include "tools/study/bones/fragment_file.hpp"
@@ -25,15 +25,16 @@ struct Fragment {
 
 /// Paints what lies within the strokes' radius.
 void brush(std::vector<contact::SurfacePoint>& points, const std::vector<Vec3>& strokes, double radius) {
-    for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+    contact::remove_paint(points);
     for (const Vec3& centre : strokes)
         for (contact::SurfacePoint& p : points)
-            if (glm::length(p.position - centre) <= radius) p.label = contact::surface_label::fracture;
+            if (p.label == contact::surface_label::none && glm::length(p.position - centre) <= radius)
+                p.label = contact::surface_label::fracture;
 }
 
 Fragment painted_fragment(const std::filesystem::path& path, const FragmentPaint& paint) {
     Fragment fragment{bone_of_file(path), "file"};
-    if (fragment.bone.points.empty()) fragment.bone.points = contact::sample_surface(fragment.bone.distance, {});
+    fragment.bone.points = bone::surface_points(fragment.bone);
     const auto is_painted = [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; };
     if (paint.file) {
         fragment.paint = paint.file->string();
@@ -52,12 +53,17 @@ std::vector<fit::FitSurface> faces_of(const Fragment& fragment, const std::files
     try {
         return fit::make_fit_faces(fragment.bone.points, fragment.bone.distance);
     } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", path.string(), error.message()));
+        const double left_out = contact::as_scanned_area(fragment.bone.points);
+        throw Error(fmt::format(
+            "{}: {}{}", path.string(), error.message(),
+            left_out > 0.0
+                ? fmt::format("; {:.0f} mm² are no fracture: they touch another fragment in the scan", left_out * 1e6)
+                : ""));
     }
 }
 
 SnappedSide side_of(const Fragment& fragment, const std::vector<fit::FitSurface>& faces) {
-    SnappedSide side{fragment.paint, {}};
+    SnappedSide side{fragment.paint, {}, contact::as_scanned_area(fragment.bone.points)};
     for (const fit::FitSurface& face : faces) side.areas.push_back(face.area);
     return side;
 }

@@ -31,6 +31,7 @@ struct SnapSettings {
 struct SnappedSide {
     std::string paint;  ///< source of the paint: "file", "proposed" or the name of strokes
     std::vector<double> areas;  ///< area of each face, m²
+    double as_scanned = 0.0;  ///< m² that touch another fragment in the scan and are left out
 };
 
 struct Snapped {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/surface_file.hpp"
 
+#include "assets/bone/surface_points.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 
@@ -25,8 +25,7 @@ geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, con
 
 std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing) {
     if (!is_mesh(path)) {
-        const bone::Bone bone = bone_of_file(path);
-        return bone.points.empty() ? contact::sample_surface(bone.distance, {.spacing = spacing}) : bone.points;
+        return bone::surface_points(bone_of_file(path), {.spacing = spacing});
     }
     const mesh::Mesh mesh = mesh::load_mesh(path, 1e-3);
     std::vector<contact::SurfacePoint> points(mesh.vertices.size());

@@ -58,24 +58,32 @@ std::optional<Facing> nearest(const std::vector<Face>& mine, const std::vector<F
     return best.distance < std::numeric_limits<double>::infinity() ? std::optional(best) : std::nullopt;
 }
 
+/// Of the fragments that could be partners, m².
+double as_scanned_area(const PlanMatching& matching, const std::vector<int>& fragments) {
+    double area = 0.0;
+    for (const int n : fragments) area += matching.as_scanned_area(n);
+    return area;
+}
+
 std::string not_found(const cases::CasePlan& plan, const PlanMatching& matching, const fit::Arrangement& arrangement,
                       int moving, int only, MatchWay way) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     std::vector<Face> others;
-    bool is_any = false;
+    std::vector<int> partners;
     for (int n = 0; n < static_cast<int>(arrangement.size()); ++n) {
         if (arrangement.move_together(moving, n) ||
             (only == fit::Arrangement::none ? arrangement.is_hidden(n) : n != only))
             continue;
-        is_any = true;
+        partners.push_back(n);
         for (const Face& face : faces_of(matching, arrangement, n)) others.push_back(face);
     }
-    if (!is_any)
+    if (partners.empty())
         return "there is no other shown fragment that does not move along; see 'tactus plan unhide' and 'tactus plan "
                "remove'";
     if (others.empty())
-        return fmt::format("{} has no painted fracture; paint it, see 'tactus fracture-surface'",
-                           only == fit::Arrangement::none ? "no other shown fragment" : "'" + name(only) + "'");
+        return fmt::format("{}: {}",
+                           only == fit::Arrangement::none ? "the other shown fragments" : "'" + name(only) + "'",
+                           no_fracture_words(as_scanned_area(matching, partners)));
     const std::vector<Face> mine = faces_of(matching, arrangement, moving);
     if (way == MatchWay::anywhere)
         return fmt::format("none of its {} painted faces fits one of the {} others; check the paint", mine.size(),
@@ -150,6 +158,14 @@ std::string doubt_of(const fit::KerfEstimate& kerf) {
 }
 
 }  // namespace
+
+std::string no_fracture_words(double as_scanned) {
+    if (!(as_scanned > 0.0)) return "no painted fracture; paint it, see 'tactus fracture-surface'";
+    return fmt::format(
+        "no painted fracture beside {:.0f} mm² that touch in the scan, which fits leave out; paint what does not touch "
+        "('tactus fracture-surface'), or compare with the healthy side ('tactus plan mirror')",
+        as_scanned * 1e6);
+}
 
 std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matching,
                            const fit::Arrangement& arrangement, const PlanMatch& found, int only, MatchWay way) {

@@ -49,6 +49,10 @@ public:
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
+    /// m² of its surface that touch another fragment in the scan, which no face covers.
+    double as_scanned_area(int fragment) const {
+        return contact::as_scanned_area(this->fragment(fragment).bone.points);
+    }
     const fit::MatcherSettings& settings() const { return matcher_->settings; }
     const CaseFragment& fragment(int n) const { return loaded_[static_cast<std::size_t>(n)]; }
     fit::FragmentMatcher& matcher() { return *matcher_; }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <ctime>
@@ -45,6 +46,21 @@ void check_work(const ScanGraph& scan, std::span<const segment::SeedLabel> label
                         file, voxels * 1e-6));
 }
 
+/// What to do about a stroke that touches no bone: often it is not where the scan is, as in another unit.
+std::string way_out_of_air(const ScanGraph& scan, const segment::Stroke& stroke) {
+    const Vec3 low = scan.scan.origin * 1e3,
+               high = scan.scan.position(scan.scan.size[0] - 1, scan.scan.size[1] - 1, scan.scan.size[2] - 1) * 1e3;
+    for (const Vec3& place : stroke.points) {
+        const Vec3 at = place * 1e3;
+        if (glm::any(glm::lessThan(at, low)) || glm::any(glm::greaterThan(at, high)))
+            return fmt::format(
+                "{:g}, {:g}, {:g} mm lies outside of the scan, which reaches from {:.1f}, {:.1f}, {:.1f} to {:.1f}, "
+                "{:.1f}, {:.1f} mm (LPS); seeds are in mm",
+                at.x, at.y, at.z, low.x, low.y, low.z, high.x, high.y, high.z);
+    }
+    return "move it, or make it wider";
+}
+
 std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segment::SeedLabel> labels,
                                    const std::string& file) {
     check_work(scan, labels, file);
@@ -53,10 +69,9 @@ std::vector<std::uint8_t> seeds_in(const ScanGraph& scan, std::span<const segmen
         for (std::size_t s = 0; s < labels[l].strokes.size(); ++s)
             if (segment::paint(scan.box, scan.node_of_voxel, labels[l].strokes[s], static_cast<std::uint8_t>(l + 1),
                                seed) == 0)
-                throw Error(
-                    fmt::format("{}: label '{}', stroke {}: it touches no voxel of bone (values from {:g} on); "
-                                "move it, or make it wider",
-                                file, labels[l].name, s + 1, scan.threshold));
+                throw Error(fmt::format(
+                    "{}: label '{}', stroke {}: it touches no voxel of bone (values from {:g} on); {}", file,
+                    labels[l].name, s + 1, scan.threshold, way_out_of_air(scan, labels[l].strokes[s])));
     for (std::size_t l = 0; l < labels.size(); ++l)
         if (std::find(seed.begin(), seed.end(), static_cast<std::uint8_t>(l + 1)) == seed.end())
             throw Error(

@@ -232,6 +232,8 @@ TEST_CASE("segment refuses what it cannot use with one line and writes nothing",
     folder.write("far.json", R"({"labels": [{"name": "a", "strokes": [{"points_mm": [[-16.0, 166, 418]]}]},
         {"name": "b", "strokes": [{"points_mm": [[25.5, 166, 418]]}, {"points_mm": [[900, 166, 418]]}]}]})");
     refused(ct + " --threshold 200 --seeds " + folder / "far.json" + out, "label 'b', stroke 2: it touches no voxel");
+    refused(ct + " --threshold 200 --seeds " + folder / "far.json" + out,
+            "900, 166, 418 mm lies outside of the scan, which reaches from -20.0, 150.0, 400.0");
     folder.write("over.json",
                  R"({"labels": [{"name": "a", "strokes": [{"radius_mm": 1, "points_mm": [[25.5, 166, 418]]}]},
         {"name": "b", "strokes": [{"points_mm": [[25.5, 166, 418]]}]}]})");

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/surface_points.hpp"
+
+namespace tactus::bone {
+
+std::vector<contact::SurfacePoint> surface_points(const Bone& bone, const contact::SurfaceSampling& sampling) {
+    std::vector<contact::SurfacePoint> points =
+        bone.points.empty() ? contact::sample_surface(bone.distance, sampling) : bone.points;
+    contact::mark_as_scanned(points, bone.border);
+    return points;
+}
+
+}  // namespace tactus::bone
