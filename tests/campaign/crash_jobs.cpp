@@ -80,8 +80,9 @@ std::vector<Job> crash_jobs(bool has_display) {
                    "$T plan implant jaw.plan.json molar --at $n -38 6 --axis 0 0 -1 || exit; "
                    "$T plan site jaw.plan.json 'lingual artery' --at $n 0 -40 || exit; "
                    "$T plan vessel jaw.plan.json artery --remove || exit; "
+                   "$T plan site jaw.plan.json 'facial vein' --file flap/vein.csv --along $n || exit; "
                    "$T plan limits jaw.plan.json --clearance $n || exit; "
-                   "$T plan margin jaw.plan.json --margin $n || exit; $T plan undo jaw.plan.json --steps 6 || exit; "
+                   "$T plan margin jaw.plan.json --margin $n || exit; $T plan undo jaw.plan.json --steps 7 || exit; "
                    "done; exec $T plan reconstruct jaw.plan.json flap/INPUTS.json --alternative new$N\n",
          .may_change = {"jaw.plan.json"}}};
     if (has_display)

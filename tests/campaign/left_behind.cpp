@@ -78,7 +78,7 @@ std::string fault_of_file(const fs::path& file) {
         if (fs::file_size(file) > longest_header) sound::load_sound(file);
         return {};
     }
-    if (ends(".vdb")) return fault_of_verb({"info"}, file);
+    if (ends(".vdb") || ends(".stl")) return fault_of_verb({"info"}, file);
     if (ends(".png")) return file::read_whole_file(file).ends_with("IEND\xae\x42\x60\x82") ? "" : "is cut";
     if (ends(".toml")) return file::read_whole_file(file).empty() ? "is empty" : "";
     return "is of a kind that nothing is said of";
