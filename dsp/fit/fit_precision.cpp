@@ -18,7 +18,6 @@ namespace {
 constexpr double correlated = 3e-3;  // m
 constexpr double most_off = 0.4e-3;  // m: what is farther off the other face is chipped
 constexpr double least_against = 0.7;  // cosine of opposed normals
-constexpr double lever = 0.01;  // m, makes rotations comparable to translations
 constexpr std::size_t most_points = 500;  // of a face: the pairs are counted
 
 struct Point {

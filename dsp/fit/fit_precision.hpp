@@ -4,6 +4,8 @@
 
 #include "dsp/fit/fit_surface.hpp"
 
+#include <span>
+
 namespace tactus::fit {
 
 /// Two standard deviations of a fit's pose.
@@ -26,9 +28,14 @@ public:
     /// Infinite where the faces leave a motion free.
     FitPrecision precision() const noexcept;
 
+    static constexpr double lever = 0.01;  ///< m, makes rotations comparable to translations
+    /// 6 × 6, inverse covariance of the pose: of translations in m, then of rotations about the origin in rad times `lever`.
+    /// Zero where no faces lie on each other.
+    std::span<const double, 36> information() const noexcept { return information_; }
+
 private:
     Vec3 origin_, far_;
-    double information_[36] = {};  ///< of twists about the origin: translation in m, rotation in units of 1 / lever
+    double information_[36] = {};
 };
 
 }  // namespace tactus::fit

@@ -2,6 +2,7 @@
 #include "dsp/fit/kerf_check.hpp"
 
 #include "dsp/fit/fit_energy.hpp"
+#include "dsp/fit/fit_precision.hpp"
 #include "dsp/geometry/dense_cholesky.hpp"
 
 #include <glm/geometric.hpp>
@@ -23,13 +24,11 @@ constexpr double half_width = 1.5e-3;  // m, of a strip
 constexpr double alike = 0.8;  // least cosine between the normals of a strip
 constexpr std::size_t most_strips = 48, least_points = 12, most_paint = 400;
 constexpr int independent = 8;  // strips around a bone that tell something of their own
-// m: how well the faces hold the halves across the normal. Whole faces of 130 mm² are 0.005 to 0.03 mm off.
-constexpr double beside = 0.015e-3;
 constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
 constexpr double most_error = 0.5e-3;  // m, of the opening
-constexpr double most_spread = 1e-3;  // m, of a contour that can contradict what a person has told
-// Of the spread: how far the opening of shafts whose kerf was known lay from what their contour said, root mean square.
-constexpr double usual_share = 0.5;
+constexpr double most_spread = 1e-3;  // m: what a contour says that knows less must be sure
+// Of the standard deviation: none of 120 shafts that had lost 0.8 mm passes, and none of 80 whole ones is refused.
+constexpr double share_of_spread = 0.5;
 
 struct Spot {
     Vec3 at, normal;
@@ -58,18 +57,25 @@ std::vector<Spot> cortex_of(const KerfSide& side, const Pose& pose) {
     return spots;
 }
 
+constexpr std::size_t unknowns = 7;  // the opening, and the error of the fit's pose as a twist
+using Row = std::array<double, unknowns>;
+
+/// m; by how much the step grows with the unknowns.
 struct Step {
-    double step, lever;  ///< m; by how much the step grows with the opening
+    double step;
+    Row slope;
+
+    double lever() const noexcept { return slope[0]; }
 };
 
 /// The step of one strip across the gap: height over the tangent plane is a parabola, and a step between the halves.
-std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
+std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal, const Vec3& origin,
                             const std::array<const std::vector<Spot>*, 2>& cortex) {
-    constexpr std::size_t unknowns = 6;  // 1, z, z², t, t², step
+    constexpr std::size_t terms = 6;  // 1, z, z², t, t², step
     const Vec3 across = normal - glm::dot(normal, out) * out;
     if (!(glm::length(across) > 0.5)) return std::nullopt;
     const Vec3 along = glm::normalize(across), aside = glm::cross(out, along);
-    std::vector<double> matrix(unknowns * unknowns, 0.0), solved(unknowns, 0.0);
+    std::vector<double> matrix(terms * terms, 0.0), solved(terms, 0.0);
     for (std::size_t half = 0; half < 2; ++half) {
         // An error of the opening lifts the moving half by its share along `out`.
         const double highest = 2e-3 + (half == 0 ? widest * std::abs(glm::dot(normal, out)) : 0.0);
@@ -82,17 +88,19 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
                 !(glm::dot(spot.normal, out) > alike))
                 continue;
             ++count;
-            const double row[unknowns] = {1.0, z, z * z, t, t * t, half == 0 ? 0.5 : -0.5};
-            for (std::size_t a = 0; a < unknowns; ++a) {
+            const double row[terms] = {1.0, z, z * z, t, t * t, half == 0 ? 0.5 : -0.5};
+            for (std::size_t a = 0; a < terms; ++a) {
                 solved[a] += row[a] * height;
-                for (std::size_t b = 0; b < unknowns; ++b) matrix[a * unknowns + b] += row[a] * row[b];
+                for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
             }
         }
         if (count < least_points) return std::nullopt;
     }
-    for (std::size_t a = 0; a < unknowns; ++a) matrix[a * unknowns + a] += 1e-9;
+    for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
     if (!geometry::solve_positive(matrix, solved)) return std::nullopt;
-    return Step{solved[5], glm::dot(normal, out) - solved[1] / reach * glm::dot(normal, along)};
+    const Vec3 lifts = out - solved[1] / reach * along;
+    const Vec3 turns = glm::cross(at - origin, lifts) / FitPrecisionSum::lever;
+    return Step{solved[5], {glm::dot(normal, lifts), lifts.x, lifts.y, lifts.z, turns.x, turns.y, turns.z}};
 }
 
 struct Opening {
@@ -100,46 +108,62 @@ struct Opening {
     double misfit = std::numeric_limits<double>::infinity();
 };
 
-/// Strips over ridges and holes have steps of their own: their weight falls with the step that is left.
-Opening opening_from(double excess, const std::vector<Step>& steps) {
+/// The opening and the error of the pose that explain the steps best, where the faces hold the pose with `held`, an
+/// inverse covariance. Strips over ridges and holes have steps of their own: their weight falls with the step that is left.
+Opening opening_from(double excess, const std::vector<Step>& steps, std::span<const double, 36> held) {
     constexpr double usual = 0.2e-3;  // m, a step that is left
+    Row at{excess};
+    const auto left = [&at](const Step& s) {
+        double off = s.step;
+        for (std::size_t a = 0; a < unknowns; ++a) off -= s.slope[a] * at[a];
+        return off;
+    };
     Opening found{excess, 1.0, 0.0};
     for (int pass = 0; pass < 6; ++pass) {
-        double sum = 0.0, squares = 0.0, levers = 0.0, weights = 0.0;
+        std::vector<double> matrix(unknowns * unknowns, 0.0), solved(unknowns, 0.0);
+        double weights = 0.0, squares = 0.0;
         for (const Step& s : steps) {
-            const double off = (s.step - found.excess * s.lever) / usual, weight = 1.0 / (1.0 + off * off);
-            sum += weight * s.lever * s.step;
-            levers += weight * s.lever * s.lever;
+            const double off = left(s) / usual, weight = 1.0 / (1.0 + off * off);
             weights += weight;
             squares += weight * off * off * usual * usual;
+            for (std::size_t a = 0; a < unknowns; ++a) {
+                solved[a] += weight * s.slope[a] * s.step;
+                for (std::size_t b = 0; b < unknowns; ++b) matrix[a * unknowns + b] += weight * s.slope[a] * s.slope[b];
+            }
         }
-        if (!(levers > 0.0)) return {};
-        found.excess = sum / levers;
-        const double mean_lever2 = levers / weights;
-        found.spread =
-            std::sqrt((squares / weights / independent + 0.5 * beside * beside) / std::max(mean_lever2, 1e-9));
+        if (!(weights > 0.0)) return {};
+        // All strips together tell as much as a few independent ones.
+        const double information = independent / (weights * std::max(squares / weights, 1e-14));
+        for (double& m : matrix) m *= information;
+        for (double& m : solved) m *= information;
+        for (std::size_t a = 0; a < 6; ++a)
+            for (std::size_t b = 0; b < 6; ++b) matrix[(a + 1) * unknowns + b + 1] += held[6 * a + b];
+        matrix[0] += 1.0;  // an opening of a metre is not excluded
+        std::vector<double> variance(unknowns, 0.0), same = matrix;
+        variance[0] = 1.0;
+        if (!geometry::solve_positive(matrix, solved) || !geometry::solve_positive(same, variance)) return {};
+        std::ranges::copy(solved, at.begin());
+        found.excess = solved[0];
+        found.spread = std::sqrt(variance[0]);
     }
-    for (const Step& s : steps) {
-        const double off = (s.step - found.excess * s.lever) / usual;
-        found.misfit += std::log1p(off * off);
-    }
+    for (const Step& s : steps) found.misfit += std::log1p(left(s) * left(s) / (usual * usual));
     return found;
 }
 
 /// The median of what single strips say, by how much they can say.
 double middle_opening(std::vector<Step> steps) {
-    std::erase_if(steps, [](const Step& s) { return !(std::abs(s.lever) > 0.1); });
-    std::ranges::sort(steps, {}, [](const Step& s) { return s.step / s.lever; });
+    std::erase_if(steps, [](const Step& s) { return !(std::abs(s.lever()) > 0.1); });
+    std::ranges::sort(steps, {}, [](const Step& s) { return s.step / s.lever(); });
     double all = 0.0, below = 0.0;
-    for (const Step& s : steps) all += std::abs(s.lever);
+    for (const Step& s : steps) all += std::abs(s.lever());
     for (const Step& s : steps)
-        if ((below += std::abs(s.lever)) >= 0.5 * all) return s.step / s.lever;
+        if ((below += std::abs(s.lever())) >= 0.5 * all) return s.step / s.lever();
     return 0.0;
 }
 
 }  // namespace
 
-ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose) {
+ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told) {
     ContourOpening found;
     const Vec3 normal = opening_direction(*moving.face, *fixed.face, pose);
     const std::vector<Spot> mine = cortex_of(moving, pose), other = cortex_of(fixed, {});
@@ -147,33 +171,83 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
     std::vector<Step> steps;
     const std::size_t stride = 1 + face.outline.size() / most_strips;
     for (std::size_t n = 0; n < face.outline.size(); n += stride)
-        if (const auto step = step_at(face.centre + face.outline[n], face.outline_normal[n], normal, {&mine, &other}))
+        if (const auto step =
+                step_at(face.centre + face.outline[n], face.outline_normal[n], normal, face.centre, {&mine, &other}))
             steps.push_back(*step);
     found.strips = static_cast<int>(steps.size());
     if (found.strips < independent) return found;
+    FitEnergy energy(*moving.face, face);
+    energy.law.kerf = told;
+    FitPrecisionSum held(face.centre, face.centre);
+    held.add(*moving.face, face, {face.centre, {1.0, 0.0, 0.0, 0.0}},
+             energy.closed({pose.apply(moving.face->centre) - face.centre, pose.orientation}));
     // From no error, and from what half of the strips say: an error of millimetres is far from where it is looked for.
-    const Opening near = opening_from(0.0, steps), far = opening_from(middle_opening(steps), steps);
+    const Opening near = opening_from(0.0, steps, held.information()),
+                  far = opening_from(middle_opening(steps), steps, held.information());
     const Opening& best = far.misfit < near.misfit ? far : near;
     found.excess = best.excess;
     found.spread = best.spread;
     return found;
 }
 
-KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told) {
-    const ContourOpening contour = contour_opening(moving, fixed, pose);
+KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told) {
+    KerfEstimate made;
+    made.told = told;
+    if (told == 0.0) return made;
+    const double left = told.value_or(0.0);
+    const ContourOpening contour = contour_opening(moving, fixed, pose, left);
+    made.contour = contour;
     const Vec3 mean = 0.5 * (fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
-    const double cosine = std::clamp(glm::length(mean), 0.5, 1.0);
-    KerfEstimate made{told, std::max(0.0, told - contour.excess * cosine), contour.spread * cosine};
-    if (told > 0.0) made.is_contradicted = std::abs(contour.excess) > most_error && contour.spread < most_spread;
-    else if (contour.strips >= independent) {
+    const double cosine = std::clamp(glm::length(mean), 0.5, 1.0), missing = -contour.excess;
+    made.kerf = std::max(0.0, left + missing * cosine);
+    made.spread = contour.spread * cosine;
+    if (told) {
+        const double limit = contour.spread < most_spread ? most_error : 2.0 * contour.spread;
+        made.is_contradicted = std::abs(missing) > limit;
+        made.is_too_wide = left * (1.0 / cosine - 1.0) > most_error;
+    } else if (contour.strips >= independent) {
         // Faces of which no bone is lost lie on each other however the contour beside them looks: ridges that end there
         // have steps as well, which `spread` knows of.
-        const double missing = -contour.excess, off = usual_share * contour.spread;
-        made.is_contradicted = missing > std::max(most_error, off);
-        made.is_open = !made.is_contradicted && missing + off > most_error;
+        const double doubt = share_of_spread * contour.spread;
+        made.is_contradicted = missing > std::max(most_error, doubt);
+        made.is_open = !made.is_contradicted && std::max(0.0, missing) + doubt > most_error;
     }
-    made.is_too_wide = told * (1.0 / cosine - 1.0) > most_error;
     return made;
+}
+
+CommonOpening common_opening(std::span<const ContourOpening> pairs) noexcept {
+    CommonOpening all;
+    const auto mean_with = [&pairs](double variance) {
+        double weights = 0.0, sum = 0.0, squares = 0.0;
+        for (const ContourOpening& one : pairs) {
+            if (one.strips < independent) continue;
+            const double weight = 1.0 / (one.spread * one.spread + variance);
+            weights += weight;
+            squares += weight * weight;
+            sum -= weight * one.excess;
+        }
+        return std::array{sum / weights, weights, squares};
+    };
+    all.pairs = static_cast<int>(
+        std::ranges::count_if(pairs, [](const ContourOpening& one) { return one.strips >= independent; }));
+    if (all.pairs == 0) return all;
+    const auto [mean, weights, squares] = mean_with(0.0);
+    double misfit = 1.0 - all.pairs;
+    for (const ContourOpening& one : pairs)
+        if (one.strips >= independent) misfit += std::pow((one.excess + mean) / one.spread, 2.0);
+    const double free = weights - squares / weights;
+    if (misfit > 0.0 && free > 0.0) all.scatter = std::sqrt(misfit / free);
+    const auto scattered = mean_with(all.scatter * all.scatter);
+    all.missing = scattered[0];
+    all.spread = std::sqrt(1.0 / scattered[1]);
+    return all;
+}
+
+bool CommonOpening::excludes_kerf(const ContourOpening& pair) const noexcept {
+    if (pairs < 3 || pair.strips < independent) return false;
+    const double prior = scatter * scatter + spread * spread, own = pair.spread * pair.spread;
+    const double mean = (missing * own - pair.excess * prior) / (own + prior);
+    return mean + std::sqrt(own * prior / (own + prior)) < most_error;
 }
 
 }  // namespace tactus::fit

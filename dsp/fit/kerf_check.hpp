@@ -10,6 +10,7 @@
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/fit/fit_surface.hpp"
 
+#include <optional>
 #include <span>
 
 namespace tactus::fit {
@@ -26,18 +27,22 @@ struct ContourOpening {
     int strips = 0;  ///< that were found on both halves
 };
 
-/// `pose`: of the moving half in the frame of the fixed one. For preparations, not for a tick: it allocates.
-ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose);
+/// `pose`: of the moving half in the frame of the fixed one, as fitted with a kerf of `told` (m). The faces hold the halves
+/// as well as their covariance says (FitPrecisionSum), so that an error across the opening is part of `spread`. For
+/// preparations, not for a tick: it allocates.
+ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told);
 
-/// The kerf that the contour says, beside the one that was told (0: none was).
+/// The kerf that the contour says, beside the one that was told.
 struct KerfEstimate {
-    double told = 0.0, kerf = 0.0, spread = 0.0;  ///< m, mean width, as FitSettings::kerf has it
+    std::optional<double> told;  ///< m, mean width, as FitSettings::kerf has it
+    double kerf = 0.0, spread = 0.0;  ///< m, mean width
+    ContourOpening contour;  ///< what says so; no strips: none was looked at, or none is there
     /// With the kerf that the contour says, the halves would lie more than half a millimetre elsewhere. A contour whose
-    /// opening is not known to a millimetre contradicts nobody; where no kerf was told, it must say more than half of
-    /// `spread`.
+    /// opening is not known to a millimetre must say more than two standard deviations; one beside no told kerf, more than
+    /// half of one.
     bool is_contradicted = false;
-    /// No kerf was told, and the contour does not exclude that half a millimetre is lost: what it says and half of
-    /// `spread` are together more. Never where there is no contour.
+    /// No kerf was told, and the contour does not exclude that half a millimetre is lost: what it says and half its standard
+    /// deviation are together more. Never where there is no contour.
     bool is_open = false;
     /// Rough faces are between `told` and told / (mean cosine of their slopes) apart along the opening: that leaves
     /// more than half a millimetre.
@@ -46,7 +51,23 @@ struct KerfEstimate {
     bool is_doubtful() const noexcept { return is_contradicted || is_open || is_too_wide; }
 };
 
-/// Of two halves that were fitted with this kerf (m).
-KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told);
+/// Of two halves that were fitted with this kerf (m); without one, when nobody told any. Who told that nothing is lost
+/// (0) is believed: no contour is looked at.
+KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, std::optional<double> told);
+
+/// What the contours of several pairs say together of what is lost between each. The pairs of one case broke in one way:
+/// their openings scatter about one mean (random effects: DerSimonian & Laird, Control. Clin. Trials 7, 1986), which is
+/// what a pair that says little by itself may have.
+struct CommonOpening {
+    double missing = 0.0, spread = 1.0;  ///< m, along the openings: the mean and its standard deviation
+    double scatter = 0.0;  ///< m, of the pairs beside what their own spreads explain
+    int pairs = 0;
+
+    /// Whether this pair is one of them and, as far as it and all together know (posterior mean and one standard
+    /// deviation), less than half a millimetre is lost. Never with less than three pairs.
+    bool excludes_kerf(const ContourOpening& pair) const noexcept;
+};
+/// Of pairs that were fitted without a kerf; those without a contour say nothing.
+CommonOpening common_opening(std::span<const ContourOpening> pairs) noexcept;
 
 }  // namespace tactus::fit

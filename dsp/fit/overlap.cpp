@@ -2,6 +2,7 @@
 #include "dsp/fit/overlap.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::fit {
 
@@ -25,11 +26,28 @@ bool lies_in(const PlacedBone& bone, const PlacedBone& other, double depth) noex
     return false;
 }
 
+/// Whether nearly all of the points' surface is within `voxel` of the other's.
+bool lies_on(const PlacedBone& bone, const PlacedBone& other, double voxel) noexcept {
+    const Pose into = other.map_pose.inverse() * bone.points_pose;
+    double area = 0.0, on = 0.0;
+    for (const contact::SurfacePoint& p : bone.points) {
+        const volume::Sample here = other.map->sample(into.apply(p.position));
+        area += p.area;
+        if (here.inside && std::abs(here.value) < voxel) on += p.area;
+    }
+    return on > 0.9 * area;
+}
+
 }  // namespace
 
 bool lie_in_each_other(const PlacedBone& a, const PlacedBone& b, double depth) noexcept {
     const double deep = std::max({depth, voxel_of(a), voxel_of(b)});
     return lies_in(a, b, deep) || lies_in(b, a, deep);
+}
+
+bool are_one_bone(const PlacedBone& a, const PlacedBone& b) noexcept {
+    const double voxel = std::max(voxel_of(a), voxel_of(b));
+    return lies_on(a, b, voxel) && lies_on(b, a, voxel);
 }
 
 }  // namespace tactus::fit

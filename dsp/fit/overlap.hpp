@@ -20,4 +20,8 @@ struct PlacedBone {
 /// than `depth` and than a voxel of both. Does not allocate.
 bool lie_in_each_other(const PlacedBone& a, const PlacedBone& b, double depth) noexcept;
 
+/// Whether both are one bone, from one file or two: nine tenths of the surface of each lie within a voxel of the other's.
+/// Does not allocate.
+bool are_one_bone(const PlacedBone& a, const PlacedBone& b) noexcept;
+
 }  // namespace tactus::fit

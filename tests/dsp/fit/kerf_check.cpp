@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -28,11 +29,17 @@ struct Oblique {
         return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; },
                         {.gap = gap, .is_flat = is_flat});
     }
-    fit::KerfEstimate check(double told, const Pose& pose = {}) const {
+    fit::KerfEstimate check(std::optional<double> told, const Pose& pose = {}) const {
         return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
     }
-    fit::ContourOpening opening(const Pose& pose) const {
-        return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose);
+    fit::ContourOpening opening(const Pose& pose, double told = 0.0) const {
+        return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose, told);
+    }
+    /// m: mean width of a gap along the opening.
+    double width(double opening) const { return opening * glm::length(0.5 * (fixed.mean_normal - moving.mean_normal)); }
+    /// Moved apart along the opening.
+    Pose apart(double opening) const {
+        return {opening * fit::opening_direction(moving, fixed, {}), {1.0, 0.0, 0.0, 0.0}};
     }
 };
 
@@ -40,71 +47,82 @@ struct Oblique {
 
 TEST_CASE("dsp: the cortex beyond an oblique break says that a told kerf is wrong") {
     const Oblique bar(0.8 * mm, 0.2 * mm);
-    const fit::KerfEstimate right = bar.check(0.7 * mm);
+    const double lost = bar.width(0.8 * mm);
+    const fit::KerfEstimate right = bar.check(lost);
     CHECK_FALSE(right.is_doubtful());
     CHECK(right.kerf == Approx(0.7 * mm).margin(0.4 * mm));
-    const Vec3 away = glm::normalize(bar.fixed.mean_normal - bar.moving.mean_normal);
-    for (const double wrong : {-1.5 * mm, 1.5 * mm}) {
+    for (const double wrong : {-0.8 * mm, 1.5 * mm}) {
         CAPTURE(wrong);
-        const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
-        CHECK(bar.opening(pose).excess == Approx(wrong).margin(0.4 * mm));
-        CHECK(bar.check(0.7 * mm + std::max(0.0, wrong), pose).is_contradicted);
+        const double told = std::max(0.01 * mm, lost + bar.width(wrong));
+        CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).margin(0.4 * mm));
+        CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
     }
 }
 
 TEST_CASE("dsp: a kerf that is wrong by millimetres is found out as well as one that is wrong by one") {
     const Oblique bar(0.5 * mm, 0.02 * mm, 0.8);
-    const Vec3 away = glm::normalize(bar.fixed.mean_normal - bar.moving.mean_normal);
     for (const double wrong : {2.0 * mm, 3.5 * mm}) {
         CAPTURE(wrong);
-        const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
-        CHECK(bar.opening(pose).excess == Approx(wrong).epsilon(0.25));
-        CHECK(bar.check(0.3 * mm + wrong, pose).is_contradicted);
+        const double told = bar.width(0.5 * mm + wrong);
+        CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).epsilon(0.25));
+        CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
     }
 }
 
 TEST_CASE("dsp: a kerf that is wrong by millimetres is found out on a bone of flat sides, of which only two tell it") {
     const Oblique bar(0.5 * mm, 0.02 * mm, 0.7, true);
-    const Vec3 away = fit::opening_direction(bar.moving, bar.fixed, {});
     const double wrong = 4.5 * mm;  // lifts the sides by more than 2 mm
-    const Pose pose{wrong * away, {1.0, 0.0, 0.0, 0.0}};
-    CHECK(bar.opening(pose).excess == Approx(wrong).epsilon(0.25));
-    CHECK(bar.check(0.3 * mm + wrong, pose).is_contradicted);
+    const double told = bar.width(0.5 * mm + wrong);
+    CHECK(bar.opening(bar.apart(wrong), told).excess == Approx(wrong).epsilon(0.25));
+    CHECK(bar.check(told, bar.apart(wrong)).is_contradicted);
 }
 
 TEST_CASE("dsp: a kerf that nobody told is seen beside an oblique break, and none where none is") {
     const Oblique lost(1.4 * mm, 0.1 * mm), whole(0.0, 0.1 * mm);
-    CHECK_FALSE(whole.check(0.0).is_doubtful());
+    CHECK_FALSE(whole.check(std::nullopt).is_doubtful());
     // Fitted without a kerf, the faces lie on each other.
-    const double cosine = glm::length(0.5 * (lost.fixed.mean_normal - lost.moving.mean_normal));
-    const Pose closed{-1.4 * mm / cosine * fit::opening_direction(lost.moving, lost.fixed, {}), {1.0, 0.0, 0.0, 0.0}};
-    const fit::KerfEstimate seen = lost.check(0.0, closed);
+    const Pose closed = lost.apart(-1.4 * mm);
+    const fit::KerfEstimate seen = lost.check(std::nullopt, closed);
     CHECK(seen.is_contradicted);
-    CHECK(seen.kerf == Approx(1.4 * mm).margin(0.4 * mm));
+    CHECK(seen.kerf == Approx(lost.width(1.4 * mm)).margin(0.4 * mm));
+    // Who says that nothing is lost is believed.
+    CHECK_FALSE(lost.check(0.0, closed).is_doubtful());
 }
 
-TEST_CASE("dsp: a kerf that nobody told is seen beside a break that is nearly square, and none where none is") {
-    const Oblique lost(1.4 * mm, 0.02 * mm, 0.025), whole(0.0, 0.02 * mm, 0.025);
-    const double cosine = glm::length(0.5 * (lost.fixed.mean_normal - lost.moving.mean_normal));
-    const Pose closed{-1.4 * mm / cosine * fit::opening_direction(lost.moving, lost.fixed, {}), {1.0, 0.0, 0.0, 0.0}};
-    CAPTURE(lost.opening(closed).excess / mm, lost.opening(closed).spread / mm, whole.opening({}).excess / mm,
-            whole.opening({}).spread / mm);
-    CHECK(lost.check(0.0, closed).is_contradicted);
-    CHECK_FALSE(whole.check(0.0).is_doubtful());
+TEST_CASE("dsp: what a contour says of the opening is as uncertain as the faces hold the halves across it") {
+    // Both breaks are nearly square: an error across them is one of the opening, forty times as large. Noise of the faces
+    // lets the halves be moved along them.
+    const auto spread = [](double noise) {
+        Oblique bar(0.0, 0.3 * mm, 0.025);
+        const Random random{11};
+        for (std::size_t n = 0; n < bar.moving.position.size(); ++n)
+            bar.moving.position[n] += noise * random.normal(n) * bar.moving.normal[n];
+        return bar.opening({}).spread;
+    };
+    CAPTURE(spread(0.0) / mm, spread(0.15 * mm) / mm);
+    CHECK(spread(0.15 * mm) > 1.5 * spread(0.0));
 }
 
-TEST_CASE("dsp: a contour that hardly knows the opening does not exclude a kerf, and contradicts no told one") {
+TEST_CASE("dsp: a nearly square break that nobody told a kerf of is no fit, because none is excluded") {
+    const Oblique square(0.0, 0.1 * mm, 0.004);
+    const fit::KerfEstimate seen = square.check(std::nullopt);
+    CAPTURE(seen.kerf / mm, seen.spread / mm);
+    CHECK(seen.is_open);
+    CHECK_FALSE(square.check(0.0).is_doubtful());
+}
+
+TEST_CASE("dsp: a contour that hardly knows the opening contradicts a told kerf only when it is sure") {
     const Oblique square(0.0, 0.1 * mm, 0.004);
     const fit::ContourOpening seen = square.opening({});
     CAPTURE(seen.excess / mm, seen.spread / mm);
     REQUIRE(seen.spread > 1.0 * mm);
-    CHECK(square.check(0.0).is_open);
-    // A step of 0.02 mm would be an opening of millimetres.
-    const Pose aside{Vec3(0.0, 0.02 * mm, 0.0), {1.0, 0.0, 0.0, 0.0}};
-    const double told = 0.2 * mm;
-    CAPTURE(square.opening(aside).excess / mm);
-    REQUIRE(std::abs(square.opening(aside).excess) > 0.5 * mm);
-    CHECK_FALSE(square.check(told, aside).is_contradicted);
+    REQUIRE(std::abs(seen.excess) > 0.5 * mm);
+    // An error across the break is an opening of many millimetres: a small one may be the faces', a large one is none.
+    const auto told_beside = [&](double aside) {
+        return square.check(0.05 * mm, {Vec3(0.0, aside, 0.0), {1.0, 0.0, 0.0, 0.0}}).is_contradicted;
+    };
+    CHECK_FALSE(told_beside(0.0));
+    CHECK(told_beside(0.3 * mm));
 }
 
 TEST_CASE("dsp: a kerf opens along the plane of the break, wherever the relief leans at its rim") {
@@ -128,4 +146,31 @@ TEST_CASE("dsp: a wide kerf across rough faces is not known to half a millimetre
     CHECK_FALSE(rough.check(0.95 * limit).is_too_wide);
     CHECK_FALSE(Oblique(3.0 * mm, 0.02 * mm).check(3.0 * mm).is_too_wide);
     CHECK_FALSE(Oblique(0.8 * mm, 0.6 * mm).check(0.8 * mm).is_too_wide);
+}
+
+TEST_CASE("dsp: the pairs of a case say together that nothing is lost where one of them says little") {
+    const auto pair = [](double missing, double spread) { return fit::ContourOpening{-missing, spread, 20}; };
+    const fit::ContourOpening vague = pair(0.3 * mm, 0.4 * mm), sure = pair(1.1 * mm, 0.1 * mm);
+    const std::vector<fit::ContourOpening> whole{pair(0.05 * mm, 0.1 * mm), pair(-0.05 * mm, 0.1 * mm), vague};
+    const fit::CommonOpening all = fit::common_opening(whole);
+    CHECK(all.pairs == 3);
+    // Inverse variances: (100 · 0.05 − 100 · 0.05 + 6.25 · 0.3) / 206.25.
+    CHECK(all.missing == Approx(0.00909 * mm).epsilon(1e-3));
+    CHECK(all.spread == Approx(0.06963 * mm).epsilon(1e-3));
+    CHECK(all.scatter == 0.0);
+    CHECK(all.excludes_kerf(vague));
+    CHECK_FALSE(fit::common_opening(std::span(whole).first(2)).excludes_kerf(vague));
+    CHECK_FALSE(all.excludes_kerf({0.0, 1.0, 0}));
+
+    // One that is surely open says of itself that it is, and of the others that they may be.
+    const std::vector<fit::ContourOpening> mixed{whole[0], whole[1], vague, sure};
+    const fit::CommonOpening both = fit::common_opening(mixed);
+    CHECK(both.scatter > 0.4 * mm);
+    CHECK_FALSE(both.excludes_kerf(sure));
+    CHECK_FALSE(both.excludes_kerf(vague));
+    CHECK(both.excludes_kerf(whole[0]));
+
+    // Where all are open, so is the one that says little.
+    const std::vector<fit::ContourOpening> lost{sure, sure, sure, vague};
+    CHECK_FALSE(fit::common_opening(lost).excludes_kerf(vague));
 }

@@ -35,7 +35,8 @@ Json row_of(int number) {
             {"within_0.3_mm", s.within},
             {"falsely_placed", s.falsely},
             {"worst_error_mm", s.worst_error * 1e3},
-            {"seconds", s.seconds}};
+            {"seconds", s.seconds},
+            {"apart", s.apart}};
 }
 
 void print(const Json& row) {
@@ -46,6 +47,7 @@ void print(const Json& row) {
         row["chips"].get<double>() * 100.0, row["placed"].get<int>(), row["with_neighbour"].get<int>(),
         row["within_0.3_mm"].get<int>(), row["falsely_placed"].get<int>(), row["worst_error_mm"].get<double>(),
         row["seconds"].get<double>());
+    for (const Json& refusal : row["apart"]) fmt::print("    {}\n", refusal.get<std::string>());
     std::fflush(stdout);
 }
 

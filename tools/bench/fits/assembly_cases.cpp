@@ -6,6 +6,7 @@
 #include "tools/study/bones/fracture.hpp"
 #include "tools/study/planning/plan_assembly.hpp"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -38,6 +39,21 @@ struct Neighbours {
     int a = 0, b = 0;
     double area = 0.0, error = 0.0;  ///< m², and m, rms at the common face between what was made and the truth
 };
+
+std::string refusal_of(const study::PlanMatch& refused) {
+    const fit::FragmentMatch& match = refused.match;
+    if (match.partner == fit::Arrangement::none) return fmt::format("piece {}: nothing near to a fit", match.moving);
+    const fit::FitQuality& q = match.quality;
+    return fmt::format(
+        "piece {} at {}: {}, score {:.2f}, share {:.2f}, {:.0f} mm², {:.3f} mm rms, margin {:.2f}, held {:.2f} mm{}{}",
+        match.moving, match.partner, fit::name_of(match.verdict), q.score, q.share, q.overlap * 1e6, q.rms * 1e3,
+        match.margin, std::min(match.precision.far * 1e3, 1e3),
+        refused.kerf ? fmt::format(", kerf {:.2f} ± {:.2f} mm", refused.kerf->kerf * 1e3, refused.kerf->spread * 1e3)
+                     : "",
+        refused.inside != fit::Arrangement::none
+            ? fmt::format(", {:.0f} mm³ in {}", refused.inside_volume * 1e9, refused.inside)
+            : "");
+}
 
 double seconds_used() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -81,6 +97,7 @@ AssemblyScore put_together(const AssemblyCase& one) {
     AssemblyScore score;
     score.pieces = count;
     score.seconds = seconds_used() - begin;
+    for (const study::PlanMatch& refused : made.stays) score.apart.push_back(refusal_of(refused));
     const auto place = [&](int n) { return truth[static_cast<std::size_t>(n)]; };
     const auto pose = [&](int n) { return made.poses[static_cast<std::size_t>(n)]; };
     for (int a = 0; a < count; ++a)

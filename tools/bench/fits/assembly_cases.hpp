@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tactus::bench {
@@ -25,6 +26,7 @@ struct AssemblyScore {
     int falsely = 0;  ///< pieces in a part that lie more than 1 mm off at their faces, or on no neighbour
     double worst_error = 0.0;  ///< m, at the faces of the placed
     double seconds = 0.0;  ///< processor time of the assembly, all threads
+    std::vector<std::string> apart;  ///< per part that does not hang together with the first: what was refused
 };
 
 AssemblyScore put_together(const AssemblyCase& one);

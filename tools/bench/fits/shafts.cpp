@@ -66,6 +66,12 @@ std::pair<Vec3, double> middle_of_paint(const study::CaseFragment& fragment) {
     return {area > 0.0 ? sum / area : Vec3(0.0), area};
 }
 
+std::optional<double> told_kerf(const ShaftsChoice& choice) {
+    if (choice.told_kerf) return *choice.told_kerf * 1e-3;
+    if (choice.told) return choice.kerf * 1e-3;
+    return std::nullopt;
+}
+
 Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) {
     study::FractureSettings settings;
     settings.seed = 7001 + static_cast<std::uint64_t>(number);
@@ -82,9 +88,7 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         fragments.push_back(std::move(loaded));
         place.push_back(one.place);
     });
-    study::PlanMatching matching(std::move(fragments), study::FitWay{choice.told_kerf ? *choice.told_kerf * 1e-3
-                                                                     : choice.told    ? settings.kerf
-                                                                                      : 0.0});
+    study::PlanMatching matching(std::move(fragments), study::FitWay{told_kerf(choice)});
     const study::CaseFragment& moving = matching.fragment(1);
     const std::pair<Vec3, double> paint = middle_of_paint(moving);
     const Vec3& face = paint.first;

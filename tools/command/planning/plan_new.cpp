@@ -30,8 +30,20 @@ void check_is_new(const cases::CasePlan& plan) {
                                     other.name));
 }
 
+/// Throws Error when the last fragment is an earlier one in another file.
+void check_is_elsewhere(const cases::CasePlan& plan, const std::vector<study::CaseFragment>& loaded) {
+    const fit::PlacedBone last = study::placed_bone(loaded.back(), {});
+    for (std::size_t n = 0; n + 1 < loaded.size(); ++n)
+        if (fit::are_one_bone(last, study::placed_bone(loaded[n], {})))
+            throw Error(
+                fmt::format("{}: has the shape and the place of fragment '{}', as the same bone in another "
+                            "file; name each bone once",
+                            plan.fragments.back().file, plan.fragments[n].name));
+}
+
 /// "NAME=FILE" or "FILE"; the default name is the stem of the file, or the name of the bone in it.
-void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path& folder) {
+void add_file_of(cases::CasePlan& plan, std::vector<study::CaseFragment>& loaded, const std::string& text,
+                 const fs::path& folder) {
     const auto equals = text.find('=');
     const bool is_named = equals != std::string::npos && !fs::exists(text);
     const std::string name = is_named ? text.substr(0, equals) : "";
@@ -56,7 +68,8 @@ void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path&
                             bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
         check_is_new(plan);
         // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
-        study::load_fragment(plan.fragments.back(), folder);
+        loaded.push_back(study::load_fragment(plan.fragments.back(), folder));
+        check_is_elsewhere(plan, loaded);
     }
 }
 
@@ -66,7 +79,8 @@ int make_plan(const NewChoice& choice) {
     const cases::PlanLock lock(choice.plan);
     cases::CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
-    for (const std::string& text : choice.names) add_file_of(plan, text, choice.plan.parent_path());
+    std::vector<study::CaseFragment> loaded;
+    for (const std::string& text : choice.names) add_file_of(plan, loaded, text, choice.plan.parent_path());
     cases::save_case_plan(plan, choice.plan);
     if (!choice.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
     return show_change(choice);

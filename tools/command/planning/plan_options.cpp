@@ -10,14 +10,18 @@ void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
 
 void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
     verb.add("--kerf", choice.kerf,
-             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open")
-        .shows_default()
+             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open. 0: nothing is "
+             "lost, and no kerf is looked for (default: a fit that the cortex shows open is refused)")
         .range(0.0, 4.0);
     verb.flag("--healthy", choice.with_healthy,
               "fit to the healthy side of 'plan mirror' too: it decides where the faces slide on each other");
 }
 
-study::FitWay fit_way(const PlanChoice& choice) { return {choice.kerf * 1e-3, choice.with_healthy}; }
+study::FitWay fit_way(const PlanChoice& choice) {
+    study::FitWay way{std::nullopt, choice.with_healthy};
+    if (choice.kerf) way.kerf = *choice.kerf * 1e-3;
+    return way;
+}
 
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
     return verb.add("fragments", choice.names, about).required();

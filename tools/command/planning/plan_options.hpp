@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct PlanChoice {
     std::filesystem::path plan;
     std::vector<std::string> names;  ///< names of fragments
     bool json = false;
-    double kerf = 0.0;  ///< mm of bone lost along the faces
+    std::optional<double> kerf;  ///< mm of bone lost along the faces
     bool with_healthy = false;  ///< the plan's healthy side takes part in fits
 };
 

@@ -140,17 +140,18 @@ std::string no_match(const fit::FitQuality& q, const fit::FitSettings& settings)
 }
 
 std::string doubt_of(const fit::KerfEstimate& kerf) {
-    std::string said = kerf.told > 0.0 ? fmt::format("unsure: told a kerf of {:.1f} mm", kerf.told * 1e3)
-                                       : "unsure: the faces lie on each other, and the cortex beyond them does not";
+    std::string said = kerf.told ? fmt::format("unsure: told a kerf of {:.1f} mm", *kerf.told * 1e3)
+                                 : "unsure: the faces lie on each other, and the cortex beyond them does not";
     if (kerf.is_open)
         return fmt::format(
             "unsure: the cortex beyond the faces does not exclude that bone is lost between them ({:.1f} ± {:.1f} mm): "
-            "say how much with --kerf; if none is, place it by hand",
+            "say how much with --kerf, or --kerf 0 if none is",
             kerf.kerf * 1e3, kerf.spread * 1e3);
     if (!kerf.is_contradicted)
         return said + "; across rough faces so wide a gap is not known to 0.5 mm: place it by hand";
     const double seen = std::round(kerf.kerf * 1e4) / 10.0;  // mm
-    if (!(seen > 0.0)) return said + ", and the cortex beyond the faces says that no bone is lost: leave --kerf out";
+    if (!(seen > 0.0))
+        return said + ", and the cortex beyond the faces says that no bone is lost: --kerf 0 if that is so";
     return fmt::format(
         "{}; a kerf of about {:.1f} mm is seen ({:.1f} ± {:.1f} mm): --kerf \"{:.1f} mm\" if so much bone is lost, "
         "or place it by hand",

@@ -28,6 +28,8 @@ struct Edge {
     std::size_t tried_at = 0;  ///< fragments in both parts when it was refused
 };
 
+std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
 bool agree(const Pose& a, const Pose& b, const Vec3& at) {
     return glm::length(a.apply(at) - b.apply(at)) < same_distance &&
            glm::length(rotation_between(a.orientation, b.orientation)) < same_angle;
@@ -79,6 +81,7 @@ public:
         edges_ = all_edges(matching_, matcher_, parts_);
         for (bool is_new = true; is_new;) {
             connect();
+            if (look_at_all_openings()) connect();
             is_new = refine();
         }
         parts_.return_to(arrangement_);
@@ -107,6 +110,22 @@ private:
         }
     }
 
+    /// What the contours of all pairs say together of a kerf that nobody told. Returns whether a pair that was refused for
+    /// one may be tried again.
+    bool look_at_all_openings() {
+        std::vector<fit::ContourOpening> all;
+        for (const auto& [pair, opening] : openings_) all.push_back(opening);
+        case_opening_ = fit::common_opening(all);
+        bool is_any = false;
+        for (Edge& edge : edges_) {
+            const auto found = openings_.find(ordered(edge.a, edge.b));
+            if (found == openings_.end() || is_settled(edge) || !case_opening_.excludes_kerf(found->second)) continue;
+            edge.tried_at = 0;
+            is_any = true;
+        }
+        return is_any;
+    }
+
     bool try_edge(const Edge& edge) {
         const bool is_forward = parts_.goes_to(parts_.part_of(edge.a), parts_.part_of(edge.b));
         const fit::FacePairFit pair = is_forward ? edge.pair : edge.pair.inverse();
@@ -118,6 +137,7 @@ private:
             if (made.margin < matching_.settings().fit.least_margin) made.verdict = fit::FitVerdict::ambiguous;
         }
         const PlanMatch found = judge(made, stands);
+        if (found.kerf) openings_[ordered(moving, made.partner)] = found.kerf->contour;
         if (found.match.verdict != fit::FitVerdict::fit) {
             remember(found, pair.worth());
             return false;
@@ -129,7 +149,8 @@ private:
     /// `judged` with what moves along in this assembly.
     PlanMatch judge(const fit::FragmentMatch& made, const std::vector<char>& stands) const {
         const Arrangement now = parts_.arrangement_moving(arrangement_, parts_.part_of(made.moving));
-        PlanMatch found = matching_.judged(made, now, parts_.and_locked(stands, parts_.part_of(made.moving)));
+        PlanMatch found =
+            matching_.judged(made, now, parts_.and_locked(stands, parts_.part_of(made.moving)), case_opening_);
         found.from = arrangement_.pose(made.moving);
         found.moved = motion_between(found.from, made.pose, middle_of(matching_.fragment(made.moving).bone.points));
         return found;
@@ -340,6 +361,8 @@ private:
     std::vector<Edge> edges_;
     std::vector<PlanMatch> refused_;
     std::map<int, double> worths_;
+    std::map<std::pair<int, int>, fit::ContourOpening> openings_;  ///< of pairs of fragments, the lower number first
+    fit::CommonOpening case_opening_;
 };
 
 }  // namespace

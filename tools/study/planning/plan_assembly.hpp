@@ -36,7 +36,8 @@ struct PlanAssembly {
 
 /// Every pair of faces of different fragments is tried with all rotations. The surest pairs connect first; a part that
 /// connects to a larger one moves to it, all its faces at once, when it fits, lies in no fragment of it, and no other
-/// place for the same face fits nearly as well. What was refused is tried again with the parts that were made. In the
+/// place for the same face fits nearly as well. What was refused is tried again with the parts that were made; what was
+/// refused for a kerf that nobody told, when the contours of all pairs together exclude one (fit::CommonOpening). In the
 /// end all faces of a part are fitted together (dsp/fit/joint_refinement.hpp). In each part one fragment stays where it
 /// is: the locked ones; else one of the largest connected part of the plan; else the largest. `fits`: the plan's, per
 /// fragment; their connections stay. Deterministic.

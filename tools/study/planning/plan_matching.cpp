@@ -38,24 +38,25 @@ std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
 }  // namespace
 
 PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, const FitWay& way)
-    : loaded_(load_fragments(plan, folder, cases::Paint::or_proposed)) {
+    : loaded_(load_fragments(plan, folder, cases::Paint::or_proposed)), way_(way) {
     if (way.with_healthy) {
         const auto mirror = cases::state_of(plan).mirror;
         if (!mirror) throw Error("the plan has no healthy side: lay it on a fragment with 'tactus plan mirror'");
         healthy_.emplace(laid_target(*mirror, folder));
     }
-    make_matcher(way);
+    make_matcher();
 }
 
-PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, const FitWay& way) : loaded_(std::move(fragments)) {
-    make_matcher(way);
+PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, const FitWay& way)
+    : loaded_(std::move(fragments)), way_(way) {
+    make_matcher();
 }
 
-void PlanMatching::make_matcher(const FitWay& way) {
+void PlanMatching::make_matcher() {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
     fit::MatcherSettings settings;
     settings.most_points = 2000;
-    settings.fit.kerf = way.kerf;
+    settings.fit.kerf = way_.kerf.value_or(0.0);
     if (healthy_) settings.healthy.side = &*healthy_;
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
@@ -89,7 +90,7 @@ std::optional<fit::KerfEstimate> PlanMatching::estimate_kerf(const PlanMatch& fo
     if (!mine) return std::nullopt;
     const Pose between = arrangement.pose(partner).inverse() * found.match.pose;
     return fit::check_kerf({fragment(moving).bone.points, mine}, {fragment(partner).bone.points, other}, between,
-                           settings().fit.kerf);
+                           way_.kerf);
 }
 
 /// Looks for the fragment that what moves would lie in most.
@@ -113,7 +114,7 @@ void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& ar
 }
 
 PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
-                               const std::vector<char>& counts) const {
+                               const std::vector<char>& counts, const fit::CommonOpening& case_opening) const {
     PlanMatch found;
     found.match = made;
     found.from = arrangement.pose(made.moving);
@@ -126,7 +127,8 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (found.match.verdict == fit::FitVerdict::fit) {
         found.kerf = estimate_kerf(found, arrangement);
-        if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
+        const bool is_settled = found.kerf && !found.kerf->told && case_opening.excludes_kerf(found.kerf->contour);
+        if (found.kerf && found.kerf->is_doubtful() && !is_settled) found.match.verdict = fit::FitVerdict::ambiguous;
     }
     if (found.match.verdict == fit::FitVerdict::fit) {
         look_for_overlap(found, arrangement, counts);

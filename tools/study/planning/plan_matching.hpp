@@ -35,7 +35,8 @@ enum class Partners : std::uint8_t { standing_first, all };
 
 /// What fits take into account beside the faces.
 struct FitWay {
-    double kerf = 0.0;  ///< m, width of the bone that was lost along the faces, which fits leave open
+    std::optional<double>
+        kerf;  ///< m, width of the bone that was lost along the faces, which fits leave open; 0: none was
     bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/registration/healthy_pull.hpp
 };
 
@@ -60,9 +61,10 @@ public:
     bool lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const;
     /// m³ of both.
     double overlap_volume(int a, const Pose& at, int b, const Pose& there) const;
-    /// A match with doubts. `counts`: fragments that it must not lie in; empty: all that are shown.
+    /// A match with doubts. `counts`: fragments that it must not lie in; empty: all that are shown. `case_opening`: what
+    /// the other pairs of the case say where nobody told a kerf.
     PlanMatch judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
-                     const std::vector<char>& counts = {}) const;
+                     const std::vector<char>& counts = {}, const fit::CommonOpening& case_opening = {}) const;
 
     /// Fits a fragment from its current pose. Fragments that move along are no partners. `only`: one partner.
     PlanMatch near(const fit::Arrangement& arrangement, int moving, Partners partners,
@@ -75,9 +77,10 @@ private:
     std::optional<fit::KerfEstimate> estimate_kerf(const PlanMatch& found, const fit::Arrangement& arrangement) const;
     void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement, const std::vector<char>& counts) const;
 
-    void make_matcher(const FitWay& way);
+    void make_matcher();
 
     std::vector<CaseFragment> loaded_;
+    FitWay way_;
     std::optional<fit::RegistrationTarget> healthy_;
     std::vector<fit::FragmentSurface> surfaces_;
     std::unique_ptr<fit::FragmentMatcher> matcher_;

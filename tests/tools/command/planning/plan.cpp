@@ -321,6 +321,7 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", 
     fin.insert(fin.find("endsolid"),
                "facet normal 0 0 0\nouter loop\nvertex 10 0 0\nvertex 10 12 0\nvertex 20 6 0\nendloop\nendfacet\n");
     boxes.folder.write("fin.stl", fin);
+    boxes.folder.write("copy.stl", slurp(boxes.file("a.stl")) + "\n");
     boxes.folder.write("cut.plan.json", whole.substr(0, whole.size() / 2));
     std::string later = whole;
     later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
@@ -332,6 +333,8 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", 
          "the plan has a fragment 'a' already"},
         {"new " + fresh + " x=" + boxes.file("a.stl") + " y=" + boxes.file("a.stl"),
          "is the same bone as fragment 'x'"},
+        {"new " + fresh + " x=" + boxes.file("a.stl") + " y=" + boxes.file("copy.stl"),
+         "has the shape and the place of fragment 'x'"},
         {"gap " + boxes.plan + " a a", "two different fragments"},
         {"snap " + boxes.plan + " a a", "'a' cannot be fitted to itself"},
         {"mirror " + boxes.plan + " " + boxes.file("a.stl") + " a a", "'a' is named twice"},
