@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "tests/campaign/limited_run.hpp"
+#include "tests/campaign/other_bone.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/recording_patch.hpp"
 
@@ -54,7 +55,7 @@ void make_earlier_work(const fs::path& folder) {
     make({"import", "ct.nrrd", "-o", "bone.vdb"}, folder);
     write_seeds(folder / "seeds");
     fs::copy_file(folder / "seeds/assets_stl/closed.stl", folder / "a.stl");
-    fs::copy_file(folder / "seeds/assets_obj/closed.obj", folder / "b.obj");
+    write_other_bone(folder / "b.obj");
     fs::remove_all(folder / "seeds");
     make({"plan", "new", "case.plan.json", "a.stl", "b.obj"}, folder);
     make({"plan", "move", "case.plan.json", "a", "--pose", "1,2,3,1,0,0,0"}, folder);

@@ -124,7 +124,7 @@ fs::path small_case(const fs::path& folder) {
     const fs::path made = folder / "case";
     fs::create_directories(made);
     fs::copy_file(folder / "assets_stl/closed.stl", made / "a.stl");
-    fs::copy_file(folder / "assets_obj/closed.obj", made / "b.obj");
+    write_other_bone(made / "b.obj");
     make_by_command({"plan", "new", "case.plan.json", "a.stl", "b.obj"}, made);
     return made;
 }
