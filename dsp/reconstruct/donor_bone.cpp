@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <utility>
+
 namespace tactus::reconstruct {
 
 namespace {
@@ -15,7 +17,11 @@ constexpr double mm = 1e-3;
 
 }  // namespace
 
-DonorBone::DonorBone(const FibulaInputs& inputs)
+DonorBone::DonorBone(const FibulaInputs& inputs) : DonorBone(inputs, {}) {
+    if (inputs.donor) take(parts_near_line(*inputs.donor, point_, axis_, farthest_from_line_));
+}
+
+DonorBone::DonorBone(const FibulaInputs& inputs, geometry::TriangleSurface along_line)
     : point_(inputs.line_point),
       axis_(direction(inputs.line_direction, "the line's direction")),
       leg_(inputs.leg),
@@ -26,8 +32,11 @@ DonorBone::DonorBone(const FibulaInputs& inputs)
     if (glm::length(glm::cross(y, axis_)) < least_y)
         throw Error("the line runs from front to back: that does not tell the medial side of the donor");
     frame_ = frame_of(axis_, y);
-    if (!inputs.donor) return;
-    bone_ = parts_near_line(*inputs.donor, point_, axis_, farthest_from_line_);
+    if (!along_line.vertices.empty()) take(std::move(along_line));
+}
+
+void DonorBone::take(geometry::TriangleSurface along_line) {
+    bone_ = std::move(along_line);
     for (const Vec3& v : bone_.vertices) whole_.add(along(v));
     slabs_.emplace(bone_, point_, axis_);
 }

@@ -26,6 +26,8 @@ public:
     /// Takes line, leg, farthest_from_line and donor of the inputs. Throws Error for a line that is none or runs from
     /// front to back, and for a donor that does not lie along it.
     explicit DonorBone(const FibulaInputs& inputs);
+    /// The same with a surface that is known to lie along the line, in place of the inputs' donor.
+    DonorBone(const FibulaInputs& inputs, geometry::TriangleSurface along_line);
     DonorBone(const DonorBone&) = delete;
     DonorBone& operator=(const DonorBone&) = delete;
 
@@ -46,6 +48,8 @@ public:
     Section cut(const Plane& plane, std::size_t segment) const;
 
 private:
+    void take(geometry::TriangleSurface along_line);
+
     Vec3 point_, axis_;
     Leg leg_;
     double farthest_from_line_;

@@ -119,7 +119,7 @@ std::vector<Candidate> ranked(const FibulaInputs& inputs, const Flap& flap, cons
     // What does not lie along the line is left out before it is mirrored.
     if (legs[0].donor) legs[0].donor = given_leg.surface();
     legs[1] = other_leg(legs[0]);
-    const DonorBone mirrored_leg(legs[1]);
+    const DonorBone mirrored_leg(legs[1], legs[1].donor.value_or(geometry::TriangleSurface{}));
     for (FibulaInputs& leg : legs) leg.donor.reset();
     const std::array<Flap, 2> flaps{flap, other_leg(flap)};
     std::vector<Candidate> all;

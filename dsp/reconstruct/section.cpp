@@ -78,12 +78,30 @@ std::vector<bool> wanted_outlines(const Section& all, const std::vector<std::siz
     return wanted;
 }
 
-/// Sorted places at which the line v = height crosses the section.
-void crossings(const InPlane& in, const Section& section, double height, std::vector<double>& out) {
-    out.clear();
-    for (const auto& [a, b] : section.pieces)
-        if (double at = 0.0; meets_line(in, section.points[a], section.points[b], height, at)) out.push_back(at);
-    std::sort(out.begin(), out.end());
+/// Lines v = low + row * width along u, at row 0.5, 1.5, ...
+struct Lines {
+    double low, width;
+    std::size_t count;
+
+    double height(std::size_t row) const { return low + (static_cast<double>(row) + 0.5) * width; }
+};
+
+/// Of each line, the sorted places at which it crosses the section. A piece is looked at only by the lines near it.
+std::vector<std::vector<double>> crossings(const InPlane& in, const Section& section, const Lines& lines) {
+    std::vector<std::vector<double>> places(lines.count);
+    for (const auto& [a, b] : section.pieces) {
+        const auto [least, greatest] =
+            std::minmax({glm::dot(in.v, section.points[a]), glm::dot(in.v, section.points[b])});
+        const double last = static_cast<double>(lines.count) - 1.0, from = (least - lines.low) / lines.width - 2.0,
+                     to = (greatest - lines.low) / lines.width + 1.0;
+        if (!(to >= 0.0 && from <= last)) continue;
+        for (auto row = static_cast<std::size_t>(std::max(from, 0.0));
+             row <= static_cast<std::size_t>(std::min(to, last)); ++row)
+            if (double at = 0.0; meets_line(in, section.points[a], section.points[b], lines.height(row), at))
+                places[row].push_back(at);
+    }
+    for (std::vector<double>& of_line : places) std::sort(of_line.begin(), of_line.end());
+    return places;
 }
 
 }  // namespace
@@ -208,11 +226,11 @@ double overlap_area(const Section& a, const Section& b, const Plane& plane, doub
     if (!(high > low)) return 0.0;
     // At most 2000 lines, however large the bone is.
     const double rows = std::clamp(std::ceil((high - low) / step), 1.0, 2000.0), width = (high - low) / rows;
-    std::vector<double> of_a, of_b;
+    const Lines lines{low, width, static_cast<std::size_t>(rows)};
+    const std::vector<std::vector<double>> places_a = crossings(in, a, lines), places_b = crossings(in, b, lines);
     double sum = 0.0;
-    for (double row = 0.5; row < rows; row += 1.0) {
-        crossings(in, a, low + row * width, of_a);
-        crossings(in, b, low + row * width, of_b);
+    for (std::size_t row = 0; row < lines.count; ++row) {
+        const std::vector<double>&of_a = places_a[row], &of_b = places_b[row];
         for (std::size_t i = 0; i + 1 < of_a.size(); i += 2)
             for (std::size_t j = 0; j + 1 < of_b.size(); j += 2)
                 sum += std::max(0.0, std::min(of_a[i + 1], of_b[j + 1]) - std::max(of_a[i], of_b[j]));

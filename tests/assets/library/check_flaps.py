@@ -115,11 +115,13 @@ def from_disc(p, centre, normal, radius):
 
 
 def boxes_apart(a, b):
-    """Between two boxes, by projecting back and forth."""
-    p = a[0].copy()
+    """Between two boxes, by projecting back and forth until nothing moves."""
+    p, least_a, least_b = a[0], -a[2], -b[2]
     for _ in range(3000):
-        q = b[0] + b[1] @ np.clip((p - b[0]) @ b[1], -b[2], b[2])
-        p = a[0] + a[1] @ np.clip((q - a[0]) @ a[1], -a[2], a[2])
+        q = b[0] + b[1] @ np.minimum(np.maximum((p - b[0]) @ b[1], least_b), b[2])
+        before, p = p, a[0] + a[1] @ np.minimum(np.maximum((q - a[0]) @ a[1], least_a), a[2])
+        if np.abs(p - before).max() < 1e-11:
+            break
     return np.linalg.norm(p - q)
 
 
