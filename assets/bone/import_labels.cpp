@@ -140,6 +140,8 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         choose_segments(options.label, labels_of(source.tally(), file), reader->about.segments, file);
     LabelBone how;
     how.spacing = options.spacing;
+    // One label of many: maps of whole bodies have muscles and organs around it.
+    how.keeps_border = chosen.size() > 1;
     std::unique_ptr<volume::SliceReader> grey;
     std::optional<volume::ReorientedVolume> ct;
     volume::HuKind hu = volume::HuKind::none;

@@ -276,7 +276,7 @@ Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, c
     bone.provenance["frame"] = "LPS";
     bone.provenance["label"] = std::to_string(segment.label);
     bone.provenance["surface"] = surface;
-    bone.border = border_of(labels, segment.label);
+    if (how.keeps_border) bone.border = border_of(labels, segment.label);
     return bone;
 }
 

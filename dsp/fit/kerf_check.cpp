@@ -246,6 +246,8 @@ CommonOpening common_opening(std::span<const ContourOpening> pairs) noexcept {
 bool CommonOpening::excludes_kerf(const ContourOpening& pair) const noexcept {
     if (pairs < 3 || pair.strips < independent) return false;
     const double prior = scatter * scatter + spread * spread, own = pair.spread * pair.spread;
+    // What a pair that contradicts the others has lost, the others do not know.
+    if (-pair.excess - missing > 2.0 * std::sqrt(own + prior)) return false;
     const double mean = (missing * own - pair.excess * prior) / (own + prior);
     return mean + std::sqrt(own * prior / (own + prior)) < most_error;
 }

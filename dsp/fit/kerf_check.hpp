@@ -64,7 +64,8 @@ struct CommonOpening {
     int pairs = 0;
 
     /// Whether this pair is one of them and, as far as it and all together know (posterior mean and one standard
-    /// deviation), less than half a millimetre is lost. Never with less than three pairs.
+    /// deviation), less than half a millimetre is lost. Never with less than three pairs, and never for a pair that says of
+    /// itself that more is lost than all of them, by over two standard deviations.
     bool excludes_kerf(const ContourOpening& pair) const noexcept;
 };
 /// Of pairs that were fitted without a kerf; those without a contour say nothing.

@@ -170,6 +170,13 @@ TEST_CASE("dsp: the pairs of a case say together that nothing is lost where one 
     CHECK_FALSE(both.excludes_kerf(vague));
     CHECK(both.excludes_kerf(whole[0]));
 
+    // Many that are whole do not speak for one that says clearly that it is open.
+    std::vector<fit::ContourOpening> many(5, pair(0.0, 0.1 * mm));
+    many.push_back(pair(0.8 * mm, 0.3 * mm));
+    CHECK_FALSE(fit::common_opening(many).excludes_kerf(many.back()));
+    many.back() = pair(0.6 * mm, 0.4 * mm);
+    CHECK(fit::common_opening(many).excludes_kerf(many.back()));
+
     // Where all are open, so is the one that says little.
     const std::vector<fit::ContourOpening> lost{sure, sure, sure, vague};
     CHECK_FALSE(fit::common_opening(lost).excludes_kerf(vague));

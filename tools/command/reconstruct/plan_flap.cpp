@@ -104,6 +104,7 @@ bool is_table(const fs::path& file) { return file.extension() == ".csv"; }
 reconstruct::FlapVessel found_vessel(const FlapChoice& choice) {
     if (choice.of_scan.empty())
         return reconstruct::read_vessel(choice.file, reconstruct::VesselKind::artery, choice.branch);
+    if (choice.branch != 0) throw Error("--branch is of a table: give --file VESSEL.csv instead of --of-scan");
     return study::vessel_of_scan(cases::load_case_plan(choice.plan), choice.of_scan);
 }
 

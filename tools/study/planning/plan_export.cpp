@@ -137,7 +137,7 @@ ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::pat
              {},
              export_flap(study.inputs(), study.fibula(), study.flap(), study.measures(), out, "." + format)});
     }
-    if (state.vessels) {
+    if (state.vessels && !state.vessels->empty()) {
         std::vector<std::string> taken;
         for (const ExportedFragment& one : written) taken.insert(taken.end(), one.files.begin(), one.files.end());
         const auto before = static_cast<std::ptrdiff_t>(taken.size());

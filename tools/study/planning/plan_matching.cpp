@@ -127,8 +127,9 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (found.match.verdict == fit::FitVerdict::fit) {
         found.kerf = estimate_kerf(found, arrangement);
-        const bool is_settled = found.kerf && !found.kerf->told && case_opening.excludes_kerf(found.kerf->contour);
-        if (found.kerf && found.kerf->is_doubtful() && !is_settled) found.match.verdict = fit::FitVerdict::ambiguous;
+        if (found.kerf && !found.kerf->told && case_opening.excludes_kerf(found.kerf->contour))
+            found.kerf->is_contradicted = found.kerf->is_open = false;
+        if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
     }
     if (found.match.verdict == fit::FitVerdict::fit) {
         look_for_overlap(found, arrangement, counts);

@@ -47,13 +47,19 @@ VesselClearance::Nearest nearest(const FlapVessel& vessel, const cases::PlanStat
 
 const FlapVessel& vessel_of_scan(const cases::CasePlan& plan, const std::string& name) {
     std::vector<std::string> names;
-    for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step) {
-        if (!step->vessels) continue;
-        for (const FlapVessel& one : *step->vessels) {
-            if (one.name == name) return one;
+    const auto look_in = [&](const cases::PlanState& state) -> const FlapVessel* {
+        if (!state.vessels) return nullptr;
+        for (const FlapVessel& one : *state.vessels) {
+            if (one.name == name) return &one;
             if (std::ranges::find(names, one.name) == names.end()) names.push_back(one.name);
         }
-    }
+        return nullptr;
+    };
+    const cases::PlanState now = cases::state_of(plan);
+    if (const FlapVessel* found = look_in(now)) return *found;
+    if (!now.vessels)
+        for (auto other = plan.alternatives.rbegin(); other != plan.alternatives.rend(); ++other)
+            if (const FlapVessel* found = look_in(cases::state_of(plan, other->place.head))) return *found;
     if (names.empty())
         throw Error(
             "the plan has no vessels of its scan; 'tactus plan vessel' adds them before there is a reconstruction");
@@ -68,6 +74,8 @@ Vec3 place_along(const FlapVessel& vessel, double along) {
         if (left <= length) return length > 0.0 ? vessel.points[n - 1] + left / length * way : vessel.points[n];
         left -= length;
     }
+    // Rounding of the sum may leave a little at the last point.
+    if (!vessel.points.empty() && left < 1e-9) return vessel.points.back();
     throw Error(fmt::format("the vessel is {:.1f} mm long, less than {:.1f} mm", length_of(vessel) * 1e3, along * 1e3));
 }
 

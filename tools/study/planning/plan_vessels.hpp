@@ -18,8 +18,8 @@ namespace tactus::study {
 void change_vessels(const std::filesystem::path& plan,
                     const std::function<void(std::vector<reconstruct::FlapVessel>&)>& change);
 
-/// A vessel of the scan of a plan's case, as the last step that names it has it, also one of another alternative. Throws
-/// Error when there is none of that name.
+/// A vessel of the scan of a plan's case; where the current alternative has never had any, one of the others. What was
+/// removed or undone there is none. The vessel is part of `plan`. Throws Error when there is none of that name.
 const reconstruct::FlapVessel& vessel_of_scan(const cases::CasePlan& plan, const std::string& name);
 
 double length_of(const reconstruct::FlapVessel& vessel);  ///< m

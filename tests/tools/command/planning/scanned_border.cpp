@@ -68,6 +68,9 @@ TEST_CASE("fits leave the border between two labels out, say so, and join the tr
     CHECK(bones[0].border.faces.size() > 1000);
     CHECK(bones[1].border.faces.size() == bones[0].border.faces.size() + bones[2].border.faces.size());
     CHECK(bones[2].border.faces.size() < 50);
+    // What is around a bone that is imported by itself may be muscle.
+    REQUIRE(folder.tactus("import " + folder / "labels.nrrd" + " --label left -o " + folder / "left.vdb").code == 0);
+    CHECK(bone::load_bone(folder / "left.vdb").border.faces.empty());
 
     const std::string plan = folder / "bar.plan.json";
     REQUIRE(folder.tactus("plan new " + plan + " " + folder / "bones.vdb").code == 0);

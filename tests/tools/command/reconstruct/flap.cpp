@@ -292,6 +292,11 @@ TEST_CASE("a vessel that was followed in a scan becomes a pedicle of the flap, o
     for (const char* type : {".stl", ".vtp", ".mrk.json"})
         CHECK(fs::exists(out / ("vessel-carotid" + std::string(type))));
     CHECK_THAT(test::slurp(out / "vessel-carotid.vtp"), ContainsSubstring("100.000000 0.000000 0.000000"));
+    // A vessel that was taken away again leaves no empty entry.
+    REQUIRE(made.change("vessel", "carotid --remove").code == 0);
+    const test::Outcome bare = folder.tactus("plan export " + made.plan + " --json -o " + (out / "bare").string());
+    CHECK(json::parse(bare.out).size() == 1);
+    REQUIRE(made.change("vessel", "carotid --kind artery --file " + neck.string()).code == 0);
 
     const std::string inputs = folder.write("inputs.json", made.whole().dump()).string();
     REQUIRE(folder.tactus("plan reconstruct " + made.plan + " " + inputs + " --alternative flap").code == 0);
@@ -324,6 +329,7 @@ TEST_CASE("a vessel that was followed in a scan becomes a pedicle of the flap, o
           {"site", "high --at 1 2 3 --along 5", "--along is a way on a vessel"},
           {"site", "high --at 1 2 3 --of-scan carotid", "needs a place"},
           {"vessel", "second --of-scan jugular", "has no vessel 'jugular'"},
+          {"vessel", "second --of-scan carotid --branch 1", "--branch is of a table"},
           {"vessel", "second --file neck.mrk.json --of-scan carotid", "a vessel needs --file"}}) {
         CAPTURE(words);
         const test::Outcome refused = made.change(verb, words);
