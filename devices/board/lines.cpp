@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/board/lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -22,6 +23,11 @@ void FrameProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t) noex
         ++told_.heard;
         ++told_.count;
     }
+}
+
+std::int64_t FrameProtocol::patience_ns() const noexcept {
+    constexpr double bits = 10.0 * (22 + 32);  // of both frames, each byte with a start and a stop bit
+    return std::max<std::int64_t>(4'000'000, std::llround(1.25e9 * bits / baud_));
 }
 
 void FrameProtocol::reset() noexcept {

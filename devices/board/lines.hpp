@@ -42,13 +42,15 @@ protected:
 /// Tactus' own frames with a checksum.
 class FrameProtocol final : public Protocol {
 public:
-    explicit FrameProtocol(int motors) : motors_(motors) {}
+    FrameProtocol(int motors, int baud) : motors_(motors), baud_(baud) {}
     std::span<const std::uint8_t> request(const std::array<double, 2>& torque, bool run) noexcept override;
     void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept override;
     void reset() noexcept override;
+    /// A little more than a request and its answer take on the line: torques that wait there come too late.
+    std::int64_t patience_ns() const noexcept override;
 
 private:
-    int motors_;
+    int motors_, baud_;
     std::uint16_t sequence_ = 0;
     gripper::FrameReader reader_;
     gripper::FrameBytes out_;
