@@ -25,9 +25,12 @@ void FrameProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t) noex
     }
 }
 
+double FrameProtocol::exchange_s() const noexcept {
+    return 10.0 * (22 + 32) / baud_;  // both frames, each byte with a start and a stop bit
+}
+
 std::int64_t FrameProtocol::patience_ns() const noexcept {
-    constexpr double bits = 10.0 * (22 + 32);  // of both frames, each byte with a start and a stop bit
-    return std::max<std::int64_t>(4'000'000, std::llround(1.25e9 * bits / baud_));
+    return std::max<std::int64_t>(4'000'000, std::llround(1.25e9 * exchange_s()));
 }
 
 void FrameProtocol::reset() noexcept {

@@ -33,6 +33,8 @@ public:
     virtual void reset() noexcept = 0;
     /// How long the line must be silent before it is asked again without an answer. 0: it may be asked at any time.
     virtual std::int64_t patience_ns() const noexcept { return 0; }
+    /// s that a request and its answer take on the line, at least.
+    virtual double exchange_s() const noexcept { return 0.0; }
     const Told& told() const noexcept { return told_; }
 
 protected:
@@ -48,6 +50,7 @@ public:
     void reset() noexcept override;
     /// A little more than a request and its answer take on the line: torques that wait there come too late.
     std::int64_t patience_ns() const noexcept override;
+    double exchange_s() const noexcept override;
 
 private:
     int motors_, baud_;

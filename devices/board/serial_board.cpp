@@ -129,7 +129,7 @@ private:
         info.max_force = settings_.max_force;
         info.max_stiffness = 300.0;
         info.resolution = 20e-6;
-        info.delay = 3e-3;
+        info.delay = std::max(3e-3, protocol_->exchange_s());
         return info;
     }
 
