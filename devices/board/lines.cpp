@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/board/lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -22,6 +23,14 @@ void FrameProtocol::take(std::span<const std::uint8_t> bytes, std::int64_t) noex
         ++told_.heard;
         ++told_.count;
     }
+}
+
+double FrameProtocol::exchange_s() const noexcept {
+    return 10.0 * (22 + 32) / baud_;  // both frames, each byte with a start and a stop bit
+}
+
+std::int64_t FrameProtocol::patience_ns() const noexcept {
+    return std::max<std::int64_t>(4'000'000, std::llround(1.25e9 * exchange_s()));
 }
 
 void FrameProtocol::reset() noexcept {

@@ -33,6 +33,8 @@ public:
     virtual void reset() noexcept = 0;
     /// How long the line must be silent before it is asked again without an answer. 0: it may be asked at any time.
     virtual std::int64_t patience_ns() const noexcept { return 0; }
+    /// s that a request and its answer take on the line, at least.
+    virtual double exchange_s() const noexcept { return 0.0; }
     const Told& told() const noexcept { return told_; }
 
 protected:
@@ -42,13 +44,16 @@ protected:
 /// Tactus' own frames with a checksum.
 class FrameProtocol final : public Protocol {
 public:
-    explicit FrameProtocol(int motors) : motors_(motors) {}
+    FrameProtocol(int motors, int baud) : motors_(motors), baud_(baud) {}
     std::span<const std::uint8_t> request(const std::array<double, 2>& torque, bool run) noexcept override;
     void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept override;
     void reset() noexcept override;
+    /// A little more than a request and its answer take on the line: torques that wait there come too late.
+    std::int64_t patience_ns() const noexcept override;
+    double exchange_s() const noexcept override;
 
 private:
-    int motors_;
+    int motors_, baud_;
     std::uint16_t sequence_ = 0;
     gripper::FrameReader reader_;
     gripper::FrameBytes out_;

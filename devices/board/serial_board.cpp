@@ -129,7 +129,7 @@ private:
         info.max_force = settings_.max_force;
         info.max_stiffness = 300.0;
         info.resolution = 20e-6;
-        info.delay = 3e-3;
+        info.delay = std::max(3e-3, protocol_->exchange_s());
         return info;
     }
 
@@ -173,7 +173,8 @@ private:
     /// A line that is never silent is told all the same: its board may hold a force.
     bool may_ask() const noexcept {
         const std::int64_t now = hosted::steady_ns();
-        return protocol_->told().heard != asked_count_ || now - asked_ns_ >= longest_patience_ns ||
+        return protocol_->told().heard != asked_count_ ||
+               now - asked_ns_ >= std::max(longest_patience_ns, 2 * protocol_->patience_ns()) ||
                now - std::max(asked_ns_, byte_ns_) >= protocol_->patience_ns();
     }
 
@@ -236,8 +237,8 @@ std::unique_ptr<driver::Backend> make_serial_board(Options& options) {
         settings.setup = fmt::format("sector {}", radius);
     }
     settings.setup += settings.are_motors_far ? " far" : " near";
-    const int motors = settings.mechanism.motors();
-    return std::make_unique<SerialBoard>(std::move(settings), std::make_unique<FrameProtocol>(motors));
+    const int motors = settings.mechanism.motors(), baud = settings.baud;
+    return std::make_unique<SerialBoard>(std::move(settings), std::make_unique<FrameProtocol>(motors, baud));
 }
 
 std::unique_ptr<driver::Backend> make_haply_2diy(Options& options) {

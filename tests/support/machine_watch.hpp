@@ -19,10 +19,13 @@ public:
     MachineWatch& operator=(const MachineWatch&) = delete;
 
     std::int64_t late() const { return late_; }
+    /// Whether that can be why a test failed. One of a window waits for pictures: only what is longer than one delays it.
+    bool excuses(bool shows_window) const { return late_ > 0 && (!shows_window || worst_ns_ > picture_ns); }
     /// "woke a thread that does nothing late 3 times in 2.0 s, at worst by 12.5 ms".
     std::string text() const;
 
 private:
+    static constexpr std::int64_t picture_ns = 16'667'000;
     void watch();
 
     std::atomic<bool> is_over_ = false;

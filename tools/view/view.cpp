@@ -49,7 +49,10 @@ RunChoice run_of_plan(RunChoice choice, const fs::path& plan) {
 class Viewer {
 public:
     Viewer(const ViewChoice& view, const std::atomic<bool>& interrupted)
-        : view_(view), interrupted_(interrupted), window_("Tactus", view.width, view.height, view.scale) {
+        : view_(view),
+          interrupted_(interrupted),
+          window_("Tactus", view.width, view.height, view.scale),
+          scan_(view.scan) {
         ++haptic::window_hand().windows;
         if (!view.script.empty()) {
             script_.emplace(view.script);
@@ -151,7 +154,7 @@ private:
         if (!layout) layout = layout_of_name(bench_->window().layout);
         desk_->layout = layout.value_or(Layout::patch);
         desk_->scene().use(view_.sight);
-        if (!view_.scan.empty()) desk_->slices().open(view_.scan);
+        if (!scan_.empty()) desk_->slices().open(scan_);
         if (view_.reference.empty()) return;
         desk_->scopes().set_reference(view_.reference);
     }
@@ -167,6 +170,7 @@ private:
     void open_wanted() {
         const DeskWishes wanted = std::exchange(wanted_, {});
         try {
+            if (bench_ && !bench_->editor().file().empty()) scan_.clear();
             if (wanted.start_page) return open_start_page();
             if (wanted.new_patch) return open_untitled();
             if (fs::exists(wanted.open / "take.json")) return open_take(wanted.open);
@@ -224,6 +228,7 @@ private:
     std::unique_ptr<Desk> desk_;
     DeskWishes wanted_, asked_;  ///< asked: waits for what becomes of unsaved edits
     WindowMemory memory_;
+    fs::path scan_;  ///< given for what is opened first; another case has another one
     bool has_opened_ = false;
 
 public:

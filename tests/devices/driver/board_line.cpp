@@ -84,3 +84,34 @@ TEST_CASE("a board is understood again within 20 ms after noise on its line", "[
         CHECK(device->returns() == 0);
     }
 }
+
+TEST_CASE("torques do not wait in a slow line: a board at 115200 baud gives a new force within 40 ms", "[live]") {
+    for (const PeerKind& kind : boards()) {
+        CAPTURE(kind.driver);
+        const auto board = kind.make();
+        board->place(place, {1.0, 0.0, 0.0, 0.0});
+        faults_of(*board).bytes_per_s = 11'520;
+        // The energy cap counts on the time that both frames take, 54 bytes of 10 bits.
+        CHECK(board->backend()->outline().info.delay ==
+              Approx(kind.driver == std::string("serial_board") ? 540.0 / 115'200.0 : 3e-3));
+        const auto device = open_peer(*board);
+        REQUIRE(waits_for_valid(*device));
+        std::vector<std::int64_t> took;
+        for (int i = 0; i < 11; ++i) {
+            const double wanted = i % 2 == 0 ? 0.3 : -0.3;
+            const std::int64_t begin = steady_ns();
+            // For long enough that a line which is told too often would be full.
+            std::int64_t given = 0;
+            while (steady_ns() - begin < 600 * ms) {
+                device->commit({{0.0, wanted, 0.0}, {}});
+                device->acquire(1e-3);
+                if (given == 0 && board->given().force.y * wanted > 0.02) given = steady_ns() - begin;
+                hosted::sleep_until(steady_ns() + ms);
+            }
+            took.push_back(given == 0 ? 600 * ms : given);
+        }
+        std::ranges::sort(took);
+        CAPTURE(took.front(), took.back());
+        CHECK(took[took.size() / 2] < 40 * ms);  // one that is late shows a loaded machine
+    }
+}

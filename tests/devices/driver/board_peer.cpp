@@ -177,6 +177,15 @@ private:
         std::memcpy(answer + 1, told, sizeof told);
         tell(answer, sizeof answer);
     }
+    /// Bytes that came over the line since it was asked for the last time.
+    std::size_t may_hear(std::size_t most) {
+        const auto now = std::chrono::steady_clock::now();
+        const double came = std::chrono::duration<double>(now - asked_).count() * faults.bytes_per_s + part_;
+        asked_ = now;
+        if (faults.bytes_per_s == 0) return most;
+        part_ = came - std::floor(came);
+        return std::min(most, static_cast<std::size_t>(came));
+    }
     void run() {
         auto heard = std::chrono::steady_clock::now();
         while (!ends_) {
@@ -189,7 +198,7 @@ private:
             if (master_ < 0) continue;
             if (const int count = faults.burst.exchange(0); count > 0) send(noise(count));
             std::uint8_t bytes[256];
-            const ssize_t count = is_silent_ ? 0 : ::read(master_, bytes, sizeof bytes);
+            const ssize_t count = is_silent_ ? 0 : ::read(master_, bytes, may_hear(sizeof bytes));
             if (count > 0) heard = std::chrono::steady_clock::now();
             for (ssize_t i = 0; i < count; ++i) speaks_frames_ ? take_frame(bytes[i]) : take_diy(bytes[i]);
             if (std::chrono::steady_clock::now() - heard > std::chrono::milliseconds(20)) {
@@ -216,6 +225,8 @@ private:
     std::deque<std::vector<std::uint8_t>> waiting_;
     const Random random_{23};
     std::uint64_t draw_ = 0;
+    std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
+    double part_ = 0.0;
     std::thread thread_;
 };
 

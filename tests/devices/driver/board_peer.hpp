@@ -24,6 +24,7 @@ struct LineFaults {
     std::atomic<int> drop_percent{0};     ///< all are
     std::atomic<int> noise_percent{0};    ///< foreign bytes come before it
     std::atomic<int> late_answers{0};     ///< so many wait in the line
+    std::atomic<int> bytes_per_s{0};      ///< the board hears no more than that; 0: all at once
     std::atomic<int> burst{0};            ///< so many foreign bytes come now
 };
 LineFaults& faults_of(Peer& board);

@@ -44,7 +44,7 @@ using namespace tactus;
 
 TEST_CASE("the sketch for boards answers the driver's frames, unwraps its sensor, and lets go after 20 ms") {
     sketch::setup();
-    board::FrameProtocol line(1);
+    board::FrameProtocol line(1, 115200);
     const auto exchange = [&](double torque) {
         const auto request = line.request({torque, 0.0}, true);
         for (const std::uint8_t noise : {0x00, 0xA5, 0xA5}) sketch::received.push_back(noise);  // a line is never clean

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace tactus;
     if (size == 0) return 0;
     std::unique_ptr<board::Protocol> protocol;
-    if (data[0] % 2 == 0) protocol = std::make_unique<board::FrameProtocol>(2);
+    if (data[0] % 2 == 0) protocol = std::make_unique<board::FrameProtocol>(2, 115200);
     else protocol = std::make_unique<board::DiyProtocol>(board::DiyProtocol::Settings{});
     const board::Mechanism linkage = board::Mechanism::pantograph(0.05, 0.07, 0.02);
     for (std::size_t at = 1; at < size;) {

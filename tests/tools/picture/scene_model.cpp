@@ -272,6 +272,15 @@ TEST_CASE("plates with their screws and implants are drawn where the plan has th
     model.use_hardware(nullptr);
     model.update();
     CHECK(model.parts().empty());
+    // Neither when the plan is gone from the scene, or another one cannot be read.
+    for (const std::string gone : {"", "no.plan.json"}) {
+        model.use_hardware(all);
+        SceneOutline outline;
+        outline.scenes = {{"case.scene", {}, gone}};
+        model.follow(outline);
+        model.update();
+        CHECK(model.parts().empty());
+    }
 }
 
 TEST_CASE("a section shows in grey the density of the place that is cut, whatever the view and the plane") {

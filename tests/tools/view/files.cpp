@@ -64,6 +64,23 @@ TEST_CASE("a folder is listed with its own folders first, and only files that su
     CHECK(open.entries().size() == 4);
 }
 
+TEST_CASE("a folder of slices is chosen as it is shown, by its name, or by a slice in it") {
+    const Folder folder;
+    std::filesystem::create_directories(folder.path / "dicom");
+    folder.write("dicom/slice.dcm", "");
+    FileChooser chooser(FileChooser::For::open, folder.path, {".dcm"});
+    chooser.name = "dicom";
+    CHECK(chooser.accept_folder() == folder.path / "dicom");
+    chooser.go_to(folder.path / "dicom");
+    chooser.name.clear();
+    CHECK(chooser.accept_folder() == folder.path / "dicom");
+    chooser.name = "slice.dcm";
+    CHECK(chooser.accept_folder() == folder.path / "dicom");
+    chooser.name = "gone.dcm";
+    CHECK_FALSE(chooser.accept_folder());
+    CHECK(chooser.problem == "that is no folder");
+}
+
 TEST_CASE("a file to save gets its ending, and never replaces another") {
     const Folder folder;
     folder.write("old.toml", "x");

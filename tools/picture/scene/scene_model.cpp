@@ -98,6 +98,8 @@ void SceneModel::follow(SceneOutline outline) {
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
     forget_vessels();
+    if (std::ranges::all_of(outline_.scenes, [](const auto& scene) { return scene.plan.empty(); }))
+        use_hardware(nullptr);
     take_names();
     is_fitting_ = true;
     waits_ = 0;

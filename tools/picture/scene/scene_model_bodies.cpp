@@ -43,6 +43,7 @@ void SceneModel::take_names() {
             take_vessels(scene.plan, plan);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong
+            use_hardware(nullptr);
         }
     }
 }

@@ -122,6 +122,8 @@ std::optional<fs::path> FileChooser::accept_folder() {
     std::error_code ignored;
     const fs::path file = name.empty() ? folder_ : meant().lexically_normal();
     if (fs::is_directory(file, ignored)) return file;
+    // A slice was clicked: its folder is meant.
+    if (fs::is_regular_file(file, ignored)) return file.parent_path();
     problem = "that is no folder";
     return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/slices/plan_scan.hpp"
 
+#include "assets/cases/plan_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/picture/scene/section_grey.hpp"
@@ -86,6 +87,17 @@ PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t mo
     data.name = "the fragments, where they were scanned";
     data.unit = "mg/cm³";
     return data;
+}
+
+bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::path& other) {
+    try {
+        const cases::CasePlan a = cases::load_case_plan(plan), b = cases::load_case_plan(other);
+        return std::ranges::any_of(a.fragments, [&](const cases::PlanFragment& one) {
+            return std::ranges::find(b.fragments, one.hash, &cases::PlanFragment::hash) != b.fragments.end();
+        });
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 void PlanScan::read(const std::filesystem::path& scan) {

@@ -30,11 +30,17 @@ PlanScanData scan_of_fragments(const std::filesystem::path& plan, std::size_t mo
 /// The same of grids. A sample is that of the nearest one.
 volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t most_samples);
 
+/// Whether a fragment of one plan has the bytes of a fragment of the other one. A plan that cannot be read is of no case.
+bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::path& other);
+
 class PlanScan {
 public:
     /// Reads it; what is read already stays until then. Waits for one that is being read.
     void read(const std::filesystem::path& scan);
     void read_fragments(const std::filesystem::path& plan);
+
+    /// What is read already is shown no longer.
+    void forget() { now_.reset(); }
 
     /// Once per picture. True: there is another scan. Throws Error of what was read.
     bool tend();

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <system_error>
+#include <utility>
 
 namespace tactus::view {
 
@@ -43,10 +45,8 @@ display::Bounds bounds_of(const std::map<std::size_t, SceneModel::PlanPiece>& pi
 
 void PlanSlices::open(const fs::path& scan) {
     is_shown_ = is_chosen_ = true;
-    given_ = fs::absolute(scan);
-    is_of_fragments_ = false;
-    scan_.read(given_);
-    if (!plan_.empty()) memory_.keep_scan(plan_, given_);
+    asked_ = fs::absolute(scan);
+    scan_.read(asked_);
 }
 
 void PlanSlices::toggle() {
@@ -54,18 +54,29 @@ void PlanSlices::toggle() {
     is_chosen_ = true;
 }
 
-/// The scan that was shown with this plan last, or what its fragments hold.
+/// Of the fragments, when no scan is asked for.
+void PlanSlices::read(const fs::path& scan) {
+    asked_ = scan;
+    if (scan.empty()) scan_.read_fragments(plan_);
+    else scan_.read(scan);
+}
+
+/// The scan that was shown with this plan last, or what its fragments hold. A plan that was changed keeps its scan; that of
+/// another case does not get it.
 void PlanSlices::find_scan() {
     const fs::path plan = scene_.plan_file();
     if (plan.empty() || plan == plan_) return;
-    plan_ = plan;
-    if (!given_.empty()) return memory_.keep_scan(plan_, given_);
-    if (const fs::path known = memory_.scan_of(plan_); !known.empty() && fs::exists(known)) {
-        scan_.read(given_ = known);
-        return;
+    const fs::path before = std::exchange(plan_, plan);
+    const bool is_further = before.empty() || are_of_one_case(before, plan);
+    if (is_further && !asked_.empty()) return;
+    if (is_further && !given_.empty()) return memory_.keep_scan(plan_, given_);
+    if (!is_further) {
+        scan_.forget();
+        given_.clear();
     }
-    is_of_fragments_ = true;
-    scan_.read_fragments(plan_);
+    const fs::path known = memory_.scan_of(plan_);
+    std::error_code ignored;
+    read(fs::exists(known, ignored) ? known : fs::path());
 }
 
 void PlanSlices::tend() {
@@ -74,8 +85,12 @@ void PlanSlices::tend() {
         if (!scan_.tend()) return;
     } catch (const std::exception& error) {
         bench_.tell(error.what(), true);
+        const bool was_asked = !std::exchange(asked_, {}).empty();
+        if (was_asked && !scan_.now() && !plan_.empty()) read({});
         return;
     }
+    given_ = std::exchange(asked_, {});
+    if (!given_.empty() && !plan_.empty()) memory_.keep_scan(plan_, given_);
     ++scans_;
     window_ = scan_.now()->window;
     sight_.pixels_per_m = 0.0;
@@ -174,8 +189,8 @@ void PlanSlices::head(const Fonts&) {
     if (!is_shown_) return ImGui::NewLine();
     const PlanScanData* const scan = scan_.now();
     if (scan_.is_reading())
-        return ImGui::TextDisabled("reading %s ...", is_of_fragments_ ? "the fragments" : given_.filename().c_str());
-    if (!scan) return ImGui::TextDisabled("this plan's files hold no densities");
+        return ImGui::TextDisabled("reading %s ...", asked_.empty() ? "the fragments" : asked_.filename().c_str());
+    if (!scan) return ImGui::TextDisabled("this plan's files hold no densities, or too many for slices");
     std::string words = scan->name;
     if (scene_.cursor) {
         const volume::Grid& grid = scan->grid;

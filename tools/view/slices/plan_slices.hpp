@@ -30,7 +30,7 @@ public:
     /// While the slices are not drawn: there is no cursor in the scene.
     void rest() { scene_.cursor.reset(); }
     void add_commands(std::vector<Command>& all);
-    /// Shows a CT, and remembers it for the plan.
+    /// Shows a CT, and remembers it for the plan when it could be read.
     void open(const std::filesystem::path& scan);
     bool is_shown() const { return is_shown_; }
     /// As long as nobody has shown or hidden them.
@@ -43,6 +43,7 @@ public:
 
 private:
     void toggle();
+    void read(const std::filesystem::path& scan);
     void find_scan();
     void tend();
     void head(const Fonts& fonts);
@@ -60,10 +61,11 @@ private:
     SliceSight sight_;
     GreyWindow window_;
     std::array<SliceTexture, 3> textures_;
-    std::filesystem::path plan_, given_;  ///< plan: of which a scan was looked for
+    /// plan: of which a scan was looked for; asked: being read; given: shown, empty when it is of the fragments.
+    std::filesystem::path plan_, asked_, given_;
     Vec3 known_cursor_{0.0};
     int scans_ = 0;  ///< counts those that were read
-    bool is_shown_ = true, is_chosen_ = false, is_of_fragments_ = false;
+    bool is_shown_ = true, is_chosen_ = false;
 };
 
 }  // namespace tactus::view

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slices beside the scene of a plan: their scan and the outlines in them.
+#include "assets/cases/plan_file.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
@@ -174,6 +175,26 @@ TEST_CASE("a scan is read beside the pictures, and one that is none is refused")
     const std::vector<volume::Segment> segments{{1, "bone"}};
     volume::write_labels(grid, labels, segments, folder.path / "labels.nrrd");
     CHECK_THROWS_AS(read_plan_scan(folder.path / "labels.nrrd"), Error);
+}
+
+TEST_CASE("plans are of one case when they share the bytes of a fragment, not its name") {
+    const Folder folder;
+    const auto plan_of = [&](const std::string& name, std::vector<std::uint64_t> hashes) {
+        cases::CasePlan plan;
+        for (const std::uint64_t hash : hashes) {
+            const std::string fragment = "fragment_0" + std::to_string(plan.fragments.size() + 1);
+            plan.fragments.push_back({fragment, fragment + ".vdb", hash});
+        }
+        cases::save_case_plan(plan, folder.path / name);
+        return folder.path / name;
+    };
+    const auto mine = plan_of("mine.plan.json", {11, 12}), changed = plan_of("changed-1.plan.json", {12, 13, 14}),
+               another = plan_of("another.plan.json", {21, 22});
+    CHECK(are_of_one_case(mine, mine));
+    CHECK(are_of_one_case(mine, changed));
+    CHECK_FALSE(are_of_one_case(mine, another));
+    CHECK_FALSE(are_of_one_case(mine, folder.path / "gone.plan.json"));
+    CHECK_FALSE(are_of_one_case(folder.write("cut.plan.json", "{"), mine));
 }
 
 TEST_CASE("the window remembers the scan of a plan") {

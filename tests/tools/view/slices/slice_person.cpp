@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/view/front_view.hpp"
 #include "tests/tools/view/walk.hpp"
+#include "tools/view/files/window_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,4 +99,21 @@ TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, a
         walk.keep("hidden");
         walk.stop();
     }
+}
+
+TEST_CASE("a scan that is given for one case is not shown beside another one, nor remembered for it",
+          "[display][live]") {
+    Walk walk(usual_window, "other-case");
+    if (!walk.is_possible()) return;
+    const volume::Grid ct{{20, 20, 20}, Vec3(-0.01), Vec3(0.001), std::vector<float>(8000, 500.0f)};
+    volume::write_volume(ct, volume::WrittenType::int16, walk.folder.path / "ct.nrrd");
+    const auto mine = case_folder() / "case.plan.json", other = library_folder() / "cases/fibula-flap/case.plan.json";
+    walk.start_script(
+        "run planning-trauma --view --layout plan --scan ct.nrrd --set hand.device=mouse --audio none "
+        "--out out --seconds 60 --json",
+        "wait 6\nopen " + other.string() + "\nlayout plan\nrun\nwait 8\nclose\n", 60.0);
+    walk.end(60.0);
+    const view::WindowMemory memory(walk.folder.path / "state/tactus/window.json");
+    CHECK(memory.scan_of(mine).filename() == "ct.nrrd");
+    CHECK(memory.scan_of(other).empty());
 }
