@@ -83,11 +83,27 @@ class Bone:
         self.edges = np.unique(np.sort(np.concatenate([self.t[:, [0, 1]], self.t[:, [1, 2]], self.t[:, [2, 0]]]),
                                        axis=1), axis=0)
 
-    def distance(self, p, most=20 * MM):
+    def distance(self, p, most=20 * MM, is_sure=False):
         away = np.minimum(self.tree.query(p, distance_upper_bound=most)[0], most)
         near = self.middle.query(p)[1]
         behind = np.einsum("px,px->p", p - self.v[self.t[near]].mean(axis=1), self.normal[near]) < 0
+        # Beside an edge or a large triangle the nearest middle may be of another side: the solid angle does not err.
+        if is_sure:
+            doubt = np.flatnonzero(behind & (away < most))
+            behind[doubt] = self.encloses(p[doubt])
         return np.where(behind & (away < most), -away, away)
+
+    def encloses(self, p):
+        """By the solid angle under which the surface is seen (van Oosterom and Strackee 1983)."""
+        inside = np.zeros(len(p), bool)
+        for n, point in enumerate(p):
+            a, b, c = ((self.v - point)[self.t[:, k]] for k in range(3))
+            la, lb, lc = (np.sqrt(np.einsum("tx,tx->t", x, x)) for x in (a, b, c))
+            over = np.einsum("tx,tx->t", a, np.cross(b, c))
+            under = (la * lb * lc + np.einsum("tx,tx->t", a, b) * lc + np.einsum("tx,tx->t", b, c) * la
+                     + np.einsum("tx,tx->t", c, a) * lb)
+            inside[n] = abs(2.0 * np.arctan2(over, under).sum()) > 2.0 * np.pi
+        return inside
 
     def rim(self, origin, normal):
         h = (self.v - origin) @ normal
@@ -236,18 +252,19 @@ class Flap:
                 spans.append((n, m, at[c] - at[b - 1], np.linalg.norm(self.to_jaw(n, p[b - 1]) - self.to_jaw(m, p[c]))))
         return pedicle, [self.to_jaw(n, p[thinned(a, b)]) for n, a, b in attached], spans
 
-    def bone_distance(self, p, near=20 * MM):
+    def bone_distance(self, p, near=20 * MM, is_sure=False):
         """Of points in the jaw's frame from stumps and segments; of segments beside their cuts a lower bound."""
         least = np.full(len(p), near)
         for stump in self.stumps:
-            least = np.minimum(least, stump.distance(p, near))
+            least = np.minimum(least, stump.distance(p, near, is_sure))
         for n, (turn, shift) in enumerate(self.poses):
             at = (p - shift) @ turn
             (o0, n0), (o1, n1) = self.cuts[n]
             beyond = np.maximum((o0 - at) @ n0, (at - o1) @ n1)
             some = beyond < least
             if some.any():
-                least[some] = np.minimum(least[some], np.maximum(beyond[some], self.donor.distance(at[some], near)))
+                inside = self.donor.distance(at[some], near, is_sure)
+                least[some] = np.minimum(least[some], np.maximum(beyond[some], inside))
         return least
 
     def check_vessels(self):
@@ -292,7 +309,10 @@ class Flap:
         ends = np.minimum(np.linalg.norm(points - points[0], axis=1), np.linalg.norm(points - points[-1], axis=1))
         inner = points[ends > 3 * radius]
         if len(inner) and r["settled"]:
-            deep = self.bone_distance(inner).min() - radius
+            away = self.bone_distance(inner) - radius
+            deep = away.min()
+            if deep < -0.6 * MM:
+                deep = (self.bone_distance(inner[away < -0.6 * MM], is_sure=True) - radius).min()
             if deep < -0.6 * MM:
                 self.wrong.append(f"{what}: the way runs {-deep / MM:.2f} mm too deep in bone")
         strain = max(r["path"] / (FREE * r["in_situ"]) - 1, 0) if r["in_situ"] > 0 else np.inf
