@@ -5,6 +5,7 @@
 #include "assets/sound/sound.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "tests/campaign/limited_run.hpp"
+#include "tests/campaign/other_bone.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/bone_files.hpp"
 #include "tests/support/places.hpp"
