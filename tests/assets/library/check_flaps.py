@@ -334,8 +334,14 @@ class Flap:
         r["my_bend"] = bend
         for key, pick in (("to_plate", lambda b: b[2]), ("to_screw", lambda b: b[1] is not None and not b[2])):
             bodies = [b for b in bodies_of(self.given) if pick(b)]
-            p = walked(points, 0.1 * MM)[0]
-            mine = min((from_body(p, b).min() for b in bodies), default=None)
+            mine = None
+            if bodies:
+                p = walked(points, 0.1 * MM)[0]
+                away = np.min([from_body(p, b) for b in bodies], axis=0)
+                # Past a corner the nearest point lies between two samples.
+                k = int(np.argmin(away))
+                fine = walked(p[max(k - 1, 0):k + 2], 1e-3 * MM)[0]
+                mine = min(from_body(fine, b).min() for b in bodies)
             self.expect(f"{what} {key}", None if mine is None else mine - radius, r[key], 6e-3 * MM)
 
     def check_twists(self):
@@ -504,9 +510,10 @@ class Flap:
         for r in self.said["reaches"]:
             points = np.array(r["points"])
             straight = np.linalg.norm(points[-1] - points[0])
-            if not r["settled"] or r["path"] < 1.01 * straight:
-                continue
             radius = self.radius[r["vessel"]]
+            # Two radii round each end are open to the grid: of a short way that is most.
+            if not r["settled"] or r["path"] < max(1.01 * straight, 10 * radius):
+                continue
             low, high = points.min(axis=0) - 25 * MM, points.max(axis=0) + 25 * MM
             shape = np.ceil((high - low) / step).astype(int) + 1
             grid = np.stack(np.meshgrid(*[np.arange(k) for k in shape], indexing="ij"), axis=-1).reshape(-1, 3)
