@@ -141,12 +141,11 @@ TEST_CASE("a planner with a mouse gives an alternative another name, but not tha
         };
         const auto name = [&](const std::string& old, const std::string& wanted) {
             REQUIRE(walk.waits_for("alternative " + old, "panel plan steps"));
-            const Spot at = walk.eyes.spot("alternative " + old);
-            for (int n = 0; n < 2; ++n) {
-                walk.person.click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
-                Person::wait(0.05);
-            }
-            REQUIRE(walk.waits_for("name of the alternative"));
+            REQUIRE(walk.until([&] { return walk.shows("name of the alternative"); },
+                               [&] {
+                                   const Spot at = walk.eyes.spot("alternative " + old);
+                                   walk.person.double_click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
+                               }));
             walk.person.type(wanted);
             walk.person.tap("Return");
             CHECK(walk.waits_while("name of the alternative"));
