@@ -15,8 +15,7 @@ std::vector<UncertainRegion> uncertain_regions(const VoxelGraph& graph, std::spa
     for (std::size_t n = 0; n < graph.nodes(); ++n) {
         if (!is_low(n)) continue;
         bool at_border = false;
-        for (const std::int32_t m : around[n])
-            at_border = at_border || m < 0 || !is_low(static_cast<std::size_t>(m));
+        for (const std::int32_t m : around[n]) at_border = at_border || m < 0 || !is_low(static_cast<std::size_t>(m));
         if (!at_border) continue;
         steps[n] = 0;
         queue.push_back(static_cast<std::uint32_t>(n));

@@ -61,12 +61,9 @@ Json card_json(const io::SoundCard& card) {
               {"runs_fast_ppm", 1e6 * card.follower().loop().rate_error()},
               {"losses", card.losses()}};
     if (const io::CardInput* input = card.input())
-        json["heard"] = {{"channels", input->channels()},
-                         {"xruns", input->xruns()},
-                         {"card_xruns", input->card_xruns()},
-                         {"frames_missed", input->frames_missed()},
-                         {"resyncs", input->resyncs()},
-                         {"latency_ms", 1e3 * input->latency_s()}};
+        json["heard"] = {{"channels", input->channels()},     {"xruns", input->xruns()},
+                         {"card_xruns", input->card_xruns()}, {"frames_missed", input->frames_missed()},
+                         {"resyncs", input->resyncs()},       {"latency_ms", 1e3 * input->latency_s()}};
     if (card.lost_at()) json["lost_at_s"] = tactus::seconds(*card.lost_at());
     return json;
 }

@@ -17,7 +17,7 @@ constexpr double least_support = 0.25;
 // on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
 constexpr double heard_as_path = 0.13;
 constexpr std::size_t least_path = 4;  // sections
-constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
+constexpr double jump_in = 0.5;  // of the movement in an eighth of a section: an impact
 
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
 WelchSettings section_settings(double rate, std::size_t frames) {

@@ -20,9 +20,7 @@ using file::Json;
 namespace {
 
 /// "any", or "number, vector or wrench".
-std::string several(const Input& port) {
-    return port.takes == kinds::every ? "any" : type_names(port.takes);
-}
+std::string several(const Input& port) { return port.takes == kinds::every ? "any" : type_names(port.takes); }
 
 class Describer : public MemberVisitor {
 public:

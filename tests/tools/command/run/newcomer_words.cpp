@@ -36,7 +36,8 @@ rate = "1 kHz"
 )";
 }
 
-constexpr const char* gripper_at_absent_port = R"(wires = [ "finger.finger_force -> speed.in", "speed.out -> motor.finger_speed" ]
+constexpr const char* gripper_at_absent_port =
+    R"(wires = [ "finger.finger_force -> speed.in", "speed.out -> motor.finger_speed" ]
 [devices.serial]
 driver = "serial_gripper"
 port = "/dev/no-such-port"
