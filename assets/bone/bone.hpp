@@ -32,10 +32,10 @@ struct Bone {
 };
 
 /// Writes one OpenVDB file. A single bone's float grids are called "distance" and "density", those of several
-/// "NAME.distance" and "NAME.density"; colour, provenance, surface points and scanned border are metadata of the distance grid. All
-/// bones of a file share one frame; their grids may differ. The same bones give the same bytes. A checksum follows the
-/// OpenVDB data; other programs ignore it. The file is written atomically. Throws Error when a bone's grids do not
-/// match, when two bones have the same name, when there is none, or when the file cannot be written.
+/// "NAME.distance" and "NAME.density"; colour, provenance, surface points and scanned border are metadata of the distance
+/// grid. All bones of a file share one frame; their grids may differ. The same bones give the same bytes. A checksum
+/// follows the OpenVDB data; other programs ignore it. The file is written atomically. Throws Error when a bone's grids do
+/// not match, when two bones have the same name, when there is none, or when the file cannot be written.
 void save_bones(std::span<const Bone> bones, const std::filesystem::path& path);
 void save_bone(const Bone& bone, const std::filesystem::path& path);
 

@@ -22,8 +22,7 @@ struct TumourMargin {
         "The safety margin of a tumour, as walls that stop the hand: one for each plane at which the plan cuts the "
         "jaw, parallel to it, where the margin ends. A wall holds the hand that comes through it from the side of the "
         "stump; a hand that came another way is free. The walls are there as long as the piece with the tumour lies "
-        "where it "
-        "was scanned and is not held. Research use: the margin is a parameter, not clinical advice.";
+        "where it was scanned and is not held. Research use: the margin is a parameter, not clinical advice.";
 
     In<tactus::coupling::Scene> scene{"the pieces, in the order of the plan"};
     In<Pose> pose{"of the hand in the scene", "m"};

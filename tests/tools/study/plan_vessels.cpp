@@ -48,7 +48,7 @@ TEST_CASE("tools: a vessel of the scan that was removed or undone is no longer t
     CHECK_THROWS_WITH(study::vessel_of_scan(plan, "carotid"), ContainsSubstring("no vessels of its scan"));
 }
 
-TEST_CASE("tools: the last point of a vessel lies on it, however its length rounds") {
+TEST_CASE("the last point of a vessel lies on it, however its length rounds") {
     const Random random{3};
     std::uint64_t index = 0;
     const auto place = [&] { return 0.1 * random.uniform(index++); };
