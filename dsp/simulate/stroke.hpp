@@ -35,6 +35,10 @@ struct StrokePlan {
     /// Stiffness of the grip, N/m, by which an operator who reacts late feeds gently enough not to oscillate.
     double grip_stiffness = 800.0;
     Tremor tremor{};
+    /// m that an operator who pressed goes on without feeling anything. Then the resistance is gone, because the cut is
+    /// through or because the device gives no force: the operator pulls back to the start and comes in anew.
+    double blind_advance = 6e-3;
+    double pause = 2.5;  ///< s at the start before coming in anew: longer than a device takes until its forces return
 
     static constexpr double longest_reaction = 0.5;  ///< s
 };
@@ -109,8 +113,25 @@ private:
             // From the hand's position, not from the intended depth: an operator releases before pulling out.
             depth_ = std::min(depth_, std::max(reached, 0.0));
         }
-        if (retracting_) return std::max(-plan_.retract_speed, -depth_ / h);
+        if (!retracting_) notice_loss(reached);
+        if (retracting_ || pulls_back_) return std::max(-plan_.retract_speed, -depth_ / h);
         return plan_.feed_speed * std::clamp((1.0 - felt_ / plan_.thrust) * calm(), -1.0, 1.0);
+    }
+
+    /// Whether what resisted is gone. Who comes in anew and meets nothing where it was goes on.
+    void notice_loss(double reached) noexcept {
+        if (pulls_back_) {
+            if (depth_ > 0.0) waits_since_ = time_;
+            pulls_back_ = time_ - waits_since_ < plan_.pause;
+        } else if (felt_ >= 0.5 * plan_.thrust) {
+            presses_ = true;
+            pressed_at_ = reached;
+        } else if (presses_ && felt_ < 0.05 * plan_.thrust && reached - pressed_at_ > plan_.blind_advance) {
+            presses_ = false;
+            pulls_back_ = true;
+            waits_since_ = time_;
+            depth_ = std::min(depth_, std::max(reached, 0.0));
+        }
     }
 
     /// An integrator that acts late on a spring oscillates when its gain times the delay comes near π/2; this keeps 1/2.
@@ -147,7 +168,8 @@ private:
     StrokePlan plan_;
     ReactionDelay noticed_;
     double time_ = 0.0, depth_ = 0.0, felt_ = 0.0, retract_from_ = 0.0;
-    bool retracting_ = false;
+    double pressed_at_ = 0.0, waits_since_ = 0.0;  // m along feed_axis, s
+    bool retracting_ = false, presses_ = false, pulls_back_ = false;
 };
 
 }  // namespace tactus::simulate

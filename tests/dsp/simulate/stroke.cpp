@@ -120,6 +120,46 @@ TEST_CASE("an operator whose time is up pulls back too") {
     CHECK(glm::length(cut.hand.pose.position) < 0.5e-3);
 }
 
+TEST_CASE("an operator whose device gives no force any more pulls back, and comes in anew") {
+    simulate::StrokePlan plan;
+    plan.depth = 1.0;
+    simulate::StrokeOperator intend(plan);
+    simulate::Hand hand;
+    double deepest = 0.0, highest = -1.0, thrust = 0.0;
+    for (int i = 0; i < 12000; ++i) {
+        // A wall at 5 mm. From 3 s to 5 s the device gives no force.
+        const bool gives = i < 3000 || i >= 5000;
+        const double inside = -5e-3 - hand.pose.position.z;
+        thrust = gives && inside > 0.0 ? 2000.0 * inside : 0.0;
+        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, period);
+        if (gives) continue;
+        deepest = std::max(deepest, inside);
+        if (i >= 4500) highest = std::max(highest, hand.pose.position.z);
+    }
+    // What the springs of grip and wall held before, the blind way and a reaction; 2 s of feeding would be 60 mm.
+    CHECK(deepest < plan.thrust / 800.0 + plan.thrust / 2000.0 + plan.blind_advance + 2e-3);
+    CHECK(highest > -0.5e-3);
+    CHECK(thrust == Approx(plan.thrust).epsilon(0.1));
+    CHECK_FALSE(intend.is_retracting());
+}
+
+TEST_CASE("an operator who finds nothing where something was goes on to what lies behind") {
+    simulate::StrokePlan plan;
+    plan.depth = 1.0;
+    simulate::StrokeOperator intend(plan);
+    simulate::Hand hand;
+    bool is_open = false;
+    double thrust = 0.0;
+    for (int i = 0; i < 15000; ++i) {
+        // A wall at 5 mm that breaks after 3 s, and one 30 mm behind it.
+        is_open = is_open || i >= 3000;
+        thrust = 5000.0 * std::max(0.0, (is_open ? -35e-3 : -5e-3) - hand.pose.position.z);
+        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, period);
+    }
+    CHECK(hand.pose.position.z < -35e-3);
+    CHECK(thrust == Approx(plan.thrust).epsilon(0.1));
+}
+
 TEST_CASE("an operator notices a force as long after as the reaction time says") {
     for (const double delay : {0.0, 0.05, 0.2, 0.5}) {
         simulate::ReactionDelay noticed(delay);
