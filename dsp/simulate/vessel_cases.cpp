@@ -193,7 +193,7 @@ TrackError compared(const vessel::Track& track, const VesselCase& with) {
             });
         }
     error.covered = double(near) / double(all);
-    error.joint = 1e9;
+    error.joint = std::numeric_limits<double>::infinity();
     if (with.joint)
         for (const vessel::Branch& branch : track.branches)
             if (branch.parent >= 0)

@@ -54,7 +54,7 @@ struct TrackError {
     double worst = 0.0;  ///< greatest of these distances
     double overshoot = 0.0;  ///< past an end of the first line, in its radii
     double covered = 0.0;  ///< share of all lines with a node closer than 1.5 radii
-    double joint = 0.0;  ///< nearest start of a side branch to the joint, radii; 1e9: no side branch
+    double joint = 0.0;  ///< nearest start of a side branch to the joint, radii; infinite: no side branch
 };
 TrackError compared(const vessel::Track& track, const VesselCase& with);
 

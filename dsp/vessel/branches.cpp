@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -25,6 +27,10 @@ double least_between(const Scan& scan, const Vec3& from, const Vec3& to) {
     return least;
 }
 
+/// Share of the vessel's contrast that a branch of this radius shows at least: blur takes brightness from what is thin.
+constexpr double faintest = 0.3;
+double level_of(double radius_voxels) { return std::clamp(radius_voxels - 0.95, faintest, 0.5); }
+
 bool is_taken(const std::vector<Taken>& taken, const Vec3& place, double margin) {
     return std::ranges::any_of(
         taken, [&](const Taken& other) { return glm::length(place - other.position) < other.radius + margin; });
@@ -36,7 +42,7 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
     const Scan& scan = search.scan;
     const double voxel = scan.voxel();
     const Window window = tracking_window(1.3, 2.0);
-    std::vector<SideBranch> found;
+    std::vector<SideBranch> found, thin;
     double next = 0.0;
     for (std::size_t n = 0; n < branch.nodes.size(); ++n) {
         const Node& node = branch.nodes[n];
@@ -59,20 +65,30 @@ std::vector<SideBranch> side_branches(const Search& search, const Branch& branch
                         node.position + (node.radius + off * radius + 0.5 * voxel) / std::cos(tilt) * tube.direction;
                     tube.radius = radius;
                     float value;
-                    // Blur takes brightness from what is thin.
-                    const double level = std::clamp(radius / voxel - 0.7, 0.3, 0.5) * node.contrast;
                     if (!scan.value(tube.centre, value)) continue;
                     tube = measured(scan, window, search.sampling, tube);
-                    if (tube.score < search.least_mean || tube.contrast < level || tube.valid < 0.6) continue;
+                    if (tube.score < search.least_mean || tube.contrast < faintest * node.contrast || tube.valid < 0.6)
+                        continue;
+                    // What is thinner than the template looks faint in it.
+                    const bool is_fitted = tube.contrast < level_of(tube.radius / voxel) * node.contrast;
+                    if (is_fitted) {
+                        tube = fitted(scan, window, search.sampling, tube, {0.5 * radius, radius, 0.5});
+                        if (tube.score < search.least_mean || tube.valid < 0.6) continue;
+                    }
+                    const double level = level_of(tube.radius / voxel) * node.contrast;
+                    if (tube.contrast < level) continue;
                     if (is_taken(taken, tube.centre, 0.3 * radius)) continue;
-                    if (least_between(scan, node.position, tube.centre) < tube.background + level) continue;
-                    found.push_back({tube, static_cast<int>(n)});
+                    const double gap = std::min(level, 0.5 * tube.contrast);
+                    if (least_between(scan, node.position, tube.centre) < tube.background + gap) continue;
+                    (is_fitted ? thin : found).push_back({tube, static_cast<int>(n)});
                 }
             }
         }
     }
-    std::ranges::stable_sort(found,
-                             [](const SideBranch& a, const SideBranch& b) { return a.tube.score > b.tube.score; });
+    // A fit raises the score: what needed none comes first.
+    for (std::vector<SideBranch>* const each : {&found, &thin})
+        std::ranges::stable_sort(*each, std::greater{}, [](const SideBranch& side) { return side.tube.score; });
+    found.insert(found.end(), thin.begin(), thin.end());
     std::vector<SideBranch> kept;
     for (const SideBranch& each : found) {
         const bool is_twin = std::ranges::any_of(kept, [&](const SideBranch& other) {

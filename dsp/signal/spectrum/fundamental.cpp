@@ -36,8 +36,7 @@ bool alike(double a, double b, double ratio) { return a > 0.0 && b > 0.0 && std:
 }  // namespace
 
 FundamentalStream::FundamentalStream(double rate, std::size_t frames, double lowest, double highest)
-    : rate_(rate),
-      lowest_(lowest),
+    : lowest_(lowest),
       highest_(highest),
       whole_(whole_settings(rate, frames)),
       section_(section_settings(rate, frames)),

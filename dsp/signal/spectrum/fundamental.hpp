@@ -55,7 +55,7 @@ private:
     void end_section();
     Path best_path() const;
 
-    double rate_, lowest_, highest_;
+    double lowest_, highest_;
     WelchStream<double> whole_, section_, fresh_section_;
     std::size_t section_length_, in_section_ = 0;
     std::vector<Section> sections_;

@@ -68,6 +68,11 @@ TEST_CASE("both branches of a fork are found and meet near it", "[slow]") {
         }
 }
 
+TEST_CASE("a branch as thin as a voxel is found though its axis lies between the places that are looked at", "[slow]") {
+    for (const std::uint64_t seed : {3, 101, 102, 103})
+        CHECK(followed(simulate::branch_case(2.0, 90.0, 0.5, seed)).error.joint < 1.5);
+}
+
 TEST_CASE("a stenosis is passed and measured") {
     const VesselCase one = simulate::stenosis_case({}, 5);
     const Result result = followed(one);

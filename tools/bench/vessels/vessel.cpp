@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 
@@ -57,7 +58,7 @@ Json row_of(const std::string& group, const std::function<VesselCase(std::uint64
     simulate::TrackError worst, peer;
     double seconds = 0.0, length = 0.0, radius = 0.0, true_radius = 0.0;
     Json narrowed = Json::array();
-    int uncertain = 0;
+    int uncertain = 0, missed = 0;
     bool says_lost = true;
     int found = 0;
     std::string name;
@@ -74,7 +75,8 @@ Json row_of(const std::string& group, const std::function<VesselCase(std::uint64
         worst.rms = std::max(worst.rms, error.rms);
         worst.overshoot = std::max(worst.overshoot, error.overshoot);
         worst.covered = std::min(worst.covered, error.covered);
-        worst.joint = std::max(worst.joint, error.joint);
+        if (std::isfinite(error.joint)) worst.joint = std::max(worst.joint, error.joint);
+        else ++missed;
         radius += error.mean_radius / repeats;
         if (!result.track.branches.empty()) {
             says_lost = says_lost && !result.track.branches[0].lost().empty();
@@ -101,7 +103,10 @@ Json row_of(const std::string& group, const std::function<VesselCase(std::uint64
              {"ridge_rms_voxels", peer.rms},
              {"ridge_covered", peer.covered},
              {"ridge_overshoot_radii", peer.overshoot}};
-    if (group == "y") row["joint_radii"] = worst.joint;
+    if (group == "y") {
+        row["joint_radii"] = worst.joint;
+        row["branches_missed"] = missed;
+    }
     if (group == "stenosis") {
         row["stenosis_percent"] = narrowed;
         row["stenosis_uncertain"] = uncertain;
@@ -116,7 +121,9 @@ void print(const Json& row) {
                100.0 * row["covered"].get<double>(), row["overshoot_radii"].get<double>(),
                row["radius_voxels"].get<double>(), row["true_radius_voxels"].get<double>(),
                row["seconds_per_200_mm"].get<double>());
-    if (row.contains("joint_radii")) fmt::print(", joint {:.2f} R", row["joint_radii"].get<double>());
+    if (row.contains("joint_radii"))
+        fmt::print(", joint {:.2f} R, branch missed in {} of {}", row["joint_radii"].get<double>(),
+                   row["branches_missed"].get<int>(), row["of"].get<int>());
     if (row.contains("stenosis_percent")) {
         fmt::print(", narrowed");
         for (const Json& percent : row["stenosis_percent"]) fmt::print(" {:.0f}", percent.get<double>());
