@@ -38,9 +38,9 @@ public:
     }
     bool wait(int, int) noexcept override { return true; }
     ssize_t read(int, std::span<input_event> events) noexcept override {
+        if (is_over()) return fail(ENODEV);
         const std::size_t count = byte() % 70;
         if (count == 0) return fail(EAGAIN);
-        if (is_over()) return fail(ENODEV);
         if (count > events.size()) return static_cast<ssize_t>(count % sizeof(input_event));  // a part of one
         for (input_event& event : events.first(count)) {
             event = {};
