@@ -129,7 +129,8 @@ private:
         info.max_force = settings_.max_force;
         info.max_stiffness = 300.0;
         info.resolution = 20e-6;
-        info.delay = std::max(3e-3, protocol_->exchange_s());
+        // A motion just after the board was read waits for the next exchange, its force for the one after; and a round.
+        info.delay = std::max(3e-3, 2.0 * protocol_->exchange_s() + 1e-3);
         return info;
     }
 

@@ -91,9 +91,9 @@ TEST_CASE("torques do not wait in a slow line: a board at 115200 baud gives a ne
         const auto board = kind.make();
         board->place(place, {1.0, 0.0, 0.0, 0.0});
         faults_of(*board).bytes_per_s = 11'520;
-        // The energy cap counts on the time that both frames take, 54 bytes of 10 bits.
+        // The energy cap counts on two exchanges of both frames, 54 bytes of 10 bits, and a round of 1 ms.
         CHECK(board->backend()->outline().info.delay ==
-              Approx(kind.driver == std::string("serial_board") ? 540.0 / 115'200.0 : 3e-3));
+              Approx(kind.driver == std::string("serial_board") ? 1080.0 / 115'200.0 + 1e-3 : 3e-3));
         const auto device = open_peer(*board);
         REQUIRE(waits_for_valid(*device));
         std::vector<std::int64_t> took;
