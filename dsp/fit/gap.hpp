@@ -27,7 +27,8 @@ struct SurfaceGap {
 SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose& pose, const contact::Voxmap& other,
                        const Pose& other_pose, const GapSettings& settings = {});
 
-/// m³ inside both bones. Voxels of the first are weighted by their fraction, from the distance.
+/// m³ inside both bones. Voxels of the first are weighted by the fraction that is in both: from the fractions in each, by
+/// the distances, and the directions of the two surfaces. Surfaces that face each other and touch overlap nowhere.
 double overlap_volume(const volume::Grid& first, const Pose& pose, const contact::Voxmap& other,
                       const Pose& other_pose);
 

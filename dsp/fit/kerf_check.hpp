@@ -3,7 +3,8 @@
 //
 // Both halves were one bone: its surface goes on across the gap. Halves that are too far apart or too near to each
 // other along the normal of an oblique break have a step there, of n·ν times the error at a contour with the normal ν.
-// Strips of cortex across the gap, from both halves, give the step; what they do not share is their spread. A square
+// Strips of cortex across the gap, from both halves, give the step; what they do not share is their spread, and so is
+// what strips of two lengths say differently, because curved cortex is no parabola. A square
 // break through a prism leaves no step however wide it gapes: the estimate then has a spread that says so.
 #pragma once
 

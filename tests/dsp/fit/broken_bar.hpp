@@ -47,6 +47,8 @@ struct BarOptions {
     Vec3 far{0.0};           ///< where the file has the half
     bool is_flat = false;    ///< the section is a rectangle, not an ellipse
     double bend = 1.0;       ///< ratio of the section's lower half width to the upper one
+    double swell = 0.0;      ///< m: the bar's sides wave by it along x, over y
+    double wave = 30.0 * mm, phase = 0.0;  ///< m, and rad at the break
 };
 
 struct Half {
@@ -58,7 +60,8 @@ struct Half {
 
 /// A bar of elliptic section, 12 by 24 mm, 18 mm of it to the left (side −1) or right (+1) of the break.
 inline Half bar_half(double side, const Relief& relief, const BarOptions& o = {}) {
-    const auto bar = [&o](const Vec3& p) {
+    const auto bar = [&o](Vec3 p) {
+        p.y -= o.swell * std::sin(2.0 * 3.14159265 * p.x / o.wave + o.phase);
         if (o.is_flat)
             return std::max({std::abs(p.y) - 6.0 * mm, std::abs(p.z) - 12.0 * mm, std::abs(p.x) - 18.0 * mm});
         const double width = 6.0 * mm * (p.z < 0.0 ? o.bend : 1.0);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 using namespace tactus;
@@ -20,14 +21,15 @@ struct Oblique {
     fit::FitSurface moving, fixed;
 
     Oblique(double gap, double height, double slope = 0.35, bool is_flat = false)
-        : left(half(-1.0, gap, height, slope, is_flat)),
-          right(half(1.0, gap, height, slope, is_flat)),
+        : Oblique({.gap = gap, .is_flat = is_flat}, height, slope) {}
+    Oblique(const BarOptions& bar, double height, double slope)
+        : left(half(-1.0, bar, height, slope)),
+          right(half(1.0, bar, height, slope)),
           moving(left.surface()),
           fixed(right.surface()) {}
-    static Half half(double side, double gap, double height, double slope, bool is_flat) {
+    static Half half(double side, const BarOptions& bar, double height, double slope) {
         const Relief rough = rough_relief(3, height);
-        return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; },
-                        {.gap = gap, .is_flat = is_flat});
+        return bar_half(side, [rough, slope](double y, double z) { return rough(y, z) + slope * y; }, bar);
     }
     fit::KerfEstimate check(std::optional<double> told, const Pose& pose = {}) const {
         return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
@@ -101,6 +103,27 @@ TEST_CASE("dsp: what a contour says of the opening is as uncertain as the faces 
     };
     CAPTURE(spread(0.0) / mm, spread(0.15 * mm) / mm);
     CHECK(spread(0.15 * mm) > 1.5 * spread(0.0));
+}
+
+TEST_CASE("dsp: what a contour says of the opening of a curved bone is as uncertain as it is wrong") {
+    const Random random{21};
+    double squares = 0.0, errors = 0.0;
+    constexpr std::uint64_t bones = 16;
+    for (std::uint64_t n = 0; n < bones; ++n) {
+        const BarOptions curved{.swell = (0.5 + random.uniform(4 * n)) * mm,
+                                .wave = (18.0 + 18.0 * random.uniform(4 * n + 1)) * mm,
+                                .phase = 2.0 * std::numbers::pi * random.uniform(4 * n + 2)};
+        const double slope = 0.35 + 0.4 * random.uniform(4 * n + 3);
+        const fit::ContourOpening seen = Oblique(curved, 0.2 * mm, slope).opening({});
+        CAPTURE(n, seen.excess / mm, seen.spread / mm);
+        CHECK(std::abs(seen.excess) < 3.0 * seen.spread);
+        squares += seen.excess * seen.excess / (seen.spread * seen.spread);
+        errors += seen.excess * seen.excess;
+    }
+    CAPTURE(std::sqrt(errors / bones) / mm);
+    const double ratio = std::sqrt(squares / bones);
+    CHECK(ratio > 0.4);
+    CHECK(ratio < 1.2);
 }
 
 TEST_CASE("dsp: a nearly square break that nobody told a kerf of is no fit, because none is excluded") {

@@ -123,6 +123,14 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
     return shaft;
 }
 
+/// Of what the contour said of a kerf; nothing of a shaft that was not judged so far.
+std::string words_of(const std::optional<fit::KerfEstimate>& kerf) {
+    if (!kerf) return "";
+    if (kerf->told == 0.0) return ", no kerf looked for";
+    if (kerf->contour.strips == 0) return ", no contour seen";
+    return fmt::format(", kerf seen {:.2f} ± {:.2f} mm", kerf->kerf * 1e3, kerf->spread * 1e3);
+}
+
 double part_of(std::vector<double> values, double share) {
     std::ranges::sort(values);
     return values.empty() ? 0.0
@@ -152,16 +160,13 @@ int bench_shafts(const ShaftsChoice& choice) {
                         {"held_mm", std::min(shaft.precision.far * 1e3, 1e3)},
                         {"held_deg", std::min(shaft.precision.turn / degree, 180.0)},
                         {"gap_mm", shaft.open * 1e3}});
-        if (shaft.kerf) {
+        if (shaft.kerf && shaft.kerf->contour.strips > 0) {
             rows.back()["kerf_seen_mm"] = shaft.kerf->kerf * 1e3;
             rows.back()["kerf_spread_mm"] = shaft.kerf->spread * 1e3;
         }
         if (choice.json) continue;
         fmt::print("shaft {}: {}, face {:.0f} mm²: {:.3f}°, {:.3f} mm at 150 mm, gap {:.3f} mm{}\n", n, shaft.verdict,
-                   shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3,
-                   shaft.kerf
-                       ? fmt::format(", kerf seen {:.2f} ± {:.2f} mm", shaft.kerf->kerf * 1e3, shaft.kerf->spread * 1e3)
-                       : "");
+                   shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3, words_of(shaft.kerf));
         std::fflush(stdout);
     }
     const Json total{{"shafts", choice.count},

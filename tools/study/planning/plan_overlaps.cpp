@@ -20,7 +20,7 @@ namespace tactus::study {
 namespace {
 
 // To be raised with every change of code that changes what lies in what: import of meshes, sampling, dsp/fit/overlap.
-constexpr int algorithm = 1;
+constexpr int algorithm = 2;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
