@@ -5,7 +5,7 @@
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/flap/flap_report.hpp"
 #include "tools/picture/report/html_report.hpp"
-#include "tools/picture/report/plan_page.hpp"
+#include "tools/picture/plan/plan_page.hpp"
 #include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
