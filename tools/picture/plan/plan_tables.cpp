@@ -114,7 +114,8 @@ void add_vessels(const DrawnPlan& c, std::vector<ReportBlock>& out) {
     out.emplace_back(Heading{"Vessels"});
     out.emplace_back(
         Paragraph{"They stay where they were scanned. The gap is from the vessel's wall to the surface of "
-                  "the nearest fragment; below 0 bone lies in the vessel."});
+                  "the nearest fragment; below 0 bone lies in the vessel. 'tactus plan export' writes files of the "
+                  "vessels beside those of the fragments."});
     out.emplace_back(std::move(table));
 }
 
