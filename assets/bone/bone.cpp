@@ -336,4 +336,10 @@ Bone load_bone(const std::filesystem::path& path) {
 
 std::filesystem::path file_of_bone(const std::filesystem::path& path) { return split(path).file; }
 
+bool name_one_bone(const std::filesystem::path& one, const std::filesystem::path& other) {
+    const auto a = split(one), b = split(other);
+    std::error_code failed;
+    return std::filesystem::equivalent(a.file, b.file, failed) && a.name == b.name;
+}
+
 }  // namespace tactus::bone

@@ -51,4 +51,7 @@ Bone load_bone(const std::filesystem::path& path);
 /// The path without "#NAME", unless a file of the full name exists.
 std::filesystem::path file_of_bone(const std::filesystem::path& path);
 
+/// Whether two paths, each perhaps with "#NAME", name the same bone of the same file.
+bool name_one_bone(const std::filesystem::path& one, const std::filesystem::path& other);
+
 }  // namespace tactus::bone

@@ -3,6 +3,7 @@
 
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/from_hu.hpp"
+#include "assets/bone/thin_sheets.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/surface_net.hpp"
@@ -191,21 +192,29 @@ void move_to_level(const Grey& grey, geometry::SurfaceNet& net, double level) {
     }
 }
 
-// Shifts the whole surface until it encloses the volume of the labelled voxels. Every labelled voxel stays inside.
-void keep_volume(volume::Grid& distance, const volume::Grid& mask, double voxels) {
+// Shifts the whole surface until it encloses the volume of the labelled voxels. Every labelled voxel stays inside; where
+// bone is thin, by so much that the sheet between neighbouring samples does not break up.
+void keep_volume(volume::Grid& distance, const volume::Grid& mask, const std::vector<char>& thin, double voxels) {
     const double wanted = voxels * mask.spacing.x * mask.spacing.y * mask.spacing.z;
     const double cell = std::min({mask.spacing.x, mask.spacing.y, mask.spacing.z});
-    for (int round = 0; round < 2; ++round) {
-        if (distance.size == mask.size && distance.spacing == mask.spacing)
-            for (std::size_t n = 0; n < distance.values.size(); ++n)
-                if (mask.values[n] > 0.5f)
-                    distance.values[n] = std::min(distance.values[n], static_cast<float>(-0.02 * cell));
+    const bool has_samples = distance.size == mask.size && distance.spacing == mask.spacing;
+    const auto keep_inside = [&](bool only_thin) {
+        for (std::size_t n = 0; has_samples && n < distance.values.size(); ++n)
+            if (mask.values[n] > 0.5f && (thin[n] != 0 || !only_thin))
+                distance.values[n] =
+                    std::min(distance.values[n], static_cast<float>((thin[n] != 0 ? -0.25 : -0.02) * cell));
+    };
+    // What thin sheets keep is taken from the rest, a part in each round.
+    const int rounds = std::ranges::find(thin, 1) != thin.end() ? 4 : 2;
+    for (int round = 0; round < rounds; ++round) {
+        keep_inside(false);
         const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, false);
         if (surface.triangles.empty()) return;
         const double outwards =
             std::clamp((wanted - mesh::volume_of(surface)) / mesh::area_of(surface), -0.5 * cell, 0.5 * cell);
         for (float& d : distance.values) d -= static_cast<float>(outwards);
     }
+    keep_inside(true);
 }
 
 }  // namespace
@@ -234,7 +243,14 @@ std::vector<int> labels_in(const volume::Grid& labels) {
 Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how, const RunJobs& run,
                    std::size_t* voxels) {
     std::size_t count = 0;
-    const volume::Grid mask = mask_of(labels, segment.label, count);
+    volume::Grid mask = mask_of(labels, segment.label, count);
+    const auto is_background = [&](int i, int j, int k) {
+        const Vec3 u = glm::floor((mask.position(i, j, k) - labels.origin) / labels.spacing + 0.5);
+        for (int a = 0; a < 3; ++a)
+            if (u[a] < 0.0 || u[a] >= labels.size[static_cast<std::size_t>(a)]) return true;
+        return labels.at(static_cast<int>(u.x), static_cast<int>(u.y), static_cast<int>(u.z)) == 0.0f;
+    };
+    const std::vector<char> thin = close_thin_sheets(mask, is_background);
     if (voxels) *voxels = count;
     geometry::SurfaceNet net = geometry::surface_net(mask, 0.5f, true);
     geometry::relax(net, mask, relax_passes, run);
@@ -262,7 +278,7 @@ Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, c
         }
     }
     bone.distance = volume::signed_distance(layout, net, run);
-    if (!from_grey) keep_volume(bone.distance, mask, static_cast<double>(count));
+    if (!from_grey) keep_volume(bone.distance, mask, thin, static_cast<double>(count));
     if (how.hu) {
         bone.density = volume::resampled(*how.hu, layout);
         for (float& value : bone.density.values) value = density_of_hu(value);

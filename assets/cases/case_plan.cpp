@@ -302,9 +302,35 @@ void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem
     plan.fragments.push_back({name, is_below ? relative.string() : absolute.string(), hash.value(), colour});
 }
 
+namespace {
+
+/// Calls visit(what, file, hash) for each file that the current state of a plan needs.
+template <class Visit>
+void visit_files(const CasePlan& plan, const Visit& visit) {
+    const PlanState state = state_of(plan);
+    for (const PlanFragment& fragment : fragments_of(plan, state))
+        visit("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
+    if (state.mirror) visit("mirror target", state.mirror->file, state.mirror->hash);
+    if (const auto& all = state.reconstruction) {
+        visit("donor", all->donor.file, all->donor.hash);
+        if (all->jaw) visit("jaw", all->jaw->file, all->jaw->hash);
+        if (all->tumour) visit("tumour", all->tumour->file, all->tumour->hash);
+    }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const CasePlan& plan, const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    visit_files(plan, [&](const std::string&, const std::string& file, std::uint64_t) {
+        files.push_back(bone::file_of_bone(file_of(file, folder)));
+    });
+    return files;
+}
+
 std::vector<std::string> changed_files(const CasePlan& plan, const std::filesystem::path& folder) {
     std::vector<std::string> problems;
-    const auto look = [&](const std::string& what, const std::string& file, std::uint64_t hash) {
+    visit_files(plan, [&](const std::string& what, const std::string& file, std::uint64_t hash) {
         Hash now;
         try {
             file::add_file(now, bone::file_of_bone(file_of(file, folder)));
@@ -315,16 +341,7 @@ std::vector<std::string> changed_files(const CasePlan& plan, const std::filesyst
         if (now.value() != hash)
             problems.push_back(fmt::format("{}: its file {} has changed since the plan was made", what,
                                            file_of(file, folder).string()));
-    };
-    const PlanState state = state_of(plan);
-    for (const PlanFragment& fragment : fragments_of(plan, state))
-        look("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
-    if (state.mirror) look("mirror target", state.mirror->file, state.mirror->hash);
-    if (const auto& all = state.reconstruction) {
-        look("donor", all->donor.file, all->donor.hash);
-        if (all->jaw) look("jaw", all->jaw->file, all->jaw->hash);
-        if (all->tumour) look("tumour", all->tumour->file, all->tumour->hash);
-    }
+    });
     return problems;
 }
 

@@ -165,6 +165,9 @@ void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem
 /// Path of a fragment's file; `folder` is the plan's folder.
 std::filesystem::path file_of(const std::string& file, const std::filesystem::path& folder);
 
+/// Paths of all files that the current state of a plan needs.
+std::vector<std::filesystem::path> files_of(const CasePlan& plan, const std::filesystem::path& folder);
+
 /// Problems of the files at the head of the current alternative, one sentence each: missing, or changed since the plan
 /// was made.
 std::vector<std::string> changed_files(const CasePlan& plan, const std::filesystem::path& folder);

@@ -17,11 +17,27 @@ const Vec3& corner(const geometry::TriangleSurface& mesh, const std::array<int, 
 
 }  // namespace
 
+std::vector<Vec3> normals_of(const geometry::TriangleSurface& mesh) {
+    std::vector<Vec3> normals(mesh.vertices.size(), Vec3(0.0));
+    for (const auto& t : mesh.triangles) {
+        const Vec3 normal =
+            glm::cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0));
+        for (const int n : t) normals[static_cast<std::size_t>(n)] += normal;
+    }
+    for (Vec3& normal : normals) {
+        const double length = glm::length(normal);
+        normal = length > 0.0 ? normal / length : Vec3(0.0, 0.0, 1.0);
+    }
+    return normals;
+}
+
 Mesh surface_of(const volume::Grid& distance) {
     Mesh mesh;
     static_cast<geometry::TriangleSurface&>(mesh) = geometry::iso_surface(distance, 0.0f, false);
+    mesh.normals = normals_of(mesh);
     const auto& size = distance.size;
-    for (const Vec3& vertex : mesh.vertices) {
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+        const Vec3& vertex = mesh.vertices[n];
         const Vec3 u = (vertex - distance.origin) / distance.spacing;
         const int i = static_cast<int>(u.x + 0.5), j = static_cast<int>(u.y + 0.5), k = static_cast<int>(u.z + 0.5);
         const int x0 = std::max(i - 1, 0), x1 = std::min(i + 1, size[0] - 1), y0 = std::max(j - 1, 0);
@@ -31,7 +47,8 @@ Mesh surface_of(const volume::Grid& distance) {
                  distance.at(i, j, z1) - distance.at(i, j, z0)) /
             (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
         const double length = glm::length(slope);
-        mesh.normals.push_back(length > 0.0 ? slope / length : Vec3(0.0, 0.0, 1.0));
+        // The gradient is the smoother one. In a wall as thin as its samples are apart it means nothing, or the other side.
+        if (glm::dot(slope, mesh.normals[n]) > 0.5 * length && length > 0.5) mesh.normals[n] = slope / length;
     }
     return mesh;
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace tactus::mesh {
 
@@ -29,7 +30,11 @@ struct MeshOrigin {
 /// triangles. `origin` may be null.
 Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
-/// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
+/// Unit normal per vertex: the mean of those of its triangles, weighted by their areas.
+std::vector<Vec3> normals_of(const geometry::TriangleSurface& mesh);
+
+/// The zero surface of a signed distance (m, negative inside) with normals from its gradient; from the triangles where
+/// a wall is so thin that the gradient says nothing about its side.
 Mesh surface_of(const volume::Grid& distance);
 
 double volume_of(

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/arrangement/arrangement.hpp"
-#include "dsp/fit/arrangement/step_tree.hpp"
 #include "dsp/fit/fit.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/notice.hpp"
 #include "graph/node/visual.hpp"
-#include "nodes/contact/body_parts.hpp"
+#include "nodes/planning/case_bodies.hpp"
+#include "nodes/planning/case_history.hpp"
 #include "nodes/planning/step_record.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,31 +77,19 @@ struct CaseScene {
                        "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
         for (Notice* notice : {&held_back_, &no_earlier_, &no_later_, &no_fit_, &no_way_}) notice->attach(setup);
-        parts_.clear();
-        for (const bone::Bone& bone : plan->bones) parts_.push_back(body_of(bone));
+        bodies_ = std::make_unique<CaseBodies>(plan->bones);
         now_ = std::make_unique<fit::Arrangement>(cases::state_of(plan->plan).arrangement);
-        kept_ = std::make_unique<fit::Arrangement>(*now_);
-        tree_ = std::make_unique<fit::StepTree>(parts_.size(), plan->plan.steps.size(), most_steps);
-        cases::visit_steps(plan->plan, [this](int n, const cases::PlanState& from, const cases::PlanState& to) {
-            tree_->put(n, plan->plan.steps[static_cast<std::size_t>(n)].before, from.arrangement, to.arrangement);
-        });
-        tree_->stand(plan->plan.place());
-        ways_.clear();
-        ways_.reserve(most_ways);
-        for (const cases::PlanAlternative& way : plan->plan.alternatives)
-            if (ways_.size() < most_ways) ways_.push_back(way.place);
-        if (plan->plan.alternatives.size() > most_ways)
+        if (plan->plan.alternatives.size() > CaseHistory::most_ways)
             setup.fail("plan '" + plan.name +
                        "' has more than 32 alternatives; remove some: 'tactus plan alternative'");
-        way_ = static_cast<std::size_t>(plan->plan.current);
-        dropped_.reset();
+        history_ = std::make_unique<CaseHistory>(plan->plan);
         wanted_way_ = alternative;
         wanted_drop_ = drop;
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
             stream_ = &setup.host->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
         }
-        arrange_scene();
+        bodies_->arrange(*now_);
         publish();
     }
 
@@ -114,35 +101,19 @@ struct CaseScene {
     }
 
     void report(Report& report) const {
-        report.set(name_, "steps", static_cast<double>(tree_->count()) - static_cast<double>(plan->plan.steps.size()));
+        report.set(name_, "steps",
+                   static_cast<double>(history_->count()) - static_cast<double>(plan->plan.steps.size()));
         if (not_kept_) report.set(name_, "steps_not_kept", 1.0);
         if (keeper_ && !keeper_->trouble().empty()) report.set(name_, "error", keeper_->trouble());
     }
 
 private:
-    // Nine hours at a step per second. Later steps are kept too, but the oldest can then no longer be undone.
-    static constexpr std::size_t most_steps = 32768;
-
-    static std::shared_ptr<const BodyParts> body_of(const bone::Bone& bone) {
-        std::vector<contact::SurfacePoint> points = bone.points;
-        Vec3 middle(0.0);
-        for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
-        for (contact::SurfacePoint& p : points) p.position -= middle;
-        volume::Grid field = bone.distance;
-        field.origin -= middle;
-        return std::make_shared<const BodyParts>(contact::make_pointshell(points),
-                                                 contact::make_voxmap(std::move(field)),
-                                                 Pose{middle, {1.0, 0.0, 0.0, 0.0}}, false);
-    }
-
     int held() const noexcept {
         if (!which.connected || !moved.connected) return -1;
         const double place = which.get();
-        return place >= 0.0 && place < static_cast<double>(parts_.size()) ? static_cast<int>(place) : -1;
+        return place >= 0.0 && place < static_cast<double>(bodies_->count()) ? static_cast<int>(place) : -1;
     }
-    Pose file_pose(int fragment, const Pose& body) const noexcept {
-        return body * parts_[static_cast<std::size_t>(fragment)]->home.inverse();
-    }
+    Pose file_pose(int fragment, const Pose& body) const noexcept { return body * bodies_->home(fragment).inverse(); }
 
     /// The held body and its group follow the coupling.
     void follow(const Tick& tick) noexcept {
@@ -160,7 +131,7 @@ private:
             if (!(glm::length(middle_at(here) - let_at_) > loose)) return;
             settled_ = false;
         }
-        if (now_->move(place, here)) show_unit(place);
+        if (now_->move(place, here)) bodies_->show_unit(*now_, place);
     }
 
     void press(const Tick& tick) noexcept {
@@ -199,11 +170,9 @@ private:
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if ((back || on) && holding_) held_back_.tell();
         else if (back != on) {
-            if (!(back ? tree_->undo(*now_) : tree_->redo(*now_))) return (back ? no_earlier_ : no_later_).tell();
-            *kept_ = *now_;
-            arrange_scene();
-            cases::StepRow row = next(static_cast<double>(cases::row_goes_to));
-            write(tick, row);
+            if (!(back ? history_->undo(*now_) : history_->redo(*now_))) return (back ? no_earlier_ : no_later_).tell();
+            bodies_->arrange(*now_);
+            write(tick, history_->row(static_cast<double>(cases::row_goes_to)));
         }
     }
 
@@ -221,36 +190,19 @@ private:
     }
 
     void go_to_way(const Tick& tick, std::size_t to) noexcept {
-        if (to > ways_.size() || to >= most_ways || to == way_) return no_way_.tell();
-        ways_[way_] = tree_->place();
-        const bool begins = to == ways_.size();
-        if (begins) ways_.push_back(fit::after_step(tree_->head()));
-        if (!tree_->go(ways_[to], *now_)) {
-            if (begins) ways_.pop_back();
-            return no_way_.tell();
-        }
-        way_ = to;
-        *kept_ = *now_;
-        arrange_scene();
+        if (!history_->go_to(to, *now_)) return no_way_.tell();
+        bodies_->arrange(*now_);
         tell_way(tick, cases::row_alternative, static_cast<double>(to));
     }
 
     void drop_way(const Tick& tick, double number) noexcept {
-        if (number < 0.0) {
-            if (!dropped_ || ways_.size() >= most_ways) return no_way_.tell();
-            ways_.push_back(*std::exchange(dropped_, std::nullopt));
-            return tell_way(tick, cases::row_undrop, -1.0);
-        }
-        const auto place = static_cast<std::size_t>(number);
-        if (place >= ways_.size() || place == way_) return no_way_.tell();
-        dropped_ = ways_[place];
-        ways_.erase(ways_.begin() + static_cast<std::ptrdiff_t>(place));
-        way_ -= place < way_ ? 1 : 0;
-        tell_way(tick, cases::row_drop, number);
+        if (!history_->drop(number)) return no_way_.tell();
+        if (number < 0.0) tell_way(tick, cases::row_undrop, -1.0);
+        else tell_way(tick, cases::row_drop, number);
     }
 
     void tell_way(const Tick& tick, int kind, double place) noexcept {
-        cases::StepRow row = next(static_cast<double>(kind));
+        cases::StepRow row = history_->row(static_cast<double>(kind));
         row.after = place;
         write(tick, row);
     }
@@ -271,12 +223,12 @@ private:
 
     int partner_place() const noexcept {
         const double place = partner.connected ? partner.get() : -1.0;
-        return place >= 0.0 && place < static_cast<double>(parts_.size()) ? static_cast<int>(place) : -1;
+        return place >= 0.0 && place < static_cast<double>(bodies_->count()) ? static_cast<int>(place) : -1;
     }
 
     /// The place that a parameter gives, or another one.
     int place_of(const Param& given, int otherwise) const noexcept {
-        return given >= 0.0 && given < static_cast<double>(parts_.size()) ? static_cast<int>(given) : otherwise;
+        return given >= 0.0 && given < static_cast<double>(bodies_->count()) ? static_cast<int>(given) : otherwise;
     }
 
     bool edge(const In<bool>& button, std::size_t n) noexcept {
@@ -285,17 +237,9 @@ private:
         return pressed;
     }
 
-    cases::StepRow next(double kind) const noexcept {
-        cases::StepRow row;
-        row.step = static_cast<double>(tree_->count());
-        row.after = static_cast<double>(tree_->head());
-        row.kind = kind;
-        return row;
-    }
-
     /// Records the present poses of the held body and of all that moves with it.
     void placed(const Tick& tick, double by) noexcept {
-        cases::StepRow row = next(static_cast<double>(cases::StepKind::place));
+        cases::StepRow row = history_->row(static_cast<double>(cases::StepKind::place));
         row.by = by;
         if (by > 0.0) {
             row.other = partner_place();
@@ -308,7 +252,7 @@ private:
             row.penetration = told(penetration);
             row.overlap = told(overlap);
         }
-        const auto count = static_cast<int>(parts_.size());
+        const auto count = static_cast<int>(bodies_->count());
         for (int n = 0; n < count; ++n) row.left += n != last_ && now_->move_together(last_, n);
         for (int n = -1; n < count; ++n) {
             const int one = n < 0 ? last_ : n;
@@ -318,27 +262,27 @@ private:
             write(tick, row);
             row.left -= 1.0;
         }
-        done();
-        show_unit(last_);
+        history_->add(*now_);
+        bodies_->show_unit(*now_, last_);
     }
 
     void arranged(const Tick& tick, cases::StepKind kind, int fragment, int other) noexcept {
-        cases::StepRow row = next(static_cast<double>(kind));
+        cases::StepRow row = history_->row(static_cast<double>(kind));
         row.fragment = fragment;
         row.other = other;
         write(tick, row);
-        done();
-        arrange_scene();
+        history_->add(*now_);
+        bodies_->arrange(*now_);
     }
 
     void show_all(const Tick& tick) noexcept {
-        cases::StepRow row = next(static_cast<double>(cases::StepKind::show));
-        const auto count = static_cast<int>(parts_.size());
+        cases::StepRow row = history_->row(static_cast<double>(cases::StepKind::show));
+        const auto count = static_cast<int>(bodies_->count());
         for (int n = 0; n < count; ++n) row.left += now_->is_hidden(n);
         if (row.left == 0.0) return;
         keep_held(tick);
-        row.step = static_cast<double>(tree_->count());
-        row.after = static_cast<double>(tree_->head());
+        const cases::StepRow after_held = history_->row(row.kind);
+        row.step = after_held.step, row.after = after_held.after;
         for (int n = 0; n < count; ++n) {
             if (!now_->is_hidden(n)) continue;
             now_->hide(n, false);
@@ -346,79 +290,32 @@ private:
             row.left -= 1.0;
             write(tick, row);
         }
-        done();
-        arrange_scene();
+        history_->add(*now_);
+        bodies_->arrange(*now_);
     }
 
     void write(const Tick& tick, const cases::StepRow& row) noexcept {
         if (stream_ && !stream_->write(tick.index, &row, 1, sizeof row)) not_kept_ = true;
     }
 
-    /// Records what has been done since the last step as a step.
-    void done() noexcept {
-        tree_->add(*kept_, *now_);
-        *kept_ = *now_;
-    }
-
-    Vec3 middle_at(const Pose& pose) const noexcept {
-        return pose.apply(parts_[static_cast<std::size_t>(last_)]->home.position);
-    }
-
-    /// Rebuilds the whole scene.
-    void arrange_scene() noexcept {
-        scene_.count = parts_.size();
-        for (std::size_t n = 0; n < parts_.size(); ++n) {
-            const int fragment = static_cast<int>(n);
-            coupling::SceneObject& object = scene_.objects[n];
-            object.body = now_->is_hidden(fragment) ? coupling::Body{} : parts_[n]->body();
-            object.body.home = parts_[n]->home;
-            object.unit = now_->outermost(fragment);
-            show_place(fragment);
-        }
-        is_changed_ = true;
-    }
-    /// Updates the poses of one body and of those that move with it only. A fit to one of them may have become void.
-    void show_unit(int fragment) noexcept {
-        for (int n = 0; n < static_cast<int>(parts_.size()); ++n) {
-            const int fitted = now_->was_fitted_to(n);
-            if (now_->move_together(fragment, n) || (fitted >= 0 && now_->move_together(fragment, fitted)))
-                show_place(n);
-        }
-        is_changed_ = true;
-    }
-    void show_place(int fragment) noexcept {
-        coupling::SceneObject& object = scene_.objects[static_cast<std::size_t>(fragment)];
-        object.pose = now_->pose(fragment) * parts_[static_cast<std::size_t>(fragment)]->home;
-        object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != fit::Arrangement::none;
-        object.hangs_on = now_->is_locked(fragment) ? -1 : now_->fitted_to(fragment);
-    }
+    Vec3 middle_at(const Pose& pose) const noexcept { return pose.apply(bodies_->home(last_).position); }
 
     void publish() noexcept {
-        if (is_changed_) {
-            ++scene_.version;
-            scene_.content_hash = coupling::hash_of(scene_);
-            is_changed_ = false;
-        }
-        scene = scene_;
-        steps = static_cast<double>(tree_->done());
+        scene = bodies_->scene();
+        steps = static_cast<double>(history_->done());
         settled = settled_;
     }
 
-    static constexpr std::size_t most_ways = 32;
-    std::vector<fit::HistoryPlace> ways_;  // of the alternatives; the current one's is in the tree
-    std::size_t way_ = 0;
-    std::optional<fit::HistoryPlace> dropped_;
     double wanted_way_ = -1.0, wanted_drop_ = -1.0;
-    std::vector<std::shared_ptr<const BodyParts>> parts_;
-    std::unique_ptr<fit::Arrangement> kept_, now_;  // after the last step; with what the hand has done since
-    std::unique_ptr<fit::StepTree> tree_;
+    std::unique_ptr<CaseBodies> bodies_;
+    std::unique_ptr<fit::Arrangement> now_;  // with what the hand has done since the last step
+    std::unique_ptr<CaseHistory> history_;
     std::shared_ptr<StepKeeper> keeper_;
     RecordStream* stream_ = nullptr;
     std::string name_;
-    tactus::coupling::Scene scene_;
     int last_ = -1;
     Vec3 let_at_{0.0};  // middle of a body in the hand's pose when it was settled
-    bool holding_ = false, settled_ = false, is_changed_ = false, not_kept_ = false;
+    bool holding_ = false, settled_ = false, not_kept_ = false;
     bool was_[8] = {};
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};

@@ -62,6 +62,21 @@ std::pair<double, double> parse_band(const std::string& text, const std::string&
     return {low, high};
 }
 
+namespace {
+
+/// Comparisons with "nan" are false, so that no range leaves it out.
+CLI::Validator is_number() {
+    return CLI::Validator(
+        [](std::string& text) {
+            double number = 0.0;
+            return CLI::detail::lexical_cast(text, number) && std::isnan(number) ? "'" + text + "' is not a number"
+                                                                                 : std::string();
+        },
+        "");
+}
+
+}  // namespace
+
 Option& Option::required() {
     option_->required();
     return *this;
@@ -78,12 +93,13 @@ Option& Option::range(int least, int most) {
 }
 
 Option& Option::range(double least, double most) {
+    option_->check(is_number());
     option_->check(CLI::Range(least, most).description(fmt::format("{} to {}", least, most)));
     return *this;
 }
 
 Option& Option::positive() {
-    option_->check(CLI::PositiveNumber);
+    option_->check(is_number())->check(CLI::PositiveNumber);
     return *this;
 }
 

@@ -137,6 +137,51 @@ TEST_CASE("a slanted wall little more than one voxel thick stays a wall without 
     CHECK(outside == 0);
 }
 
+TEST_CASE("a slanted sheet of single voxels has a closed surface without holes, lit from its own side") {
+    // One labelled sample per column along x: the thinnest digital plane, whose voxels meet along edges only.
+    const Vec3 spacing(0.5 * mm), n = glm::normalize(Vec3(1.0, 0.8, 0.45));
+    const volume::Grid labels = sampled(layout(spacing, far_off, {48, 48, 48}), [&](const Vec3& at) {
+        const Vec3 p = at - far_off;
+        const double step = 0.5 * spacing.x * n.x, level = glm::dot(p, n);
+        return std::abs(p.y) < 6.0 * mm && std::abs(p.z) < 6.0 * mm && level >= -step && level < step ? 1.0 : 0.0;
+    });
+    const bone::Bone bone = bone::bone_of_label(labels, {}, {});
+    const mesh::Mesh surface = mesh::surface_of(bone.distance);
+    const mesh::MeshTopology topology = mesh::topology_of(surface);
+    CHECK(topology.is_watertight());
+    CHECK(topology.components == 1);
+    // Euler's characteristic of a ball's surface; each hole through the sheet takes 2 away.
+    CHECK(static_cast<double>(surface.vertices.size()) - 0.5 * static_cast<double>(surface.triangles.size()) == 2.0);
+    CHECK(mesh::volume_of(surface) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.25));
+    double wrong = 0.0, all = 0.0;
+    for (const auto& t : surface.triangles) {
+        const auto at = [&](std::size_t c) { return surface.vertices[static_cast<std::size_t>(t[c])]; };
+        const Vec3 twice = glm::cross(at(1) - at(0), at(2) - at(0));
+        for (const int c : t) {
+            all += glm::length(twice);
+            if (glm::dot(surface.normals[static_cast<std::size_t>(c)], twice) < 0.0) wrong += glm::length(twice);
+        }
+    }
+    CHECK(wrong < 0.005 * all);
+}
+
+TEST_CASE("the sheet of a thin label takes no sample from the label beside it") {
+    volume::Grid labels = layout(Vec3(0.5 * mm), far_off, {24, 24, 24});
+    labels.values.assign(labels.count(), 0.0f);
+    for (int k = 8; k < 16; ++k)
+        for (int n = 6; n < 16; ++n) labels.at(n, n, k) = 1.0f;
+    labels.at(11, 10, 12) = 2.0f;
+    const bone::Bone bone = bone::bone_of_label(labels, {}, {});
+    const Vec3 first = (labels.position(0, 0, 0) - bone.distance.origin) / bone.distance.spacing;
+    const auto at = [&](int i, int j, int k) {
+        return bone.distance.at(i + static_cast<int>(std::lround(first.x)), j + static_cast<int>(std::lround(first.y)),
+                                k + static_cast<int>(std::lround(first.z)));
+    };
+    CHECK(at(10, 10, 12) < 0.0f);
+    CHECK(at(11, 10, 12) > 0.0f);
+    CHECK(at(10, 11, 12) < 0.0f);
+}
+
 TEST_CASE("with a CT the surface goes to its grey values, also through noise and blur on uneven voxels", "[slow]") {
     const Vec3 spacing(0.35 * mm, 0.35 * mm, 0.6 * mm);
     const Random random{11};

@@ -83,6 +83,10 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     if (extension != ".json" && extension != ".vdb")
         throw Error(
             fmt::format("{}: paint can be written as .json (strokes) or .vdb (bone file)", choice.out.string()));
+    for (const std::filesystem::path& other : choice.settings.facing)
+        if (bone::name_one_bone(choice.settings.bone, other))
+            throw Error(
+                fmt::format("{}: a fragment cannot face itself; name another one with --facing", other.string()));
     study::FractureSurfaceSettings settings = choice.settings;
     settings.reach = choice.reach * 1e-3;
     if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus snap: fits two fragments and reports a verdict.
+#include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
@@ -115,6 +116,9 @@ void print(const SnapChoice& choice, const study::Snapped& found) {
 }
 
 int snap(const SnapChoice& choice) {
+    if (bone::name_one_bone(choice.settings.moving, choice.settings.fixed))
+        throw Error(fmt::format("{}: a fragment cannot be fitted to itself; name two fragments",
+                                choice.settings.moving.string()));
     const study::Snapped found = study::snap_files(settings_of(choice));
     if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
     else print(choice, found);

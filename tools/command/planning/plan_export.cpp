@@ -46,7 +46,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_export_verb() {
-    return {"export", "write the shown fragments as placed, transforms and landmarks for other programs", add};
+    return {"export", "write the shown fragments as placed, vessels, transforms and landmarks for other programs", add};
 }
 
 }  // namespace tactus::command

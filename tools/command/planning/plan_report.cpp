@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan report: the plan as one HTML page, and as PDF.
 #include "assets/file/json.hpp"
+#include "assets/file/outputs.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/flap/flap_report.hpp"
+#include "tools/picture/plan/plan_page.hpp"
 #include "tools/picture/report/html_report.hpp"
-#include "tools/picture/report/plan_page.hpp"
 #include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
 #include <fmt/format.h>
+
+#include <array>
+#include <utility>
+#include <vector>
 
 namespace tactus::command {
 
@@ -31,6 +36,9 @@ int report(const ReportChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const std::filesystem::path out = choice.out.empty() ? page_of(choice.plan) : choice.out;
     const std::filesystem::path folder = choice.plan.parent_path();
+    std::vector<std::filesystem::path> sources = cases::files_of(plan, folder);
+    sources.push_back(choice.plan);
+    file::check_outputs(sources, std::array{out, choice.pdf});
     std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
     std::vector<std::optional<double>> residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
     const std::optional<fit::RegistrationTarget> healthy = study::healthy_side(cases::state_of(plan), folder);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
-#include "tools/picture/report/plan_picture.hpp"
+#include "tools/picture/plan/plan_picture.hpp"
 
 #include <span>
 #include <string>

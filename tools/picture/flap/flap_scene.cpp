@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/flap/flap_scene.hpp"
 
+#include "assets/mesh/mesh.hpp"
 #include "dsp/vessel/line_branch.hpp"
 #include "dsp/vessel/tube_surface.hpp"
 
@@ -39,18 +40,11 @@ geometry::TriangleSurface surface_of(const reconstruct::Block& block) {
 
 display::PictureMesh picture_mesh(const geometry::TriangleSurface& surface, const Pose& pose,
                                   std::span<const Vec3> colours) {
-    std::vector<Vec3> normals(surface.vertices.size(), Vec3(0.0));
-    for (const auto& t : surface.triangles) {
-        const auto at = [&](std::size_t c) { return surface.vertices[static_cast<std::size_t>(t[c])]; };
-        const Vec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
-        for (const int corner : t) normals[static_cast<std::size_t>(corner)] += normal;
-    }
+    const std::vector<Vec3> normals = mesh::normals_of(surface);
     display::PictureMesh mesh;
     for (std::size_t n = 0; n < surface.vertices.size(); ++n) {
         const Vec3 p = pose.apply(surface.vertices[n]);
-        const double size = glm::length(normals[n]);
-        const Vec3 normal = size > 0.0 ? pose.rotate(normals[n] / size) : Vec3(0.0, 0.0, 1.0),
-                   colour = colours[colours.size() > 1 ? n : 0];
+        const Vec3 normal = pose.rotate(normals[n]), colour = colours[colours.size() > 1 ? n : 0];
         for (int axis = 0; axis < 3; ++axis) {
             mesh.positions.push_back(static_cast<float>(p[axis]));
             mesh.normals.push_back(static_cast<float>(normal[axis]));

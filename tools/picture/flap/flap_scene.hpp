@@ -5,7 +5,7 @@
 #include "dsp/geometry/iso_surface.hpp"
 #include "dsp/reconstruct/clearance.hpp"
 #include "dsp/reconstruct/flap.hpp"
-#include "tools/picture/report/plan_picture.hpp"
+#include "tools/picture/plan/plan_picture.hpp"
 
 #include <span>
 #include <string>

@@ -4,11 +4,15 @@
 #include "assets/bone/surface_points.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 
+#include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <numbers>
 
 namespace tactus::study {
@@ -18,8 +22,29 @@ bool is_mesh(const std::filesystem::path& path) {
     return extension == ".stl" || extension == ".ply" || extension == ".obj";
 }
 
+namespace {
+
+/// A mesh in m. One that states no unit is in mm.
+mesh::Mesh mesh_of_file(const std::filesystem::path& path) {
+    mesh::MeshOrigin origin;
+    mesh::Mesh mesh = mesh::load_mesh(path, 1.0, &origin);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    if (!origin.unit && !(extent >= 1.0 && extent <= 5000.0))
+        throw Error(
+            fmt::format("{}: the mesh states no unit and is {:.3g} units across, which is not plausible for a "
+                        "bone in mm; convert it with 'tactus import --unit' and use the .vdb",
+                        path.string(), extent));
+    const double unit = origin.unit.value_or(1e-3);
+    for (Vec3& v : mesh.vertices) v *= unit;
+    return mesh;
+}
+
+}  // namespace
+
 geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone) {
-    if (is_mesh(path)) return mesh::load_mesh(path, 1e-3);
+    if (is_mesh(path)) return mesh_of_file(path);
     return mesh::export_surface(bone.distance);
 }
 
@@ -27,7 +52,7 @@ std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& p
     if (!is_mesh(path)) {
         return bone::surface_points(bone_of_file(path), {.spacing = spacing});
     }
-    const mesh::Mesh mesh = mesh::load_mesh(path, 1e-3);
+    const mesh::Mesh mesh = mesh_of_file(path);
     std::vector<contact::SurfacePoint> points(mesh.vertices.size());
     for (std::size_t n = 0; n < points.size(); ++n) points[n] = {mesh.vertices[n], Vec3(0.0), 0.0, 0};
     for (const auto& t : mesh.triangles) {

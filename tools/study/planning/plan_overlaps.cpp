@@ -5,6 +5,7 @@
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "tools/study/bones/kept_result.hpp"
+#include "tools/study/workers.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -57,6 +58,7 @@ public:
     }
 
     std::vector<PlanOverlap> run() {
+        load_unknown();
         std::vector<PlanOverlap> found;
         for (int a = 0; a < static_cast<int>(fragments_.size()); ++a)
             for (int b = a + 1; b < static_cast<int>(fragments_.size()); ++b) {
@@ -71,6 +73,16 @@ public:
 private:
     const Pose& pose(int n) const { return state_.arrangement.pose(n); }
 
+    /// Sampling the surface of a whole bone takes a second or more: those that are needed are loaded together.
+    void load_unknown() {
+        std::vector<int> unknown;
+        for (int n = 0; n < static_cast<int>(fragments_.size()); ++n) {
+            std::string note;
+            if (!state_.arrangement.is_hidden(n) && !kept_result(box_key(n), note)) unknown.push_back(n);
+        }
+        on_threads()(static_cast<int>(unknown.size()), [&](int k) { loaded(unknown[static_cast<std::size_t>(k)]); });
+    }
+
     const CaseFragment& loaded(int n) {
         auto& one = loaded_[static_cast<std::size_t>(n)];
         if (!one) one = load_fragment(fragments_[static_cast<std::size_t>(n)], folder_);
@@ -83,6 +95,8 @@ private:
         return key;
     }
 
+    ResultKey box_key(int n) const { return key_of("box around a fragment", {n}); }
+
     void tell(const std::string& note) {
         if (!note.empty()) notes_.push_back(note);
     }
@@ -91,7 +105,7 @@ private:
         auto& known = boxes_[static_cast<std::size_t>(n)];
         if (known) return *known;
         std::string note;
-        const std::vector<double> sides = result_of(key_of("box around a fragment", {n}), 6, note, [&] {
+        const std::vector<double> sides = result_of(box_key(n), 6, note, [&] {
             Box around;
             for (const contact::SurfacePoint& p : loaded(n).bone.points) around.add(p.position);
             return std::vector<double>{around.low.x,  around.low.y,  around.low.z,

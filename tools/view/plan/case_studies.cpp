@@ -4,7 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/counted.hpp"
-#include "tools/picture/report/plan_page.hpp"
+#include "tools/picture/plan/plan_page.hpp"
 #include "tools/study/bones/intact_side.hpp"
 #include "tools/study/planning/plan_export.hpp"
 #include "tools/study/planning/plan_matching.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/picture/report/plan_picture.hpp"
+#include "tools/picture/plan/plan_picture.hpp"
 
 #include "devices/display/png.hpp"
 #include "tools/picture/report/html_report.hpp"

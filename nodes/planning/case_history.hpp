@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps and alternatives of a case during a run, and the rows that tell of them.
+#pragma once
+
+#include "assets/cases/case_plan.hpp"
+#include "assets/cases/step_row.hpp"
+#include "dsp/fit/arrangement/step_tree.hpp"
+#include "graph/node/setup.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tactus::nodes {
+
+/// Allocates in the constructor only; no other function allocates, waits or throws.
+class CaseHistory {
+public:
+    static constexpr std::size_t most_ways = 32;  ///< alternatives
+
+    explicit CaseHistory(const cases::CasePlan& plan);
+
+    /// Whether the step before, or after, could be taken back into `now`.
+    bool undo(fit::Arrangement& now) noexcept;
+    bool redo(fit::Arrangement& now) noexcept;
+
+    /// Goes to an alternative; their number begins another one at the current state. False, without a change, when there
+    /// is none or it is the current one.
+    bool go_to(std::size_t alternative, fit::Arrangement& now) noexcept;
+    /// Drops an alternative; a negative number brings the one dropped last back. False when that cannot be.
+    bool drop(double number) noexcept;
+
+    /// What has been done since the last step becomes a step.
+    void add(const fit::Arrangement& now) noexcept;
+
+    /// A row for the next step.
+    cases::StepRow row(double kind) const noexcept;
+    /// Number of steps up to the current one, and of all steps.
+    int done() const noexcept { return tree_.done(); }
+    int count() const noexcept { return tree_.count(); }
+
+private:
+    fit::StepTree tree_;
+    fit::Arrangement kept_;  // after the last step
+    std::vector<fit::HistoryPlace> ways_;  // of the alternatives; the current one's is in the tree
+    std::size_t way_ = 0;
+    std::optional<fit::HistoryPlace> dropped_;
+};
+
+}  // namespace tactus::nodes

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Careless calls of the verbs of a plan: one error that says what to do, exit code 2, and every file as it was.
+#include "tests/support/catch.hpp"
+#include "tests/tools/box_stl.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <algorithm>
+
+using namespace tactus;
+using namespace tactus::test;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+/// A plan of two boxes.
+struct TwoBoxes {
+    Folder folder;
+    std::string plan = (folder.path / "case.plan.json").string();
+
+    TwoBoxes() {
+        folder.write("a.stl", box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0)));
+        folder.write("b.stl", box_stl(Vec3(11.0, 0.0, 0.0), Vec3(20.0, 12.0, 14.0)));
+        REQUIRE(folder.tactus("plan new " + plan + " " + file("a.stl") + " " + file("b.stl")).code == 0);
+    }
+    std::string file(const std::string& name) const { return (folder.path / name).string(); }
+    void is_refused(const std::string& arguments, const std::string& because) const {
+        CAPTURE(arguments);
+        const Outcome refused = folder.tactus(arguments);
+        CAPTURE(refused.out, refused.err);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, ContainsSubstring(because));
+        CHECK(std::ranges::count(refused.err, '\n') <= 2);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a report is never written over its plan, over a bone of it, or over itself") {
+    const TwoBoxes boxes;
+    const std::string before = slurp(boxes.plan), bone = slurp(boxes.folder.path / "a.stl");
+    const std::string report = "plan report " + boxes.plan;
+    boxes.is_refused(report + " -o " + boxes.plan, "this is a source");
+    boxes.is_refused(report + " --pdf " + boxes.plan, "this is a source");
+    boxes.is_refused(report + " -o " + boxes.file("a.stl"), "this is a source");
+    boxes.is_refused(report + " -o " + boxes.file("x.html") + " --pdf " + boxes.file("x.html"), "two results");
+    // Nothing is written when one of two results cannot be.
+    boxes.is_refused(report + " --pdf " + boxes.file("nowhere/x.pdf"), "there is no folder");
+    CHECK(slurp(boxes.plan) == before);
+    CHECK(slurp(boxes.folder.path / "a.stl") == bone);
+    CHECK(!fs::exists(boxes.folder.path / "case.html"));
+    CHECK(!fs::exists(boxes.folder.path / "x.html"));
+}
+
+TEST_CASE("an option with a range takes no 'nan'") {
+    const TwoBoxes boxes;
+    const std::string before = slurp(boxes.plan);
+    boxes.is_refused("plan snap " + boxes.plan + " a b --kerf nan", "'nan' is not a number");
+    boxes.is_refused("plan assemble " + boxes.plan + " --kerf NaN", "'NaN' is not a number");
+    CHECK(slurp(boxes.plan) == before);
+}
+
+TEST_CASE("a fragment is not fitted to itself and does not face itself") {
+    const TwoBoxes boxes;
+    boxes.is_refused("snap " + boxes.file("a.stl") + " " + boxes.file("./a.stl"), "cannot be fitted to itself");
+    boxes.is_refused(
+        "fracture-surface " + boxes.file("a.stl") + " --facing " + boxes.file("a.stl") + " -o " + boxes.file("o.json"),
+        "cannot face itself");
+}
+
+TEST_CASE("a healthy side in metres that states no unit is refused, and one that states it is read in it") {
+    const TwoBoxes boxes;
+    const std::string before = slurp(boxes.plan), small = box_stl(Vec3(0.0), Vec3(0.010, 0.012, 0.014));
+    boxes.folder.write("metres.stl", small);
+    boxes.is_refused("plan mirror " + boxes.plan + " " + boxes.file("metres.stl") + " a", "states no unit");
+    CHECK(slurp(boxes.plan) == before);
+    boxes.folder.write("said.stl", "solid unit=m" + small.substr(small.find('\n')));
+    const Outcome said = boxes.folder.tactus("plan mirror " + boxes.plan + " " + boxes.file("said.stl") + " a");
+    CAPTURE(said.out, said.err);
+    CHECK(said.code == 0);
+}

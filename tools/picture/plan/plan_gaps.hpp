@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gaps and overlaps of the fragments of a plan: table, maps and warnings.
+#pragma once
+
+#include "tools/picture/blocks/report_block.hpp"
+#include "tools/picture/plan/drawn_plan.hpp"
+
+namespace tactus::picture {
+
+struct PlanGaps {
+    ReportTable table{{"fragment", "and", "facing, mm²", "touching, mm²", "median gap, mm", "95 %, mm", "deepest, mm",
+                       "overlap, mm³"},
+                      {}};
+    PictureGrid maps;
+    std::vector<std::string> warnings;  ///< of fragments that lie in each other
+};
+
+/// Throws Error when no picture can be made.
+PlanGaps gaps_of(const DrawnPlan& c);
+
+void add_gaps(const PlanGaps& found, std::vector<ReportBlock>& out);
+
+}  // namespace tactus::picture

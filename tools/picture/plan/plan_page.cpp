@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/plan/plan_page.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/counted.hpp"
+#include "tools/picture/plan/plan_gaps.hpp"
+#include "tools/picture/plan/plan_scenes.hpp"
+#include "tools/picture/plan/plan_tables.hpp"
+#include "tools/picture/report/html_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tactus::picture {
+
+std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                                     std::vector<std::optional<double>> to_healthy,
+                                     const fit::RegistrationTarget* healthy, std::vector<ReportBlock> first) {
+    DrawnPlan c;
+    c.plan = plan;
+    c.state = cases::state_of(c.plan);
+    c.fragments = std::move(fragments);
+    c.to_healthy = std::move(to_healthy);
+    c.to_healthy.resize(c.fragments.size());
+    c.vessels = study::vessel_clearances(c.state, c.fragments);
+    for (const study::CaseFragment& fragment : c.fragments)
+        c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
+    std::vector<ReportBlock> out, pictures;
+    PlanGaps found;
+    try {
+        found = gaps_of(c);
+        add_pictures(c, pictures);
+        if (healthy) add_mirror_maps(c, *healthy, pictures);
+    } catch (const Error& error) {
+        throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
+    }
+    out.emplace_back(Paragraph{fmt::format("Alternative '{}', {}. Research use; not a medical device.",
+                                           c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name,
+                                           counted(c.fragments.size(), "fragment"))});
+    std::ranges::move(first, std::back_inserter(out));
+    add_warnings(c, found.warnings, out);
+    add_connections(c, out);
+    out.emplace_back(Heading{"Fragments"});
+    out.emplace_back(fragments_table(c));
+    add_vessels(c, out);
+    add_mirror(c, out);
+    std::ranges::move(pictures, std::back_inserter(out));
+    add_gaps(found, out);
+    out.emplace_back(Heading{"Poses"});
+    out.emplace_back(Paragraph{"p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z."});
+    out.emplace_back(places(c));
+    add_steps(c, out);
+    out.emplace_back(Heading{"Alternatives"});
+    out.emplace_back(alternatives(c.plan));
+    return out;
+}
+
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+                      std::vector<std::optional<double>> to_healthy, const fit::RegistrationTarget* healthy) {
+    return html::page(plan.title,
+                      html_of(plan_blocks(plan, std::move(fragments), std::move(to_healthy), healthy), "plan"));
+}
+
+}  // namespace tactus::picture
