@@ -154,8 +154,10 @@ void PlanPanel::step_list() {
 }
 
 void PlanPanel::begin_again() {
-    for (const std::filesystem::path& changed : {flap_.flap().take_changed(), alternatives_.take_changed()})
-        if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
+    // One after the other: each has what the one before has changed.
+    std::filesystem::path changed = flap_.flap().take_changed();
+    if (changed.empty() && !flap_.flap().is_changing()) changed = alternatives_.take_changed();
+    if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
 }
 
 void PlanPanel::draw(const Fonts&) {

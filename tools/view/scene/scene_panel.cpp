@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -272,6 +273,7 @@ void ScenePanel::render(int width, int height) {
     const display::Legend drawn_legend = screens_.are_open() ? legend() : display::Legend{};
     const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
                                    ImGui::IsItemActive(), now);
+    if (next == SceneMotion::Next::nothing && screens_.has_steps_left()) return draw_step(picture);
     if (next == SceneMotion::Next::nothing) return screens_.show();
     picture.is_quick = next == SceneMotion::Next::coarse;
     picture.grain = picture.is_quick ? grain_.pixels() : 0.0;
@@ -279,6 +281,10 @@ void ScenePanel::render(int width, int height) {
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     const bool is_many = renderer_->is_software() && model_->triangles() > very_many_triangles;
     screens_.samples = picture.is_quick ? grain_.samples() : is_many ? 1 : 4;
+    if (next == SceneMotion::Next::fine && has_coarse && !screens_.are_open()) {
+        screens_.begin_steps();
+        return draw_step(picture);
+    }
     hand_.beat();
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     ++pictures_;
@@ -288,6 +294,20 @@ void ScenePanel::render(int width, int height) {
     if (renderer_->is_software()) finish(hand_);
     hand_.beat();
     screens_.show();
+}
+
+/// Where the processor draws, all triangles of a large scene take longer than a picture of the window may.
+void ScenePanel::draw_step(display::Picture& picture) {
+    picture.is_quick = false;
+    picture.grain = 0.0;
+    const auto begin = std::chrono::steady_clock::now();
+    hand_.beat();
+    screens_.draw_step(*renderer_, picture);
+    ++pictures_;
+    finish(hand_);
+    hand_.beat();
+    screens_.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    needs_picture_ = screens_.has_steps_left();
 }
 
 std::optional<display::Plane> ScenePanel::clip_plane() const {
