@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/elide.hpp"
+#include "tools/view/frame/elide.hpp"
 
 #include "tests/support/catch.hpp"
 

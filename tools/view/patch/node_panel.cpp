@@ -2,7 +2,7 @@
 #include "tools/view/patch/node_panel.hpp"
 
 #include "nodes/catalogue.hpp"
-#include "tools/view/elide.hpp"
+#include "tools/view/frame/elide.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 

@@ -120,8 +120,11 @@ void PlanPanel::maps() {
            true);
     choose("mirror map", Kind::healthy, "colours each fragment by its distance from the mirrored healthy side", false);
     if (!map_.shown()) return;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
+    const float wide = 7.0f * ImGui::GetFontSize();
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + wide <
+        ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x)
+        ImGui::SameLine();
+    ImGui::SetNextItemWidth(wide);
     auto range = static_cast<float>(map_.range() * 1e3);
     if (ImGui::DragFloat("##range", &range, 0.02f, 0.1f, 20.0f, "up to %.2f mm", ImGuiSliderFlags_AlwaysClamp))
         map_.set_range(1e-3 * static_cast<double>(range));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bones and bodies of the scene as a list: show, hide, choose.
 #include "assets/file/whole_file.hpp"
-#include "tools/view/elide.hpp"
+#include "tools/view/frame/elide.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 
