@@ -178,7 +178,8 @@ std::size_t MeshPool::level_for(const Parts& parts, const Mat4& to_clip, int wid
     return level;
 }
 
-std::size_t MeshPool::draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const {
+std::size_t MeshPool::draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain,
+                           TriangleSpan span) const {
     const Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
     const Frustum frustum(to_clip);
     seen_.clear();
@@ -191,11 +192,14 @@ std::size_t MeshPool::draw(Mesh mesh, const Mat4& to_clip, int width, int height
     std::size_t drawn = 0;
     for (const Part* part : seen_) {
         const Place& place = part->levels[level];
-        if (place.indices == 0) continue;
-        counts_.push_back(static_cast<std::int32_t>(place.indices));
+        const std::size_t all = place.indices / 3, left_out = std::min(all, span.first);
+        const std::size_t count = std::min(all - left_out, span.most - drawn);
+        span.first -= left_out;
+        if (count == 0) continue;
+        counts_.push_back(static_cast<std::int32_t>(3 * count));
         bases_.push_back(static_cast<std::int32_t>(place.first_vertex));
-        offsets_.push_back(reinterpret_cast<const void*>(place.first_index * sizeof(std::uint32_t)));
-        drawn += place.indices / 3;
+        offsets_.push_back(reinterpret_cast<const void*>((place.first_index + 3 * left_out) * sizeof(std::uint32_t)));
+        drawn += count;
     }
     if (counts_.empty()) return 0;
     glBindVertexArray(array_);

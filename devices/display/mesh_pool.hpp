@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -33,6 +34,11 @@ private:
     std::size_t end_ = 0;
 };
 
+/// Some of the triangles of a mesh, in the order in which all are drawn.
+struct TriangleSpan {
+    std::size_t first = 0, most = std::numeric_limits<std::size_t>::max();
+};
+
 /// All meshes of one OpenGL context, which must be current in every call.
 class MeshPool {
 public:
@@ -51,8 +57,8 @@ public:
     void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch);
     /// Draws the visible parts in a picture of `width` × `height` pixels; `to_clip` maps the mesh frame to clip space.
     /// `grain`: greatest width of a level-of-detail cell at the nearest point, pixels; 0: all triangles. Returns the
-    /// number of triangles drawn.
-    std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const;
+    /// number of triangles drawn: with a span, fewer than `most` when they end.
+    std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain, TriangleSpan span = {}) const;
     std::size_t triangles(Mesh mesh) const;  ///< in all
     /// Increases whenever a mesh changes.
     std::uint64_t changes() const { return changes_; }

@@ -13,7 +13,9 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace tactus::display {
@@ -155,16 +157,20 @@ void SceneRenderer::set_section(const GlProgram& program, const Picture& picture
     glUniformMatrix3x4fv(program.uniform("to_scan"), 1, GL_FALSE, glm::value_ptr(single));
 }
 
-void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, bool see_through) {
+/// The opaque meshes, or those that are not; true: all of them.
+bool SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, DrawnSoFar& so_far, std::size_t most) {
     const Projection& projection = view.projection;
     const GlProgram& program = picture.is_quick ? programs_->quick_mesh : programs_->mesh;
     program.use();
     set(program.uniform("to_clip"), projection.to_clip);
     set(program.uniform("section"), picture.section);
     glUniform2f(program.uniform("way"), view.flip == Flip::left_right ? -1.0f : 1.0f, upwards(view));
-    for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
-        const DrawnMesh& drawn = picture.meshes[i];
-        if ((drawn.opacity < 1.0) != see_through || !is_valid(drawn.pose)) continue;
+    // Back faces first, so that transparent bodies are blended in a fixed order.
+    constexpr std::array hidden_sides{GL_FRONT, GL_BACK};
+    const std::size_t sides = so_far.is_see_through ? hidden_sides.size() : 1;
+    for (; so_far.mesh < picture.meshes.size(); ++so_far.mesh) {
+        const DrawnMesh& drawn = picture.meshes[so_far.mesh];
+        if ((drawn.opacity < 1.0) != so_far.is_see_through || !is_valid(drawn.pose)) continue;
         const Mat4 to_eye = projection.to_eye * matrix_of(drawn.pose);
         set(program.uniform("to_eye"), to_eye);
         glUniform1f(program.uniform("opacity"), static_cast<float>(drawn.opacity));
@@ -172,27 +178,24 @@ void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, b
         set_section(program, picture, view, drawn);
         glUniform4f(program.uniform("tint"), static_cast<float>(drawn.tint.x), static_cast<float>(drawn.tint.y),
                     static_cast<float>(drawn.tint.z), static_cast<float>(drawn.tinted));
-        const auto draw_mesh = [&] {
-            drawn_triangles_ +=
-                pool_->draw(drawn.mesh, projection.to_clip * to_eye, view.width, view.height, picture.grain);
-        };
-        if (see_through) {
-            // Back faces first, so that transparent bodies are blended in a fixed order.
-            glEnable(GL_CULL_FACE);
-            for (const GLenum hidden : {GL_FRONT, GL_BACK}) {
-                glCullFace(hidden);
-                draw_mesh();
-            }
+        for (; so_far.side < sides; ++so_far.side) {
+            const std::size_t left = most - std::min(most, drawn_triangles_);
+            if (left == 0) return false;
+            const bool is_culled = so_far.is_see_through || (drawn.is_closed && !picture.clip);
+            if (is_culled) glEnable(GL_CULL_FACE);
+            glCullFace(so_far.is_see_through ? hidden_sides[so_far.side] : GL_BACK);
+            const std::size_t now = pool_->draw(drawn.mesh, projection.to_clip * to_eye, view.width, view.height,
+                                                picture.grain, {so_far.triangle, left});
             glDisable(GL_CULL_FACE);
-        } else if (drawn.is_closed && !picture.clip) {
-            glEnable(GL_CULL_FACE);
-            glCullFace(GL_BACK);
-            draw_mesh();
-            glDisable(GL_CULL_FACE);
-        } else {
-            draw_mesh();
+            drawn_triangles_ += now;
+            so_far.triangle += now;
+            if (now == left) return false;
+            so_far.triangle = 0;
         }
+        so_far.side = 0;
     }
+    so_far.mesh = 0;
+    return true;
 }
 
 /// Draws the occluded part of meshes that shine through.
@@ -204,7 +207,9 @@ void SceneRenderer::draw_hidden(const Picture& picture, const DrawnView& view) {
     if (hidden.meshes.empty()) return;
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
-    draw_meshes(hidden, view, true);
+    DrawnSoFar none;
+    none.is_see_through = true;
+    draw_meshes(hidden, view, none, std::numeric_limits<std::size_t>::max());
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
 }
@@ -230,42 +235,62 @@ void SceneRenderer::draw_points(const Picture& picture, const Projection& projec
     glDisable(GL_PROGRAM_POINT_SIZE);
 }
 
-void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> views) {
-    drawn_triangles_ = 0;
-    glEnable(GL_SCISSOR_TEST);
-    glDisable(GL_CULL_FACE);
-    for (const DrawnView& view : views) {
-        if (view.width < 1 || view.height < 1) continue;
-        const bool red = view.channel != Channel::cyan, cyan = view.channel != Channel::red;
-        if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
-        if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
-        glColorMask(red, cyan, cyan, GL_TRUE);
-        glViewport(view.x, view.y, view.width, view.height);
-        glScissor(view.x, view.y, view.width, view.height);
-        glDepthMask(GL_TRUE);
+/// From where it was left; true: all of it.
+bool SceneRenderer::draw_view(const Picture& picture, const DrawnView& view, DrawnSoFar& so_far, std::size_t most) {
+    const bool red = view.channel != Channel::cyan, cyan = view.channel != Channel::red;
+    if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
+    if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
+    glColorMask(red, cyan, cyan, GL_TRUE);
+    glViewport(view.x, view.y, view.width, view.height);
+    glScissor(view.x, view.y, view.width, view.height);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    const bool is_begun = so_far.is_see_through || so_far.mesh > 0 || so_far.triangle > 0;
+    if (!is_begun) {
         glClear(GL_DEPTH_BUFFER_BIT);
         glDisable(GL_DEPTH_TEST);
-        glDisable(GL_BLEND);
         programs_->background.use();
         set(programs_->background.uniform("sky"), picture.sky);
         set(programs_->background.uniform("ground"), picture.ground);
         glUniform1f(programs_->background.uniform("upwards"), upwards(view));
         glBindVertexArray(programs_->no_attributes);
         glDrawArrays(GL_TRIANGLES, 0, 3);
-        glEnable(GL_DEPTH_TEST);
-        glEnable(GL_CLIP_DISTANCE0);
-        glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
-        draw_meshes(picture, view, false);
+    }
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CLIP_DISTANCE0);
+    glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
+    if (!so_far.is_see_through) {
+        if (!draw_meshes(picture, view, so_far, most)) return false;
         draw_points(picture, view.projection);
-        glEnable(GL_BLEND);
-        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        draw_meshes(picture, view, true);
-        draw_hidden(picture, view);
+        so_far.is_see_through = true;
+    }
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    if (!draw_meshes(picture, view, so_far, most)) return false;
+    draw_hidden(picture, view);
+    return true;
+}
+
+void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> views) {
+    DrawnSoFar none;
+    draw_some(picture, views, none, std::numeric_limits<std::size_t>::max());
+}
+
+bool SceneRenderer::draw_some(const Picture& picture, std::span<const DrawnView> views, DrawnSoFar& so_far,
+                              std::size_t most_triangles) {
+    drawn_triangles_ = 0;
+    glEnable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    for (; so_far.view < views.size(); so_far = {so_far.view + 1}) {
+        const DrawnView& view = views[so_far.view];
+        if (view.width < 1 || view.height < 1) continue;
+        if (!draw_view(picture, view, so_far, most_triangles)) break;
     }
     glFrontFace(GL_CCW);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     for (const GLenum what : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CLIP_DISTANCE0}) glDisable(what);
     glBindVertexArray(0);
+    return so_far.view == views.size();
 }
 
 std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnView& view, double x, double y) {

@@ -69,6 +69,13 @@ std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, 
 std::vector<DrawnView> views_of(std::span<const ScreenView> eyes, int width, int height, StereoMode mode,
                                 Flip flip = Flip::none);
 
+/// How far a picture that is drawn in steps has come.
+struct DrawnSoFar {
+    std::size_t view = 0, mesh = 0, side = 0, triangle = 0;  ///< what is drawn next; side: of a transparent mesh
+    bool is_see_through = false;  ///< the opaque meshes of the view are drawn
+    bool operator==(const DrawnSoFar&) const = default;
+};
+
 /// The surface point at a pixel.
 struct Picked {
     Vec3 position{0.0};  ///< in the world, m
@@ -90,7 +97,12 @@ public:
     /// Clears and draws every view. Skips meshes with a pose that is not finite. Afterwards depth test, blending,
     /// scissor and clipping are off, and the colour mask is complete.
     void draw(const Picture& picture, std::span<const DrawnView> views);
-    /// Triangles of the last `draw`.
+    /// Draws at most so many triangles of it, and with the last ones the hidden parts of what shines through, from `so_far`
+    /// on, which it moves on. What was drawn must still be in the framebuffer, picture and views must be the same. True:
+    /// the picture is complete, with the same pixels as by `draw`.
+    bool draw_some(const Picture& picture, std::span<const DrawnView> views, DrawnSoFar& so_far,
+                   std::size_t most_triangles);
+    /// Triangles of the last `draw` or `draw_some`.
     std::size_t drawn_triangles() const { return drawn_triangles_; }
 
     /// The surface point at (x, y) of the target, pixels from the lower left; nothing where there is only background.
@@ -98,7 +110,8 @@ public:
 
 private:
     struct Programs;
-    void draw_meshes(const Picture& picture, const DrawnView& view, bool see_through);
+    bool draw_view(const Picture& picture, const DrawnView& view, DrawnSoFar& so_far, std::size_t most);
+    bool draw_meshes(const Picture& picture, const DrawnView& view, DrawnSoFar& so_far, std::size_t most);
     void set_section(const GlProgram& program, const Picture& picture, const DrawnView& view,
                      const DrawnMesh& drawn) const;
     void draw_hidden(const Picture& picture, const DrawnView& view);

@@ -8,14 +8,19 @@
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/places.hpp"
 #include "tools/picture/scene/body_surface.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <memory>
+#include <string>
+#include <thread>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::picture;
@@ -141,6 +146,33 @@ TEST_CASE("the vessels of a plan's scan are in the picture where they were scann
     model.update();
     CHECK(model.parts().empty());
     CHECK(model.triangles() == 0);
+}
+
+TEST_CASE("the vessels of a flap are computed beside the pictures, which say so, or pictures wait for them") {
+    if (!can_render()) return;
+    const std::string file = (tactus::test::library_folder() / "cases/fibula-flap/case.plan.json").string();
+    observe::Observer observer;
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {}, file}};
+    SceneModel waits(outline, observer, maker.renderer());
+    waits.show_density(false, true);
+    waits.update();
+    CHECK(waits.legend().warnings.empty());
+    std::vector<std::string> names;
+    for (const SceneModel::Part& part : waits.parts()) names.push_back(part.name);
+    CHECK(names.size() >= 2);
+
+    SceneModel model(outline, observer, maker.renderer());
+    model.update();
+    REQUIRE(model.legend().warnings.size() == 1);
+    CHECK(model.legend().warnings[0].find("computing the vessels") == 0);
+    for (int i = 0; i < 6000 && !model.legend().warnings.empty(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        model.update();
+    }
+    REQUIRE(model.parts().size() == names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) CHECK(model.parts()[i].name == names[i]);
 }
 
 TEST_CASE("what an edit took away leaves the picture, and what it brings comes in") {

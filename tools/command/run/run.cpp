@@ -24,6 +24,7 @@ namespace {
 int run(const view::ViewedRunChoice& choice) {
     const std::atomic<bool>& interrupted = stop_on_signals();
     if (choice.view.wanted) return view::view_run(choice, interrupted);
+    if (!choice.view.scan.empty()) throw Error("--scan: slices of a scan are shown in the window; add --view");
     compile::AssetCache assets;
     RunSession session(choice, assets);
     LiveLine line;

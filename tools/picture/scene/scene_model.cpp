@@ -49,7 +49,7 @@ SceneModel::~SceneModel() {
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
     for (const auto& [file, vessels] : vessels_)
         for (const PlanVessel& vessel : vessels.all)
-            for (const VesselPart& part : vessel.parts) renderer_.meshes().remove(part.mesh);
+            for (const MeshOfVessel& part : vessel.parts) renderer_.meshes().remove(part.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     renderer_.meshes().remove(notes_mesh_);

@@ -27,6 +27,21 @@ struct CasePlan;
 
 namespace tactus::picture {
 
+/// Vessels of a plan as tubes, made beside the pictures.
+struct VesselTubes {
+    struct Part {
+        geometry::SurfacePatch patch;
+        int place = -1;  ///< in the scene of the body that it rides on; -1: it lies where it was scanned
+    };
+    struct Vessel {
+        std::string name;
+        Vec3 colour{0.0};
+        std::vector<Part> parts;
+    };
+    std::vector<Vessel> all;
+    std::string problem;  ///< why some are missing
+};
+
 /// Belongs to one renderer. Its context must be current in `update` and in the destructor.
 class SceneModel {
 public:
@@ -70,7 +85,8 @@ public:
     /// at first those of the plan's file. Null: none.
     void use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of);
     /// Whether sections show the density of what is cut, from the next picture on. Files are read beside the pictures, and
-    /// sections are flat until then; `waits`: the next picture waits for them.
+    /// sections are flat until then; `waits`: pictures wait for them, and for the vessels of a flap, which are computed
+    /// beside the pictures, too.
     void show_density(bool wanted, bool waits = false);
     bool is_reading_density() const;
     /// Of the scene of a plan, in the plan's order; null where one was not drawn yet.
@@ -156,7 +172,7 @@ private:
     };
     void show_guides();
     void show_ropes();
-    struct VesselPart {
+    struct MeshOfVessel {
         display::MeshPool::Mesh mesh = -1;
         display::Bounds bounds;
         int place = -1;  ///< in the scene of the body that it rides on; -1: it lies where it was scanned
@@ -164,13 +180,14 @@ private:
     struct PlanVessel {
         std::string name;
         Vec3 colour{0.0};
-        std::vector<VesselPart> parts;
+        std::vector<MeshOfVessel> parts;
     };
     struct PlanVessels {
         std::vector<PlanVessel> all;
         std::string problem;  ///< why some are missing
+        std::future<VesselTubes> making;
     };
-    void add_vessel_part(PlanVessel& to, const std::vector<Vec3>& line, double radius, int place);
+    void put_vessels(PlanVessels& to, const VesselTubes& tubes);
     void take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan);
     void forget_vessels();
     void show_vessels();
@@ -222,7 +239,7 @@ private:
     std::string compared_name_;
     std::map<std::size_t, PlanPiece> pieces_;
     std::map<std::size_t, std::uint64_t> content_at_;  // of the plan's scene: what was seen last, by place
-    bool has_density_ = false, waits_for_density_ = false, shows_grey_ = false;
+    bool has_density_ = false, waits_for_files_ = false, shows_grey_ = false;
     std::shared_ptr<const SurfaceMap> map_;
     double map_range_ = 1e-3;
     int map_number_ = 0;

@@ -10,7 +10,7 @@ namespace tactus::picture {
 
 void SceneModel::show_density(bool wanted, bool waits) {
     has_density_ = wanted;
-    waits_for_density_ = waits;
+    waits_for_files_ = waits;
 }
 
 bool SceneModel::is_reading_density() const {
@@ -21,7 +21,7 @@ std::span<const volume::Grid> SceneModel::densities_of(const std::string& path) 
     Densities& known = densities_[path];
     if (known.is_read) return known.grids;
     if (!known.reading.valid()) known.reading = std::async(std::launch::async, [path] { return read_densities(path); });
-    if (!waits_for_density_ && known.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+    if (!waits_for_files_ && known.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
     known.grids = known.reading.get();
     known.is_read = true;
     return known.grids;

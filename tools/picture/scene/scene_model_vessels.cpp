@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace tactus::picture {
 
@@ -33,43 +34,63 @@ std::vector<int> segments_of(const cases::CasePlan& plan, const cases::PlanState
     return segments;
 }
 
-}  // namespace
-
-void SceneModel::add_vessel_part(PlanVessel& to, const std::vector<Vec3>& line, double radius, int place) {
+void add_tube(VesselTubes::Vessel& to, const std::vector<Vec3>& line, double radius, int place) {
     const geometry::TriangleSurface tube = vessel::tube_surface(vessel::branch_of_line(line, radius));
-    if (tube.triangles.empty()) return;
-    const geometry::SurfacePatch patch = triangle_patch(tube, geometry::packed_colour(to.colour, 1.0));
-    to.parts.push_back({renderer_.meshes().make(), display::bounds_of(patch), place});
-    renderer_.meshes().set_part(to.parts.back().mesh, 0, patch);
+    if (!tube.triangles.empty())
+        to.parts.push_back({triangle_patch(tube, geometry::packed_colour(to.colour, 1.0)), place});
 }
 
-void SceneModel::take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan) {
-    const cases::PlanState state = cases::state_of(plan);
-    PlanVessels& taken = vessels_[file.string()];
-    const auto add = [&](const reconstruct::FlapVessel& vessel) -> PlanVessel& {
-        return taken.all.emplace_back(PlanVessel{vessel.name, colour_of(vessel), {}});
-    };
-    if (!state.reconstruction) {
-        if (!state.vessels) return;
-        for (const reconstruct::FlapVessel& vessel : *state.vessels)
-            add_vessel_part(add(vessel), vessel.points, vessel.radius, -1);
-        return;
+/// Those of the scan.
+VesselTubes scanned_tubes(const std::vector<reconstruct::FlapVessel>& vessels) {
+    VesselTubes tubes;
+    for (const reconstruct::FlapVessel& vessel : vessels) {
+        tubes.all.push_back({vessel.name, colour_of(vessel), {}});
+        add_tube(tubes.all.back(), vessel.points, vessel.radius, -1);
     }
+    return tubes;
+}
+
+/// Those of the flap: the fibula is planned for it, which takes long.
+VesselTubes flap_tubes(const std::filesystem::path& file, const cases::CasePlan& plan) {
+    VesselTubes tubes;
     try {
+        const cases::PlanState state = cases::state_of(plan);
         const reconstruct::Reconstruction& made = *state.reconstruction;
         reconstruct::FibulaInputs inputs = made.inputs;
         inputs.donor = reconstruct::read_surface(cases::file_of(made.donor.file, file.parent_path()));
         const reconstruct::FibulaPlan fibula = reconstruct::plan_fibula(inputs);
         const std::vector<int> segments = segments_of(plan, state);
         for (const reconstruct::FlapVessel& vessel : made.flap.vessels) {
-            PlanVessel& one = add(vessel);
+            tubes.all.push_back({vessel.name, colour_of(vessel), {}});
             for (const reconstruct::VesselPart& part : reconstruct::parts_of(vessel, inputs, fibula))
                 if (part.kind == reconstruct::VesselPart::Kind::attached && part.segment < segments.size())
-                    add_vessel_part(one, part.points, vessel.radius, segments[part.segment]);
+                    add_tube(tubes.all.back(), part.points, vessel.radius, segments[part.segment]);
         }
     } catch (const Error& error) {
-        taken.problem = fmt::format("the vessels of the flap are not drawn: {}", error.message());
+        tubes.problem = fmt::format("the vessels of the flap are not drawn: {}", error.message());
     }
+    return tubes;
+}
+
+}  // namespace
+
+void SceneModel::put_vessels(PlanVessels& to, const VesselTubes& tubes) {
+    to.problem = tubes.problem;
+    for (const VesselTubes::Vessel& vessel : tubes.all) {
+        PlanVessel& one = to.all.emplace_back(PlanVessel{vessel.name, vessel.colour, {}});
+        for (const VesselTubes::Part& part : vessel.parts) {
+            one.parts.push_back({renderer_.meshes().make(), display::bounds_of(part.patch), part.place});
+            renderer_.meshes().set_part(one.parts.back().mesh, 0, part.patch);
+        }
+    }
+}
+
+void SceneModel::take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan) {
+    const cases::PlanState state = cases::state_of(plan);
+    PlanVessels& taken = vessels_[file.string()];
+    if (state.reconstruction)
+        taken.making = std::async(std::launch::async, [file, plan] { return flap_tubes(file, plan); });
+    else if (state.vessels) put_vessels(taken, scanned_tubes(*state.vessels));
 }
 
 void SceneModel::forget_vessels() {
@@ -77,7 +98,7 @@ void SceneModel::forget_vessels() {
         const bool is_gone =
             std::ranges::find(outline_.scenes, known.first, &SceneOutline::Bodies::plan) == outline_.scenes.end();
         for (const PlanVessel& vessel : known.second.all)
-            for (const VesselPart& part : vessel.parts)
+            for (const MeshOfVessel& part : vessel.parts)
                 if (is_gone) renderer_.meshes().remove(part.mesh);
         if (is_gone) named_.erase(known.first);
         return is_gone;
@@ -86,17 +107,24 @@ void SceneModel::forget_vessels() {
 
 void SceneModel::show_vessels() {
     const std::vector<std::optional<Pose>> poses = plan_poses();
-    for (const auto& [file, vessels] : vessels_) {
+    for (auto& [file, vessels] : vessels_) {
+        if (vessels.making.valid() &&
+            (waits_for_files_ || vessels.making.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
+            put_vessels(vessels, vessels.making.get());
+        if (vessels.making.valid()) {
+            legend_.warnings.push_back("computing the vessels of the flap ...");
+            is_waiting_ = true;
+        }
         if (!vessels.problem.empty()) legend_.warnings.push_back(vessels.problem);
         for (const PlanVessel& vessel : vessels.all) {
-            const auto pose_of_part = [&](const VesselPart& part) {
+            const auto pose_of_part = [&](const MeshOfVessel& part) {
                 const auto place = static_cast<std::size_t>(part.place);
                 return part.place < 0 ? Pose{} : place < poses.size() ? poses[place] : std::optional<Pose>{};
             };
             // Where ropes are in the scene they are the vessels of its flap.
             const bool is_rope = !outline_.ropes.empty() && !vessel.parts.empty() && vessel.parts[0].place >= 0;
             if (vessel.parts.empty() || is_rope || !is_part_shown(vessel.name, vessel.colour)) continue;
-            for (const VesselPart& part : vessel.parts) {
+            for (const MeshOfVessel& part : vessel.parts) {
                 const std::optional<Pose> pose = pose_of_part(part);
                 if (!pose) continue;
                 part_of_mesh_.emplace_back(picture_.meshes.size(), vessel.name);

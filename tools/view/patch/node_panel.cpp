@@ -2,6 +2,7 @@
 #include "tools/view/patch/node_panel.hpp"
 
 #include "nodes/catalogue.hpp"
+#include "tools/view/frame/elide.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -104,9 +105,10 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
 void NodePanel::field(const ParameterField& field, const std::string& node) {
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
-    if (field.is_set) ImGui::TextUnformatted(field.name.c_str());
-    else ImGui::TextDisabled("%s", field.name.c_str());
-    tip(explanation(field));
+    const std::string name = elided(field.name, static_cast<double>(ImGui::GetContentRegionAvail().x));
+    if (field.is_set) ImGui::TextUnformatted(name.c_str());
+    else ImGui::TextDisabled("%s", name.c_str());
+    tip(name == field.name ? explanation(field) : field.name + "\n" + explanation(field));
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::BeginDisabled(is_read_only || field.is_driven);
@@ -151,8 +153,10 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     ImGui::TableNextColumn();
     if (field.kind == Kind::quantity) {
         ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("%s", range_text(field).c_str());
-        tip(explanation(field));
+        const std::string range = range_text(field);
+        const std::string shown = elided(range, static_cast<double>(ImGui::GetContentRegionAvail().x));
+        ImGui::TextDisabled("%s", shown.c_str());
+        tip(shown == range ? explanation(field) : range + "\n" + explanation(field));
     }
     ImGui::TableNextColumn();
     if (field.is_set && !is_read_only) {

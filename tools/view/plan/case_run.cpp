@@ -18,6 +18,7 @@ namespace {
 
 // A button is pressed for 20 ms of the run; the next press must come after that.
 constexpr auto between_commands = std::chrono::milliseconds(100), between_looks = std::chrono::milliseconds(300);
+constexpr auto written_within = std::chrono::milliseconds(1000);
 
 const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
 
@@ -196,6 +197,8 @@ void CaseRun::join(const std::vector<int>& fragments) {
 }
 
 bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }
+
+bool CaseRun::is_settled() const { return commands_.empty() && Clock::now() - sent_ > written_within; }
 
 // Only a change counts.
 void CaseRun::go_to_alternative(int place) {

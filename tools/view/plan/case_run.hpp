@@ -60,6 +60,8 @@ public:
     void join(const std::vector<int>& fragments);
     /// The patch runs.
     bool is_live() const;
+    /// What was sent last has come into the plan's file.
+    bool is_settled() const;
     /// Goes to an alternative of the plan, by its place; their number: begins another one at the current state.
     void go_to_alternative(int place);
     /// Drops an alternative that is not the current one; -2: brings the last one back.

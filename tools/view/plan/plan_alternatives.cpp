@@ -23,6 +23,14 @@ int find(const cases::CasePlan& plan, const std::string& name) {
     return found == plan.alternatives.end() ? -1 : static_cast<int>(found - plan.alternatives.begin());
 }
 
+/// The next control, with this label, on the same line if it fits.
+void continue_line(const char* label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float wide = ImGui::CalcTextSize(label).x + ImGui::GetFrameHeight() + 2.0f * style.ItemSpacing.x;
+    if (ImGui::GetItemRectMax().x + wide < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x)
+        ImGui::SameLine();
+}
+
 }  // namespace
 
 void PlanAlternatives::tend() {
@@ -72,25 +80,40 @@ void PlanAlternatives::name_field(int place) {
     const bool is_entered =
         ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     mark_spot("name of the alternative");
-    if (is_entered) rename(place);
+    if (is_entered) rename(run_.plan()->alternatives[static_cast<std::size_t>(place)].name, name_);
     if (is_entered || ImGui::IsItemDeactivated()) renamed_ = -1;
 }
 
-void PlanAlternatives::rename(int place) {
+void PlanAlternatives::rename(const std::string& name, const std::string& wanted) {
+    if (name == wanted) return;
+    if (wanted.empty() || (run_.plan() && find(*run_.plan(), wanted) >= 0))
+        return bench_.tell(
+            fmt::format("an alternative cannot be named '{}': a name must not be empty, nor that of another", wanted),
+            true);
+    wanted_name_ = {name, wanted};
+}
+
+std::filesystem::path PlanAlternatives::take_changed() {
+    if (wanted_name_.second.empty() || !run_.plan() || !run_.is_settled()) return {};
     try {
+        const auto written = std::filesystem::last_write_time(run_.file());
         cases::CasePlan plan = cases::load_case_plan(run_.file());
-        const auto n = static_cast<std::size_t>(place);
-        if (n >= plan.alternatives.size() || plan.alternatives[n].name == name_) return;
-        if (name_.empty() || find(plan, name_) >= 0)
-            throw Error(fmt::format(
-                "an alternative cannot be named '{}': a name must not be empty, nor that of another", name_));
-        plan.alternatives[n].name = name_;
+        const auto [name, wanted] = std::exchange(wanted_name_, {});
+        const int place = find(plan, name);
+        if (place < 0 || find(plan, wanted) >= 0)
+            throw Error(fmt::format("'{}' cannot be named '{}': the alternatives are others by now", name, wanted));
+        plan.alternatives[static_cast<std::size_t>(place)].name = wanted;
         const std::filesystem::path file = free_plan(run_.file().parent_path());
         cases::save_case_plan(plan, file);
-        changed_ = file;
-    } catch (const Error& error) {
+        if (std::filesystem::last_write_time(run_.file()) == written) return file;
+        // A step came meanwhile.
+        std::filesystem::remove(file);
+        wanted_name_ = {name, wanted};
+    } catch (const std::exception& error) {
+        wanted_name_ = {};
         bench_.tell(error.what(), true);
     }
+    return {};
 }
 
 void PlanAlternatives::list(const cases::CasePlan& plan) {
@@ -107,15 +130,15 @@ void PlanAlternatives::list(const cases::CasePlan& plan) {
         mark_spot("alternative " + name);
         if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) ask_name(n, name);
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s; double click: another name, with which the run begins again",
+            ImGui::SetTooltip("%s: %s; double click: another name, with which the run begins again", name.c_str(),
                               is_current ? "the scene shows this one" : "the scene goes to this one");
         if (!is_current) {
-            ImGui::SameLine();
+            continue_line("compare");
             bool is_compared = compared_ == name;
             if (ImGui::Checkbox("compare", &is_compared)) compared_ = is_compared ? name : "";
             mark_spot("compare " + name);
             if (ImGui::IsItemHovered()) ImGui::SetTooltip("drawn through the current one, in a second colour");
-            ImGui::SameLine();
+            continue_line("drop");
             if (ImGui::SmallButton("drop")) run_.drop_alternative(n);
             mark_spot("drop " + name);
             if (ImGui::IsItemHovered()) ImGui::SetTooltip("its steps stay in the file; 'undrop' brings it back");

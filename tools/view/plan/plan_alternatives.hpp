@@ -26,14 +26,15 @@ public:
 
     /// Asks for another name of the current one.
     void ask_name();
-    /// The plan with another name, which a new run begins with; empty: none. Taken once.
-    std::filesystem::path take_changed() { return std::exchange(changed_, {}); }
+    void rename(const std::string& name, const std::string& wanted);
+    /// The plan with another name, which a new run begins with; empty: none, or the run has not written yet what was done
+    /// before. Taken once.
+    std::filesystem::path take_changed();
 
 private:
     void list(const cases::CasePlan& plan);
     void ask_name(int place, const std::string& name);
     void name_field(int place);
-    void rename(int place);
 
     using Numbers = std::array<AlternativeNumbers, 2>;
 
@@ -45,7 +46,7 @@ private:
     std::vector<std::string> differences_;
     std::future<Numbers> counting_;
     std::vector<std::string> numbers_;
-    std::filesystem::path changed_;
+    std::pair<std::string, std::string> wanted_name_;  ///< of the alternative that gets another one, and that
     int renamed_ = -1;  ///< place of the alternative whose name is asked for
     bool wants_focus_ = false;
     std::string name_;

@@ -120,8 +120,11 @@ void PlanPanel::maps() {
            true);
     choose("mirror map", Kind::healthy, "colours each fragment by its distance from the mirrored healthy side", false);
     if (!map_.shown()) return;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
+    const float wide = 7.0f * ImGui::GetFontSize();
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + wide <
+        ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x)
+        ImGui::SameLine();
+    ImGui::SetNextItemWidth(wide);
     auto range = static_cast<float>(map_.range() * 1e3);
     if (ImGui::DragFloat("##range", &range, 0.02f, 0.1f, 20.0f, "up to %.2f mm", ImGuiSliderFlags_AlwaysClamp))
         map_.set_range(1e-3 * static_cast<double>(range));
@@ -154,8 +157,10 @@ void PlanPanel::step_list() {
 }
 
 void PlanPanel::begin_again() {
-    for (const std::filesystem::path& changed : {flap_.flap().take_changed(), alternatives_.take_changed()})
-        if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
+    // One after the other: each has what the one before has changed.
+    std::filesystem::path changed = flap_.flap().take_changed();
+    if (changed.empty() && !flap_.flap().is_changing()) changed = alternatives_.take_changed();
+    if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
 }
 
 void PlanPanel::draw(const Fonts&) {

@@ -57,7 +57,7 @@ public:
     /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping; 3: along the line of sight as
     /// it is now; 4: along the normal of the plane through three measured points.
     void clip(int axis, double share);
-    /// Number of pictures drawn; a scene that does not change is not drawn again.
+    /// Number of pictures drawn, each step of one that is drawn in steps; a scene that does not change is not drawn again.
     std::int64_t pictures() const { return pictures_; }
     /// The parts of the last picture.
     std::span<const SceneModel::Part> parts() const;
@@ -102,6 +102,7 @@ private:
     void steer(int width, int height);
     void steer_by_keys(bool is_pointed_at);
     void render(int width, int height);
+    void draw_step(display::Picture& picture);
     void tend_screens();
     void watch_sight();
     display::Legend legend() const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
@@ -133,6 +134,7 @@ std::vector<display::DrawnView> SceneScreens::aim(Sight& sight, const display::O
 
 void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight,
                         const display::Legend& legend) {
+    has_steps_left_ = false;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
         Target& target = *targets_[i];
@@ -145,15 +147,43 @@ void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture
             target.right.end();
             tile.views.resize(1);
         }
-        target.left.begin(width, height, samples);
+        target.left->begin(width, height, samples);
         renderer.draw(picture, tile.views);
-        target.left.end();
-        tile.texture = target.left.texture();
-        tile.version = target.left.version();
+        target.left->end();
+        tile.texture = target.left->texture();
+        tile.version = target.left->version();
         if (!window_of(i)) continue;
-        draw_legend(i, target.left, sight, legend, tile.views);
+        draw_legend(i, *target.left, sight, legend, tile.views);
         if (target.has_two) draw_legend(i, target.right, sight, legend, tile.views);
     }
+}
+
+void SceneScreens::begin_steps() {
+    has_steps_left_ = !tiles_.empty();
+    step_tile_ = 0;
+    step_ = {};
+}
+
+void SceneScreens::draw_step(display::SceneRenderer& renderer, const display::Picture& picture) {
+    Tile& tile = tiles_[step_tile_];
+    Target& target = *targets_[step_tile_];
+    if (!target.next) target.next = std::make_unique<TextureTarget>();
+    const bool is_first = step_ == display::DrawnSoFar{};
+    if (is_first) target.next->begin(tile.picture_width, tile.picture_height, samples);
+    else target.next->resume();
+    if (!renderer.draw_some(picture, tile.views, step_, step_triangles_)) return target.next->pause();
+    target.next->end();
+    std::swap(target.left, target.next);
+    tile.texture = target.left->texture();
+    tile.version = target.left->version();
+    step_ = {};
+    has_steps_left_ = ++step_tile_ < tiles_.size();
+}
+
+void SceneScreens::took(double step_s) {
+    constexpr double wanted_s = 0.01, least = 2e3, most = 2e6;
+    const double times = std::clamp(wanted_s / std::max(step_s, 1e-4), 0.5, 1.5);
+    step_triangles_ = static_cast<std::size_t>(std::clamp(times * static_cast<double>(step_triangles_), least, most));
 }
 
 void SceneScreens::show() {
@@ -161,8 +191,8 @@ void SceneScreens::show() {
         ScreenWindow* const window = window_of(i);
         if (!window) continue;
         const Target& target = *targets_[i];
-        window->show(target.left.texture(), target.has_two ? target.right.texture() : 0, target.left.width(),
-                     target.left.height(), i == 0);
+        window->show(target.left->texture(), target.has_two ? target.right.texture() : 0, target.left->width(),
+                     target.left->height(), i == 0);
     }
 }
 

@@ -45,12 +45,21 @@ public:
     /// Draws the scene for all screens with the computed views.
     void draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight,
               const display::Legend& legend);
+    /// The same in steps, one with each call, while the tiles show the picture before: for slow pictures, without windows
+    /// of their own. `draw` gives up what is not complete.
+    void begin_steps();
+    void draw_step(display::SceneRenderer& renderer, const display::Picture& picture);
+    bool has_steps_left() const { return has_steps_left_; }
+    /// How long the step took, s: the next ones are as long as they should be.
+    void took(double step_s);
     /// Shows the last picture again in the windows, after they were uncovered or resized.
     void show();
 
 private:
     struct Target {
-        TextureTarget left, right;
+        std::unique_ptr<TextureTarget> left = std::make_unique<TextureTarget>();
+        std::unique_ptr<TextureTarget> next;  ///< what is drawn in steps
+        TextureTarget right;
         bool has_two = false;
     };
     struct Opened {
@@ -65,6 +74,9 @@ private:
     std::vector<Tile> tiles_;
     std::vector<std::unique_ptr<Target>> targets_;
     std::vector<Opened> windows_;
+    bool has_steps_left_ = false;
+    std::size_t step_tile_ = 0, step_triangles_ = 20'000;
+    display::DrawnSoFar step_;
     std::string legend_text_;
     display::Image legend_image_;
     double legend_scale_ = 0.0;

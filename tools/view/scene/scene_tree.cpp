@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bones and bodies of the scene as a list: show, hide, choose.
 #include "assets/file/whole_file.hpp"
+#include "tools/view/frame/elide.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 
@@ -63,12 +64,13 @@ void ScenePanel::draw_tree() {
         if (part.fits >= 0)
             for (const SceneModel::Part& other : parts)
                 if (other.place == part.fits) label += ", fits " + other.name;
-        label += "###name";
-        if (ImGui::Selectable(label.c_str(), std::ranges::find(chosen, part.name) != chosen.end())) {
+        const std::string shown = elided(label, static_cast<double>(ImGui::GetContentRegionAvail().x));
+        if (ImGui::Selectable((shown + "###name").c_str(), std::ranges::find(chosen, part.name) != chosen.end())) {
             model_->choose_part(part.name, ImGui::GetIO().KeyCtrl);
             needs_picture_ = true;
         }
         mark_spot("part " + part.name);
+        if (shown != label && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", label.c_str());
         ImGui::PopID();
     }
     draw_measurements();

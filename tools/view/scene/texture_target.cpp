@@ -69,6 +69,13 @@ void TextureTarget::begin(int width, int height, int samples) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
+void TextureTarget::resume() {
+    glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+    glViewport(0, 0, width_, height_);
+}
+
+void TextureTarget::pause() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
+
 void TextureTarget::end() {
     static std::uint64_t pictures = 0;
     version_ = ++pictures;

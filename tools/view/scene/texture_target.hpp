@@ -19,6 +19,10 @@ public:
 
     /// Redirects drawing into it, with up to `samples` per pixel. A new size reallocates it. Throws Error.
     void begin(int width, int height, int samples = 4);
+    /// Redirects drawing into it again, after `pause`; what is in it stays.
+    void resume();
+    /// Restores the window's framebuffer; the texture has not what was drawn since `begin`, before `end`.
+    void pause();
     /// Restores the window's framebuffer and resolves the samples, if there are several.
     void end();
 
