@@ -54,16 +54,14 @@ void print_comparison(const std::string& fragment, const std::string& main, cons
     print_faces(fragment, "there", main, c.after);
 }
 
-/// Nothing is moved to a mirrored side that lies wrongly itself.
+/// A mirrored side that lies wrongly is no target: the plan does not take it, and nothing is compared with it.
 bool is_doubtful(const fit::MirrorFit& fit) { return fit.registration.median > study::most_intact_median; }
 
 std::string doubt_words(const MirrorChoice& choice) {
     return fmt::format(
-        "the mirrored side lies more than {:.0f} mm away from half of '{}', so that it is no target{}: name the "
-        "largest fragment first, check that {} is the same bone of the other side, and undo this step ('tactus plan "
-        "undo')",
-        study::most_intact_median * 1e3, choice.names[0], choice.settle ? ", and nothing was moved" : "",
-        choice.healthy.string());
+        "the mirrored side lies more than {:.0f} mm away from half of '{}', so that it is no target: name the "
+        "largest fragment first, and check that {} is the same bone of the other side; the plan is unchanged",
+        study::most_intact_median * 1e3, choice.names[0], choice.healthy.string());
 }
 
 Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& others) {
@@ -75,6 +73,29 @@ Json json_of(const MirrorChoice& choice, const fit::MirrorFit& fit, const Json& 
             {"plane_offset_mm", fit.plane.offset * 1e3},
             {"asymmetry", {{"angle_deg", fit.rotation * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
             {"others", others}};
+}
+
+void add_target(cases::CasePlan& plan, const study::MirrorStudy& laid, const MirrorChoice& choice) {
+    cases::PlanStep step;
+    step.kind = cases::StepKind::mirror;
+    step.by = "command";
+    step.mirror = laid.target();
+    study::do_step(plan, std::move(step), choice.plan);
+}
+
+/// Compares the other fragments with the mirrored side, and moves them there when that is asked.
+Json compare_others(cases::CasePlan& plan, study::MirrorStudy& laid, const std::vector<int>& others,
+                    const MirrorChoice& choice) {
+    Json compared = Json::array();
+    for (const int other : others) {
+        const std::string& name = plan.fragments[static_cast<std::size_t>(other)].name;
+        const study::MirrorComparison found = laid.compare(other, cases::state_of(plan).arrangement.pose(other));
+        compared.push_back(comparison_json(name, found));
+        if (!choice.json) print_comparison(name, choice.names[0], found);
+        if (choice.settle)
+            study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+    }
+    return compared;
 }
 
 int mirror(const MirrorChoice& choice) {
@@ -89,20 +110,11 @@ int mirror(const MirrorChoice& choice) {
                 fmt::format("'{}' is named twice; the first is the main fragment, the others are brought to it", name));
     }
     study::MirrorStudy laid(plan, folder, numbers[0], choice.healthy);
-    cases::PlanStep step;
-    step.kind = cases::StepKind::mirror;
-    step.by = "command";
-    step.mirror = laid.target();
-    study::do_step(plan, std::move(step), choice.plan);
-    // Compares the other fragments with the registered mirrored side.
     Json others = Json::array();
-    for (std::size_t n = 1; n < numbers.size(); ++n) {
-        const int other = numbers[n];
-        const study::MirrorComparison found = laid.compare(other, cases::state_of(plan).arrangement.pose(other));
-        others.push_back(comparison_json(choice.names[n], found));
-        if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
-        if (choice.settle && !is_doubtful(laid.fit()))
-            study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+    if (!is_doubtful(laid.fit())) {
+        add_target(plan, laid, choice);
+        numbers.erase(numbers.begin());
+        others = compare_others(plan, laid, numbers, choice);
     }
     for (const std::string& note : laid.notes()) fmt::print(stderr, "note: {}\n", note);
     if (choice.json) fmt::print("{}\n", json_of(choice, laid.fit(), others).dump(2));
