@@ -6,6 +6,8 @@
 #include "tests/tools/run_command.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 using namespace tactus;
 using tactus::test::Folder;
@@ -37,4 +39,31 @@ TEST_CASE("a picture of a long bone shows both of its ends") {
         return false;
     };
     CHECK_FALSE(is_bone(panel - 3));
+}
+
+TEST_CASE("a picture of a painted bone shows its paint and says how much there is") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    folder.write("box.stl", test::box_stl(Vec3(0.0, 0.0, 0.0), Vec3(20.0, 20.0, 20.0)));
+    // The middle of the face that looks to the back, which is on the far side of the view from the front left.
+    folder.write("paint.json", R"({"radius_mm": 6, "paint": [[10, 20, 10]]})");
+    REQUIRE(folder
+                .tactus("fracture-surface " + file("box.stl") + " --paint " + file("paint.json") + " -o " +
+                        file("painted.vdb"))
+                .code == 0);
+    const Outcome info = folder.tactus("info " + file("painted.vdb") + " -o " + file("painted.png"));
+    INFO(info.out << info.err);
+    REQUIRE(info.code == 0);
+    // pi 6² = 113 mm², in points of about a square millimetre.
+    const std::size_t end = info.out.find(" mm² painted as fracture");
+    REQUIRE(end != std::string::npos);
+    CHECK(std::abs(std::stod(info.out.substr(info.out.rfind(' ', end - 1))) - 113.0) < 12.0);
+    const display::Image image = display::read_png(file("painted.png"));
+    int red = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const std::uint8_t* p = image.pixel(x, y);
+            red += p[0] > 2 * p[2] && p[0] > 2 * p[1] ? 1 : 0;
+        }
+    CHECK(red > 2000);
 }

@@ -115,7 +115,8 @@ Action add(VerbOptions& verb) {
     verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it");
     add_unit(verb, choice->how.unit);
     add_rescale(verb, [choice](const Rescale& rescale) { choice->how.rescale = rescale; });
-    verb.add("-o,--out", choice->out, "a PNG of three slices and the surface: a file, or a folder to put it in");
+    verb.add("-o,--out", choice->out,
+             "a PNG of three slices and the surface, painted fractures red: a file, or a folder to put it in");
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return info(*choice); };
 }

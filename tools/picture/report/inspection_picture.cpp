@@ -5,6 +5,8 @@
 #include "devices/display/legend.hpp"
 #include "devices/display/offscreen.hpp"
 #include "devices/display/png.hpp"
+#include "tools/picture/scene/painted_points.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -133,7 +135,7 @@ void label(Canvas& canvas, const std::string& name, int left, int top) {
     canvas.paste(text, left + 6, top + panel - text.height - 6);
 }
 
-display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Vec3& origin) {
+display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const PaintedPoints& paint, const Vec3& origin) {
     std::vector<Vec3> normals(from.surface.vertices.size(), Vec3(0.0));
     display::PictureMesh mesh;
     for (const auto& t : from.surface.triangles) {
@@ -144,12 +146,14 @@ display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Vec3&
             mesh.triangles.push_back(static_cast<std::uint32_t>(corner));
         }
     }
-    for (std::size_t n = 0; n < normals.size(); ++n)
+    for (std::size_t n = 0; n < normals.size(); ++n) {
+        const Vec3& colour = paint.covers(from.surface.vertices[n]) ? scene_colours::paint_colour : from.colour;
         for (int a = 0; a < 3; ++a) {
             mesh.positions.push_back(static_cast<float>(from.surface.vertices[n][a] - origin[a]));
             mesh.normals.push_back(static_cast<float>(normals[n][a] * 1e6));
-            mesh.colours.push_back(static_cast<float>(from.colour[a]));
+            mesh.colours.push_back(static_cast<float>(colour[a]));
         }
+    }
     return mesh;
 }
 
@@ -173,8 +177,11 @@ display::View closest(display::View view, const std::vector<display::PictureMesh
 }  // namespace
 
 void write_picture(const study::Inspection& found, const std::filesystem::path& path) {
+    PaintedPoints paint;
+    for (const Vec3& point : found.painted) paint.add(point);
     Canvas canvas;
-    canvas.image.width = canvas.image.height = 2 * panel + gap;
+    canvas.image.height = 2 * panel + gap;
+    canvas.image.width = canvas.image.height + (paint.empty() ? 0 : panel + gap);
     canvas.image.rgb.assign(
         static_cast<std::size_t>(canvas.image.width) * static_cast<std::size_t>(canvas.image.height) * 3, 12);
     Vec3 low(1e30), high(-1e30);
@@ -183,7 +190,7 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
     const Vec3 middle = low.x <= high.x ? 0.5 * (low + high) : found.grey.origin;
     std::vector<display::PictureMesh> meshes;
     for (const auto& each : found.surfaces)
-        if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, middle));
+        if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, paint, middle));
     const auto view = [&](const std::string& name, const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
         const display::View from = closest(display::fit_view(low - middle, high - middle, direction, up), meshes);
@@ -214,6 +221,11 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
         }
     }
     view("front left", Vec3(-0.55, 0.8, -0.25), Vec3(0, 0, 1), panel + gap, panel + gap);
+    if (!paint.empty()) {
+        // Paint may lie on any side.
+        view("back right, from below", Vec3(0.55, -0.8, 0.25), Vec3(0, 0, 1), 2 * (panel + gap), panel + gap);
+        view("front right, from below", Vec3(0.8, 0.55, 0.5), Vec3(0, 0, 1), 2 * (panel + gap), 0);
+    }
     display::write_png(canvas.image, path.string());
 }
 

@@ -9,6 +9,7 @@
 namespace tactus::picture {
 
 /// Writes a PNG: three slices through the largest part and a view of the surface; for a mesh three sides and a view.
+/// Painted fractures are red; they add two more views.
 /// Throws Error.
 void write_picture(const study::Inspection& inspection, const std::filesystem::path& path);
 

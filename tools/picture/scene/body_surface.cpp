@@ -2,53 +2,19 @@
 #include "tools/picture/scene/body_surface.hpp"
 
 #include "dsp/geometry/surface_net.hpp"
+#include "tools/picture/scene/painted_points.hpp"
 
 #include <glm/geometric.hpp>
 
-#include <array>
-#include <map>
-#include <vector>
+#include <cstddef>
 
 namespace tactus::picture {
 
-namespace {
-
-constexpr double painted_within = 0.9e-3;  // m from a painted point
-
-/// Painted points by cells of a grid.
-class Paint {
-public:
-    explicit Paint(const observe::SeenBody& body) {
-        for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
-            if (body.labels[i] == contact::surface_label::fracture)
-                cells_[cell_of(body.points[i])].push_back(body.points[i]);
-    }
-    bool empty() const { return cells_.empty(); }
-    bool covers(const Vec3& at) const {
-        const Key middle = cell_of(at);
-        for (int n = 0; n < 27; ++n) {
-            const auto found = cells_.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
-            if (found == cells_.end()) continue;
-            for (const Vec3& point : found->second)
-                if (glm::dot(point - at, point - at) < painted_within * painted_within) return true;
-        }
-        return false;
-    }
-
-private:
-    using Key = std::array<int, 3>;
-    static Key cell_of(const Vec3& at) {
-        const Vec3 cell = glm::floor(at / painted_within);
-        return {static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
-    }
-    std::map<Key, std::vector<Vec3>> cells_;
-};
-
-}  // namespace
-
 BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour,
                               const Vec3& paint_colour) {
-    const Paint paint(body);
+    PaintedPoints paint;
+    for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
+        if (body.labels[i] == contact::surface_label::fracture) paint.add(body.points[i]);
     const geometry::SurfaceNet net = geometry::surface_net(field.grid, 0.0f, false);
     BodySurface surface;
     surface.has_paint = !paint.empty();

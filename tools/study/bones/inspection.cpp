@@ -240,6 +240,15 @@ Inspection inspect_bones(const std::filesystem::path& path) {
         }
         found.parts.push_back({bone.name, mesh::volume_of(surface) * 1e9, bounds_of(surface)});
         found.surfaces.push_back({std::move(surface), bone.colour});
+        double painted = 0.0;
+        for (const contact::SurfacePoint& point : bone.points)
+            if (point.label == contact::surface_label::fracture) {
+                found.painted.push_back(point.position);
+                painted += point.area;
+            }
+        if (painted > 0.0)
+            found.notes.push_back(
+                fmt::format("'{}': {:.0f} mm² painted as fracture, red in the picture", bone.name, painted * 1e6));
     }
     if (found.range[0] > found.range[1]) found.range = {0.0, 0.0};
     found.parts_in_all = found.parts.size();

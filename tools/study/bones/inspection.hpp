@@ -43,6 +43,7 @@ struct Inspection {
     std::array<double, 2> window{};         ///< black and white level of the slices
     bool is_labels = false;                 ///< slices are coloured by label
     std::vector<mesh::ColouredSurface> surfaces;  ///< surfaces for the view
+    std::vector<Vec3> painted;  ///< of bones: points that are painted as fracture, m
 };
 
 /// How to read the file: as in bone::ImportOptions.
