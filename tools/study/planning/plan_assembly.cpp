@@ -259,7 +259,11 @@ private:
         if (matcher_.faces() == 0) return all;
         fit::FitEnergy energy = matcher_.make_energy();
         std::vector<double> squares(all.size(), 0.0);
-        for (const auto& [m, f] : fit::mated_faces(matcher_, parts_.poses(), parts_.bodies())) {
+        // Faces inside of a group, which is one body, count as well.
+        std::vector<int> alone = parts_.bodies();
+        for (std::size_t n = 0; n < alone.size(); ++n)
+            if (alone[n] >= 0) alone[n] = static_cast<int>(n);
+        for (const auto& [m, f] : fit::mated_faces(matcher_, parts_.poses(), alone)) {
             const int a = matcher_.fragment_of(m), b = matcher_.fragment_of(f);
             if (parts_.part_of(a) != parts_.part_of(b)) continue;
             const fit::FitQuality q = matcher_.quality_of(energy, m, f, parts_.poses());

@@ -109,6 +109,11 @@ TEST_CASE("a jaw in four pieces is put together in one call, undone step by step
     const std::string after = slurp(jaw.plan);
     CHECK(jaw.run("assemble").code == 0);
     CHECK(slurp(jaw.plan) == after);
+    // Faces inside of a group have a residual, too.
+    REQUIRE(jaw.run("group", "j1 j2 j3 j4").code == 0);
+    for (const json& row : json::parse(jaw.run("assemble", "--json").out)["residuals"])
+        CHECK(row["rms_mm"].is_number());
+    REQUIRE(jaw.run("undo").code == 0);
     REQUIRE(jaw.run("undo").code == 0);
     CHECK(jaw.run("check").code == 1);
     REQUIRE(jaw.run("undo", "--steps 2").code == 0);
