@@ -185,6 +185,7 @@ display::Picture& SceneModel::update() {
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
+    is_making_ = making_.valid();
     shows_grey_ = false;
     show_bones();
     show_still_bones();
@@ -207,7 +208,7 @@ display::Picture& SceneModel::update() {
     picture_.meshes.back().shines_through = true;
     // What never comes must not let the bounds follow the tools for ever.
     constexpr int most_waits = 200;
-    is_fitting_ = is_fitting_ && (bounds_.empty() || (is_waiting_ && ++waits_ < most_waits));
+    is_fitting_ = is_fitting_ && (bounds_.empty() || is_making_ || (is_waiting_ && ++waits_ < most_waits));
     if (shows_grey_) legend_.scales.push_back(section_scale());
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
@@ -262,7 +263,7 @@ void SceneModel::show_bones() {
             if (!has_time()) break;
         }
         bone.is_whole = bone.is_whole || bone.left.empty();
-        is_waiting_ = is_waiting_ || !bone.is_whole;
+        is_making_ = is_making_ || !bone.is_whole;
         if (!is_part_shown(node_of(port), still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
@@ -301,7 +302,7 @@ void SceneModel::show_still_bones() {
         }
         take_still(known->second);
         if (!known->second.is_whole) {
-            is_waiting_ = true;
+            is_making_ = true;
             continue;
         }
         if (!known->second.problem.empty()) {

@@ -295,6 +295,7 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_making_ = false;  ///< a mesh is not complete
     bool is_waiting_ = false;  ///< something that the outline names was not seen
     int waits_ = 0;  ///< pictures since the outline changed
     bool is_guide_shown_ = true;  // of the node whose guides are being drawn
