@@ -129,24 +129,38 @@ MeshPool::Place MeshPool::put(const geometry::SurfacePatch& patch) {
     return place;
 }
 
-void MeshPool::set_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch) {
+/// In full detail; null: the part is empty.
+MeshPool::Part* MeshPool::replace_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch) {
     if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
         throw Error("a mesh refers to a vertex that does not exist");
     Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
     const auto known = parts.of.find(number);
-    if (known == parts.of.end() && patch.triangles.empty()) return;
+    if (known == parts.of.end() && patch.triangles.empty()) return nullptr;
     ++changes_;
     if (known != parts.of.end()) {
         give_back(known->second);
         parts.of.erase(known);
     }
-    if (patch.triangles.empty()) return;
+    if (patch.triangles.empty()) return nullptr;
     Part& part = parts.of[number];
     part.bounds = bounds_of(patch);
     part.levels[0] = put(patch);
-    if (!parts.grid) return;
-    const geometry::CoarseSurface::Levels& coarse = coarse_.make(patch, *parts.grid);
+    return &part;
+}
+
+void MeshPool::put_levels(Part& part, const geometry::CoarseSurface::Levels& coarse) {
     for (std::size_t level = 0; level < coarse.size(); ++level) part.levels[level + 1] = put(coarse[level]);
+}
+
+void MeshPool::set_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch) {
+    Part* const part = replace_part(mesh, number, patch);
+    const auto& grid = meshes_[static_cast<std::size_t>(mesh)].grid;
+    if (part && grid) put_levels(*part, coarse_.make(patch, *grid));
+}
+
+void MeshPool::set_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch,
+                        const geometry::CoarseSurface::Levels& coarse) {
+    if (Part* const part = replace_part(mesh, number, patch)) put_levels(*part, coarse);
 }
 
 std::size_t MeshPool::triangles(Mesh mesh) const {

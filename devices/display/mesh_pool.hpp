@@ -55,6 +55,9 @@ public:
     void remove(Mesh mesh);
     /// Replaces a part; an empty part removes it. Throws Error when a triangle refers to a missing vertex.
     void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch);
+    /// The same with levels of detail that were made before; `coarse`: of a mesh with a grid, by CoarseSurface.
+    void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch,
+                  const geometry::CoarseSurface::Levels& coarse);
     /// Draws the visible parts in a picture of `width` × `height` pixels; `to_clip` maps the mesh frame to clip space.
     /// `grain`: greatest width of a level-of-detail cell at the nearest point, pixels; 0: all triangles. Returns the
     /// number of triangles drawn: with a span, fewer than `most` when they end.
@@ -77,6 +80,8 @@ private:
         bool is_used = false;
     };
 
+    Part* replace_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch);
+    void put_levels(Part& part, const geometry::CoarseSurface::Levels& coarse);
     Place put(const geometry::SurfacePatch& patch);
     void give_back(const Part& part);
     std::size_t level_for(const Parts& parts, const Mat4& to_clip, int width, int height, double grain) const;

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -185,8 +186,10 @@ private:
         const bool goes = is_changed(alternative, wanted_way_), drops = is_changed(drop, wanted_drop_);
         if (!goes && !drops) return;
         if (holding_) return held_back_.tell();
-        if (goes) go_to_way(tick, static_cast<std::size_t>(alternative));
-        if (drops) drop_way(tick, drop);
+        const double to = static_cast<double>(alternative), away = static_cast<double>(drop);
+        if ((goes && to != std::floor(to)) || (drops && away != std::floor(away))) return no_way_.tell();
+        if (goes) go_to_way(tick, static_cast<std::size_t>(to));
+        if (drops) drop_way(tick, away);
     }
 
     void go_to_way(const Tick& tick, std::size_t to) noexcept {
@@ -320,7 +323,8 @@ private:
     Notice held_back_{"nothing is undone or redone while a fragment is held: let it go first"};
     Notice no_earlier_{"there is no step to undo"};
     Notice no_later_{"there is no step to redo"};
-    Notice no_way_{"there is no such alternative to go to, to drop or to bring back"};
+    Notice no_way_{
+        "there is no such alternative to go to, to drop or to bring back; they have whole numbers from 0 on"};
     Notice no_fit_{"not settled: the held fragment has no fit where it is"};
 };
 

@@ -322,4 +322,12 @@ TEST_CASE("a run begins an alternative, goes between them, drops one and brings 
     const auto told = take_notices(node.host);
     REQUIRE_FALSE(told.empty());
     CHECK(told[0].find("no such alternative") != std::string::npos);
+    // A place between two is none.
+    go("drop", "0.5");
+    go("alternative", "0.5");
+    go("drop", "-1.5");
+    agrees(1, 2);
+    const auto fractions = take_notices(node.host);
+    REQUIRE_FALSE(fractions.empty());
+    CHECK(fractions[0].find("whole numbers") != std::string::npos);
 }

@@ -152,6 +152,35 @@ TEST_CASE("vessels are in the picture, artery and vein in their colours") {
     CHECK(like(picture::scene_colours::vein_colour) > 12);
 }
 
+TEST_CASE("a plate with its screws is in the picture of a plan, as it was", "[slow]") {
+    if (!can_render()) return;
+    // Made by: tactus plan plate PLAN p1 --height 3 --screws 3, and a render of that plan.
+    const Folder folder;
+    fs::create_directories(folder.path / "cases");
+    fs::create_directories(folder.path / "patches");
+    fs::copy(library_folder() / "cases/fibula-flap", folder.path / "cases/fibula-flap");
+    fs::copy(library_folder() / "patches/planning-reconstruction.toml", folder.path / "patches");
+    const auto picture = [&](const std::string& name) {
+        const Outcome outcome =
+            folder.tactus("render " + (folder.path / "patches/planning-reconstruction.toml").string() +
+                          " --seconds 0.05 --frames 1 --size 320x200 --no-legend --view-from front "
+                          "--out " +
+                          (folder.path / name).string());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return folder.path / name / "frame_0001.png";
+    };
+    const fs::path bare = picture("bare");
+    REQUIRE(folder
+                .tactus("plan plate " + (folder.path / "cases/fibula-flap/case.plan.json").string() +
+                        " p1 --height 3 --screws 3")
+                .code == 0);
+    const fs::path seen = picture("plate"), expected = golden / "plate.png";
+    if (std::getenv("TACTUS_BLESS")) fs::copy_file(seen, expected, fs::copy_options::overwrite_existing);
+    CHECK(Pixels(seen).share_unlike(Pixels(expected), 40) < 0.003);
+    CHECK(Pixels(bare).share_unlike(Pixels(expected), 40) > 0.005);
+}
+
 TEST_CASE("a map of gaps is in the picture of a plan, full at its range") {
     if (!can_render()) return;
     // 0.5 mm apart.

@@ -263,6 +263,74 @@ TEST_CASE("a body has the colours of the map that is used, and its own again wit
     CHECK(model.legend().scales.empty());
 }
 
+TEST_CASE("a large mesh that is new delays no picture of a window, and comes to look as when pictures wait for it") {
+    if (!can_render()) return;
+    volume::Grid distance{{193, 193, 65}, Vec3(-0.048, -0.048, -0.016), Vec3(0.0005), {}};
+    for (int k = 0; k < 65; ++k)
+        for (int j = 0; j < 193; ++j)
+            for (int i = 0; i < 193; ++i) {
+                // Waves all over, so that every brick has a surface.
+                const Vec3 p = distance.position(i, j, k);
+                distance.values.push_back(
+                    static_cast<float>(0.4e-3 * std::sin(2e3 * p.x) + p.z * std::cos(600.0 * p.y)));
+            }
+    volume::Grid density = distance;
+    std::ranges::fill(density.values, 1800.0f);
+    volume::BoneEditor editor(distance, density, {.band = 0.002});
+    const volume::BoneSnapshot initial = editor.current();
+    const Ball body;
+    observe::Observer observer;
+    const auto bone =
+        observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    const auto scene =
+        observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(body.scene));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.bones = {{"carve.bone"}};
+    outline.scenes.push_back({});
+    outline.scenes.back().port = "case.scene";
+    SceneModel waits(outline, observer, maker.renderer());
+    SceneModel window(outline, observer, maker.renderer());
+    window.spread_work();
+    observer.advance();
+    waits.update();
+    const auto bricks = static_cast<std::size_t>(editor.layout().brick_count());
+    REQUIRE(waits.remeshed_bricks() == bricks);
+    REQUIRE(waits.is_fitted());
+    const std::size_t triangles = waits.triangles();
+
+    std::size_t made = 0, most = 0;
+    int pictures = 0;
+    for (; pictures < 10'000 && (pictures == 0 || !window.is_fitted()); ++pictures) {
+        if (pictures > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        window.update();
+        if (pictures == 0) {
+            CHECK_FALSE(window.is_fitted());
+            CHECK(window.triangles() < triangles);
+        }
+        made += window.remeshed_bricks();
+        most = std::max(most, window.remeshed_bricks());
+    }
+    CHECK(pictures > 1);
+    CHECK(made == bricks);
+    CHECK(most < bricks);
+    CHECK(window.triangles() == triangles);
+    CHECK(glm::length(window.bounds().low - waits.bounds().low) < 1e-9);
+    CHECK(glm::length(window.bounds().high - waits.bounds().high) < 1e-9);
+
+    // Other colours of a body come later, too; the body stays meanwhile.
+    window.colour_part("fragment 1", {0.1, 0.9, 0.2});
+    const std::uint64_t changes = maker.renderer().meshes().changes();
+    window.update();
+    CHECK(window.triangles() == triangles);
+    for (int n = 0; n < 10'000 && maker.renderer().meshes().changes() == changes; ++n) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        window.update();
+    }
+    CHECK(maker.renderer().meshes().changes() > changes);
+    CHECK(window.triangles() == triangles);
+}
+
 TEST_CASE("plates with their screws and implants are drawn where the plan has them, and picked by name") {
     if (!can_render()) return;
     auto all = std::make_shared<reconstruct::Reconstruction>();

@@ -25,6 +25,23 @@ geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
     return {layout.origin, layout.spacing, volume::brick_cells};
 }
 
+StillSurface still_surface(const std::string& path, const std::string& name) {
+    StillSurface made;
+    try {
+        const bone::Bone loaded = bone::load_bone(path);
+        const volume::BoneEditor editor(loaded.distance, loaded.density,
+                                        {.band = 0.003, .max_dirty = 1, .max_versions = 1});
+        made.grid = grid_of(editor.layout());
+        made.bricks.resize(static_cast<std::size_t>(editor.layout().brick_count()));
+        geometry::BrickSurface mesher;
+        for (std::size_t brick = 0; brick < made.bricks.size(); ++brick)
+            mesher.make(editor.current(), static_cast<std::uint32_t>(brick), made.bricks[brick]);
+    } catch (const Error& error) {
+        made.problem = fmt::format("{} is not drawn: {}", name, error.message());
+    }
+    return made;
+}
+
 }  // namespace
 
 SceneModel::SceneModel(SceneOutline outline, observe::Observer& observer, display::SceneRenderer& renderer)
@@ -161,9 +178,14 @@ display::Picture& SceneModel::update() {
     notes_.vertices.clear();
     notes_.triangles.clear();
     remeshed_ = 0;
+    constexpr std::chrono::milliseconds most_work{10};
+    until_ = std::chrono::steady_clock::now() + most_work;
+    if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        take_body(making_.get());
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
+    is_making_ = making_.valid();
     shows_grey_ = false;
     show_bones();
     show_still_bones();
@@ -186,7 +208,7 @@ display::Picture& SceneModel::update() {
     picture_.meshes.back().shines_through = true;
     // What never comes must not let the bounds follow the tools for ever.
     constexpr int most_waits = 200;
-    is_fitting_ = is_fitting_ && (bounds_.empty() || (is_waiting_ && ++waits_ < most_waits));
+    is_fitting_ = is_fitting_ && (bounds_.empty() || is_making_ || (is_waiting_ && ++waits_ < most_waits));
     if (shows_grey_) legend_.scales.push_back(section_scale());
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
@@ -227,15 +249,21 @@ void SceneModel::show_bones() {
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
             renderer_.scans().remove(bone.scan);
-            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1};
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false};
         }
-        for (const std::uint32_t brick : seen->changed_since(bone.update)) {
+        const std::vector<std::uint32_t> changed = seen->changed_since(bone.update);
+        bone.left.insert(changed.begin(), changed.end());
+        bone.update = seen->update;
+        while (!bone.left.empty()) {
+            const std::uint32_t brick = bone.left.extract(bone.left.begin()).value();
             mesher_.make(seen->snapshot(), brick, patch_);
             renderer_.meshes().set_part(bone.mesh, brick, patch_);
-            if (is_new) bone.bounds.add(display::bounds_of(patch_));
+            if (!bone.is_whole) bone.bounds.add(display::bounds_of(patch_));
             ++remeshed_;
+            if (!has_time()) break;
         }
-        bone.update = seen->update;
+        bone.is_whole = bone.is_whole || bone.left.empty();
+        is_making_ = is_making_ || !bone.is_whole;
         if (!is_part_shown(node_of(port), still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
@@ -246,25 +274,36 @@ void SceneModel::show_bones() {
     }
 }
 
+void SceneModel::take_still(StillMesh& bone) {
+    if (bone.making.valid()) {
+        if (is_spread_ && bone.making.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        bone.made = bone.making.get();
+        bone.problem = bone.made.problem;
+        if (bone.problem.empty()) bone.mesh = renderer_.meshes().make(bone.made.grid);
+    }
+    for (; bone.taken < bone.made.bricks.size() && has_time(); ++bone.taken) {
+        const geometry::SurfacePatch& patch = bone.made.bricks[bone.taken];
+        renderer_.meshes().set_part(bone.mesh, static_cast<std::uint32_t>(bone.taken), patch);
+        bone.bounds.add(display::bounds_of(patch));
+    }
+    if (bone.taken < bone.made.bricks.size()) return;
+    bone.is_whole = true;
+    bone.made = {};
+    bone.taken = 0;
+}
+
 void SceneModel::show_still_bones() {
     for (const auto& [name, path, at] : outline_.still_bones) {
         auto known = still_bones_.find(path);
         if (known == still_bones_.end()) {
-            StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
-            try {
-                const bone::Bone loaded = bone::load_bone(path);
-                const volume::BoneEditor editor(loaded.distance, loaded.density,
-                                                {.band = 0.003, .max_dirty = 1, .max_versions = 1});
-                bone.mesh = renderer_.meshes().make(grid_of(editor.layout()));
-                for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
-                     ++brick) {
-                    mesher_.make(editor.current(), brick, patch_);
-                    renderer_.meshes().set_part(bone.mesh, brick, patch_);
-                    bone.bounds.add(display::bounds_of(patch_));
-                }
-            } catch (const Error& error) {
-                bone.problem = fmt::format("{} is not drawn: {}", name, error.message());
-            }
+            known = still_bones_.emplace(path, StillMesh{}).first;
+            known->second.making = std::async(is_spread_ ? std::launch::async : std::launch::deferred,
+                                              [path, name] { return still_surface(path, name); });
+        }
+        take_still(known->second);
+        if (!known->second.is_whole) {
+            is_making_ = true;
+            continue;
         }
         if (!known->second.problem.empty()) {
             legend_.warnings.push_back(known->second.problem);

@@ -5,14 +5,16 @@
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observe/observer.hpp"
+#include "tools/picture/scene/made_body.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
-#include "tools/picture/scene/surface_map.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <future>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_set>
@@ -42,6 +44,13 @@ struct VesselTubes {
     std::string problem;  ///< why some are missing
 };
 
+/// Of a bone that is not carved, by brick.
+struct StillSurface {
+    geometry::SurfaceGrid grid;
+    std::vector<geometry::SurfacePatch> bricks;
+    std::string problem;  ///< why it is missing
+};
+
 /// Belongs to one renderer. Its context must be current in `update` and in the destructor.
 class SceneModel {
 public:
@@ -50,6 +59,10 @@ public:
     ~SceneModel();
     SceneModel(const SceneModel&) = delete;
     SceneModel& operator=(const SceneModel&) = delete;
+
+    /// From now on a large mesh that is new delays no picture: those of bodies and files are made beside the pictures,
+    /// one after another, and those of bones over several pictures. What is not made yet is not drawn.
+    void spread_work() { is_spread_ = true; }
 
     /// Changes to the plan after an edit. Meshes of unchanged nodes are kept.
     void follow(SceneOutline outline);
@@ -130,6 +143,8 @@ private:
         std::uint64_t update = 0;
         display::Bounds bounds;
         int scan = -1;
+        std::set<std::uint32_t> left;  ///< bricks to be meshed
+        bool is_whole = false;  ///< every brick was meshed once
     };
     struct BodyMesh {
         Vec3 colour{0.0};
@@ -204,7 +219,8 @@ private:
     std::span<const volume::Grid> densities_of(const std::string& path);
     void find_scan(BodyMesh& mesh, const SceneOutline::Bodies& scene, std::size_t place);
     void show_scan(int scan, const Pose& to_scan);
-    void set_surface(BodyMesh& mesh, std::uint64_t content);
+    void take_body(const MadeBody& made);
+    bool has_time() const { return !is_spread_ || std::chrono::steady_clock::now() < until_; }
     BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
     SceneOutline outline_;
@@ -218,7 +234,12 @@ private:
         display::Bounds bounds;
         std::string problem;  ///< why it is missing
         int scan = -1;
+        std::future<StillSurface> making;
+        StillSurface made;  ///< empty again when the mesh is complete
+        std::size_t taken = 0;  ///< of its bricks
+        bool is_whole = false;
     };
+    void take_still(StillMesh& bone);
     std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::string, TaskMesh> tasks_;  // by path
     struct RopeMesh {
@@ -229,6 +250,9 @@ private:
     std::map<std::string, RopeMesh> ropes_;  // by port
     std::map<std::string, PlanVessels> vessels_;  // by the plan's file
     std::map<std::uint64_t, BodyMesh> bodies_;
+    bool is_spread_ = false;
+    std::chrono::steady_clock::time_point until_{};  ///< of work that the next picture may continue
+    std::future<MadeBody> making_;
     struct Densities {
         std::future<std::vector<volume::Grid>> reading;
         std::vector<volume::Grid> grids;
@@ -271,6 +295,7 @@ private:
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
+    bool is_making_ = false;  ///< a mesh is not complete
     bool is_waiting_ = false;  ///< something that the outline names was not seen
     int waits_ = 0;  ///< pictures since the outline changed
     bool is_guide_shown_ = true;  // of the node whose guides are being drawn

@@ -3,7 +3,6 @@
 #include "assets/cases/plan_file.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/picture/scene/body_surface.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 
@@ -102,48 +101,31 @@ std::vector<std::optional<Pose>> SceneModel::plan_poses() const {
     return all;
 }
 
-/// Its surface in its colour, or in those of the map.
-void SceneModel::set_surface(BodyMesh& mesh, std::uint64_t content) {
-    BodySurface surface = make_body_surface(*mesh.body, mesh.field, mesh.colour, paint_colour);
-    mesh.has_paint = surface.has_paint;
-    mesh.bounds = surface.bounds;
-    mesh.map = map_number_;
-    auto& vertices = surface.patch.vertices;
-    const std::vector<float>* distances = nullptr;
-    if (map_)
-        if (const auto of = map_->distance.find(content); of != map_->distance.end()) distances = &of->second;
-    if (distances && distances->size() == vertices.size()) {
-        const auto plain = geometry::packed_colour(glm::mix(mesh.colour, Vec3(0.55), 0.75));
-        for (std::size_t n = 0; n < vertices.size(); ++n) {
-            const double distance = static_cast<double>((*distances)[n]);
-            vertices[n].colour =
-                std::isfinite(distance) ? geometry::packed_colour(map_colour(distance, map_range_)) : plain;
-        }
-        mesh.has_paint = false;
-    }
-    renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
+void SceneModel::take_body(const MadeBody& made) {
+    BodyMesh& mesh = bodies_[made.look.body->content_hash];
+    if (mesh.mesh < 0) mesh.mesh = renderer_.meshes().make(made.grid);
+    mesh.body = made.look.body;
+    mesh.colour = made.look.colour;
+    mesh.map = made.look.map_number;
+    mesh.field = made.field;
+    mesh.has_paint = made.surface.has_paint;
+    mesh.bounds = made.surface.bounds;
+    renderer_.meshes().set_part(mesh.mesh, 0, made.surface.patch, made.levels);
 }
 
+/// Null: it was not seen, or is being made. Until new colours are made, it has those before.
 SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& colour) {
-    if (const auto known = bodies_.find(content); known != bodies_.end()) {
-        BodyMesh& mesh = known->second;
-        if (mesh.body && (mesh.colour != colour || mesh.map != map_number_)) {
-            mesh.colour = colour;
-            set_surface(mesh, content);
-        }
-        return &mesh;
-    }
-    for (const auto& body : observer_.bodies()) {
-        if (body->content_hash != content || body->distance.values.empty()) continue;
-        BodyMesh& mesh = bodies_[content];
-        mesh.body = body;
-        mesh.colour = colour;
-        mesh.field = contact::make_voxmap(body->distance);
-        mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
-        set_surface(mesh, content);
-        return &mesh;
-    }
-    return nullptr;
+    const auto known = bodies_.find(content);
+    const bool is_known = known != bodies_.end();
+    if (is_known && known->second.colour == colour && known->second.map == map_number_) return &known->second;
+    BodyLook look{is_known ? known->second.body : nullptr, colour, map_, map_range_, map_number_};
+    for (const auto& body : observer_.bodies())
+        if (!look.body && body->content_hash == content && !body->distance.values.empty()) look.body = body;
+    if (!look.body) return nullptr;
+    if (!is_spread_) take_body(make_body(std::move(look)));
+    else if (!making_.valid()) making_ = std::async(std::launch::async, make_body, std::move(look));
+    const auto now = bodies_.find(content);
+    return now == bodies_.end() ? nullptr : &now->second;
 }
 
 void SceneModel::show_bodies() {

@@ -155,8 +155,10 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         }
         if (plan_version_ != bench_.plan_version()) {
             SceneOutline outline = outline_of(*bench_.plan());
-            if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
-            else model_->follow(std::move(outline));
+            if (!model_) {
+                model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
+                model_->spread_work();
+            } else model_->follow(std::move(outline));
             model_->use_map(map_, map_range_);
             model_->compare(compared_, compared_name_);
             sight_.follow(model_->outline());

@@ -70,6 +70,8 @@ public:
     void set_map_range(double range);
     /// Of the plan in the scene, in its order; empty: not seen yet.
     std::vector<std::shared_ptr<const observe::SeenBody>> plan_bodies() const;
+    /// Whether everything that the patch has in space was drawn.
+    bool is_fitted() const { return model_ && model_->is_fitted(); }
     /// The fragments of a plan as they are drawn; empty: none was drawn yet.
     const std::map<std::size_t, SceneModel::PlanPiece>& plan_pieces() const;
     /// File of the plan in the scene, as the run began; empty: none.

@@ -220,7 +220,8 @@ void PlanSlices::draw(const Fonts& fonts) {
     const Point size{(room.x - 2.0 * gap) / 3.0, room.y};
     if (size.x < 16.0 || size.y < 16.0) return rest();
     if (sight_.pixels_per_m <= 0.0) {
-        if (scene_.plan_pieces().empty()) return rest();
+        // The first fragments alone would be too close a view.
+        if (scene_.plan_pieces().empty() || !scene_.is_fitted()) return rest();
         const display::Bounds box = bounds_of(scene_.plan_pieces(), scan_.now()->grid);
         const Vec3 wide = box.high - box.low;
         // On the fragment in the middle: between fragments there is nothing to see.
