@@ -93,8 +93,9 @@ public:
     const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void begin_search() noexcept;
 
-    /// Tries one pair of faces with all rotations, and from `held` (m: the moving fragment in the frame of the fixed
-    /// one). For preparations: may run in several threads at once, each with an energy of its own, from `make_energy`.
+    /// Tries one pair of faces with all rotations, with the smaller face in the middle and at both ends of the larger
+    /// one, and from `held` (m: the moving fragment in the frame of the fixed one). For preparations: may run in several
+    /// threads at once, each with an energy of its own, from `make_energy`.
     FacePairFit fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed, const Pose& held) const;
     FitEnergy make_energy() const;
     /// Starts where a pair of faces fits and fits all faces that fit there together, as `near` does. The moving

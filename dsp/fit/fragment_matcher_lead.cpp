@@ -4,14 +4,47 @@
 #include "dsp/fit/constraint_analysis.hpp"
 #include "dsp/fit/fit_steps.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
+#include "dsp/geometry/main_axes.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
 namespace tactus::fit {
+
+namespace {
+
+constexpr double unequal = 0.8;  // of the areas: below it the middles of two faces that fit are apart
+
+/// From the middle of a face to where the middle of a smaller one lies that fits its end, m, body frame. As of a strip of
+/// constant width: the standard deviation along it is its length over √12.
+Vec3 middle_at_end(const FitSurface& larger, const FitSurface& smaller) {
+    Mat3 spread(0.0);
+    for (std::size_t n = 0; n < larger.position.size(); ++n)
+        spread += larger.share[n] * glm::outerProduct(larger.position[n], larger.position[n]);
+    const Vec3 along = geometry::main_axes(spread)[0];
+    const double deviation = std::sqrt(glm::dot(along, spread * along));
+    return std::sqrt(3.0) * deviation * (1.0 - smaller.area / larger.area) * along;
+}
+
+/// The same starts with the smaller face at both ends of the larger one.
+void add_starts_at_ends(std::vector<Pose>& starts, const FitSurface& moving, const FitSurface& fixed) {
+    if (std::min(moving.area, fixed.area) > unequal * std::max(moving.area, fixed.area)) return;
+    const bool is_fixed_larger = fixed.area > moving.area;
+    const Vec3 end = is_fixed_larger ? middle_at_end(fixed, moving) : middle_at_end(moving, fixed);
+    const std::size_t count = starts.size();
+    for (std::size_t n = 0; n < count; ++n) {
+        const Quat turn = starts[n].orientation;
+        const Vec3 there = is_fixed_larger ? end : turn * end;
+        starts.push_back({there, turn});
+        starts.push_back({-there, turn});
+    }
+}
+
+}  // namespace
 
 /// The contact of several face pairs of one moving fragment, as a single contact for the solver; pair n uses energy n.
 /// With a healthy side, its pull too.
@@ -166,6 +199,7 @@ FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, st
     std::vector<Pose> starts;
     for (int n = 0; n < spins; ++n)
         starts.push_back({Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on});
+    add_starts_at_ends(starts, a, b);
     const Pose from = between_centres(a, b, held);
     if (glm::length(from.position) < settings.near) {
         const Quat facing = opposed(a, b, from.orientation);

@@ -150,6 +150,16 @@ TEST_CASE("dsp: more faces than there is room for are an error, and hardly any p
     CHECK(matcher.search(0, poses, stands).verdict == fit::FitVerdict::no_match);
 }
 
+TEST_CASE("dsp: a small face is found at either end of a larger one, whichever of the two moves") {
+    const Half part = bar_half(1.0, relief(), {.half = 0.45});
+    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left()), surface_of(part)});
+    REQUIRE(matcher.faces() == 2);
+    fit::FitEnergy energy = matcher.make_energy();
+    const Pose away{Vec3(0.3, 0.1, -0.2), rotation_by({1.0, -2.0, 0.7})};
+    CHECK(error_of(left(), matcher.fit_faces(energy, 0, 1, away).pose) < 0.3 * mm);
+    CHECK(error_of(part, matcher.fit_faces(energy, 1, 0, away).pose) < 0.3 * mm);
+}
+
 TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") {
     const Half coarse = bar_half(1.0, relief(), {.voxel = Vec3(1.0 * mm)});
     const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left()), surface_of(coarse)});
