@@ -339,7 +339,9 @@ std::filesystem::path file_of_bone(const std::filesystem::path& path) { return s
 bool name_one_bone(const std::filesystem::path& one, const std::filesystem::path& other) {
     const auto a = split(one), b = split(other);
     std::error_code failed;
-    return std::filesystem::equivalent(a.file, b.file, failed) && a.name == b.name;
+    // Without a name a path is that of the only bone of its file.
+    const bool may_be_alike = a.name == b.name || a.name.empty() || b.name.empty();
+    return may_be_alike && std::filesystem::equivalent(a.file, b.file, failed);
 }
 
 }  // namespace tactus::bone

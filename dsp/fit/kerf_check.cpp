@@ -190,7 +190,7 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
                       far = opening_from(middle_opening(steps), steps, held.information());
         const Opening& best = far.misfit < near.misfit ? far : near;
         seen.excess = best.excess;
-        seen.spread = best.spread;
+        seen.spread = seen.noise = best.spread;
         return seen;
     };
     ContourOpening found = opening_of(short_reach);
@@ -215,7 +215,9 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
     made.kerf = std::max(0.0, left + missing * cosine);
     made.spread = contour.spread * cosine;
     if (told) {
-        const double limit = contour.spread < most_spread ? most_error : 2.0 * contour.spread;
+        // That the cortex is curved does not excuse an error of millimetres.
+        const double limit =
+            contour.noise < most_spread ? std::max(most_error, share_of_spread * contour.spread) : 2.0 * contour.spread;
         made.is_contradicted = std::abs(missing) > limit;
         made.is_too_wide = left * (1.0 / cosine - 1.0) > most_error;
     } else if (contour.strips >= independent) {

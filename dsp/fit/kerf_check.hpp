@@ -25,6 +25,7 @@ struct KerfSide {
 struct ContourOpening {
     double excess = 0.0;  ///< m along the opening: by how much the halves are farther apart than the contour says
     double spread = 1.0;  ///< m, standard deviation of `excess`; large when the contour says nothing
+    double noise = 1.0;  ///< m, part of `spread`: all but what strips of two lengths say differently
     int strips = 0;  ///< that were found on both halves
 };
 

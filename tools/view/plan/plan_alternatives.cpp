@@ -51,6 +51,7 @@ void PlanAlternatives::tend() {
     }
     if (shown_ == compared_ && of_ == run_.written()) return;
     if (counting_.valid()) return;  // of the plan as it was; then again
+    if (!scene_.is_fitted()) return;  // the middles of the fragments are known when their bodies are made
     shown_ = compared_;
     of_ = run_.written();
     scene_.compare(poses_of_alternative(*plan, other), compared_);
@@ -90,6 +91,8 @@ void PlanAlternatives::rename(const std::string& name, const std::string& wanted
         return bench_.tell(
             fmt::format("an alternative cannot be named '{}': a name must not be empty, nor that of another", wanted),
             true);
+    if (!wanted_name_.second.empty() && wanted_name_.first != name)
+        return bench_.tell(fmt::format("'{}' is still being renamed; try again in a moment", wanted_name_.first), true);
     wanted_name_ = {name, wanted};
 }
 

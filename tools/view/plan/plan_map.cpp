@@ -44,7 +44,8 @@ void PlanMap::tend() {
             if (made_ == kind_) show({});
         }
     }
-    if (!kind_ || making_.valid() || !run_.plan()) return;
+    // Of all fragments at once: each new map colours those anew that are there.
+    if (!kind_ || making_.valid() || !run_.plan() || !scene_.is_fitted()) return;
     std::vector<std::shared_ptr<const observe::SeenBody>> bodies = scene_.plan_bodies();
     const auto seen = bodies.size() - static_cast<std::size_t>(std::ranges::count(bodies, nullptr));
     if (seen == 0 || (made_ == kind_ && of_ == run_.written() && seen == seen_)) return;
