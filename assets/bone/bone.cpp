@@ -340,7 +340,7 @@ bool name_one_bone(const std::filesystem::path& one, const std::filesystem::path
     const auto a = split(one), b = split(other);
     std::error_code failed;
     // Without a name a path is that of the only bone of its file.
-    const bool may_be_alike = a.name == b.name || a.name.empty() || b.name.empty();
+    const bool may_be_alike = a.name == b.name || !a.name || !b.name;
     return may_be_alike && std::filesystem::equivalent(a.file, b.file, failed);
 }
 

@@ -71,7 +71,8 @@ struct Step {
     double lever() const noexcept { return slope[0]; }
 };
 
-/// The step of one strip across the gap, `reach` long on either half: height over the tangent plane is a parabola, and a step between the halves.
+/// The step of one strip across the gap, `reach` long on either half: height over the tangent plane is a parabola, and a
+/// step between the halves.
 std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal, const Vec3& origin,
                             const std::array<const std::vector<Spot>*, 2>& cortex, double reach) {
     constexpr std::size_t terms = 6;  // 1, z, z², t, t², step
@@ -166,12 +167,13 @@ double middle_opening(std::vector<Step> steps) {
 
 }  // namespace
 
-ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told) {
+ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose,
+                               std::optional<double> told) {
     const Vec3 normal = opening_direction(*moving.face, *fixed.face, pose);
     const std::vector<Spot> mine = cortex_of(moving, pose), other = cortex_of(fixed, {});
     const FitSurface& face = *fixed.face;
     FitEnergy energy(*moving.face, face);
-    energy.law.kerf = told;
+    energy.law.kerf = told.value_or(0.0);
     FitPrecisionSum held(face.centre, face.centre);
     held.add(*moving.face, face, {face.centre, {1.0, 0.0, 0.0, 0.0}},
              energy.closed({pose.apply(moving.face->centre) - face.centre, pose.orientation}));
@@ -190,9 +192,11 @@ ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, co
                       far = opening_from(middle_opening(steps), steps, held.information());
         const Opening& best = far.misfit < near.misfit ? far : near;
         seen.excess = best.excess;
-        seen.spread = seen.noise = best.spread;
+        seen.spread = best.spread;
         return seen;
     };
+    // What contradicts a told kerf must know it well: long strips say it with the least noise.
+    if (told) return opening_of(long_reach);
     ContourOpening found = opening_of(short_reach);
     // Where short strips are too few, or their noise is a large opening, curvature is not what matters.
     if (found.strips < independent || found.spread > most_spread) return opening_of(long_reach);
@@ -208,16 +212,14 @@ KerfEstimate check_kerf(const KerfSide& moving, const KerfSide& fixed, const Pos
     made.told = told;
     if (told == 0.0) return made;
     const double left = told.value_or(0.0);
-    const ContourOpening contour = contour_opening(moving, fixed, pose, left);
+    const ContourOpening contour = contour_opening(moving, fixed, pose, told);
     made.contour = contour;
     const Vec3 mean = 0.5 * (fixed.face->mean_normal - pose.rotate(moving.face->mean_normal));
     const double cosine = std::clamp(glm::length(mean), 0.5, 1.0), missing = -contour.excess;
     made.kerf = std::max(0.0, left + missing * cosine);
     made.spread = contour.spread * cosine;
     if (told) {
-        // That the cortex is curved does not excuse an error of millimetres.
-        const double limit =
-            contour.noise < most_spread ? std::max(most_error, share_of_spread * contour.spread) : 2.0 * contour.spread;
+        const double limit = contour.spread < most_spread ? most_error : 2.0 * contour.spread;
         made.is_contradicted = std::abs(missing) > limit;
         made.is_too_wide = left * (1.0 / cosine - 1.0) > most_error;
     } else if (contour.strips >= independent) {

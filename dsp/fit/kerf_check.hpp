@@ -25,14 +25,14 @@ struct KerfSide {
 struct ContourOpening {
     double excess = 0.0;  ///< m along the opening: by how much the halves are farther apart than the contour says
     double spread = 1.0;  ///< m, standard deviation of `excess`; large when the contour says nothing
-    double noise = 1.0;  ///< m, part of `spread`: all but what strips of two lengths say differently
     int strips = 0;  ///< that were found on both halves
 };
 
-/// `pose`: of the moving half in the frame of the fixed one, as fitted with a kerf of `told` (m). The faces hold the halves
-/// as well as their covariance says (FitPrecisionSum), so that an error across the opening is part of `spread`. For
-/// preparations, not for a tick: it allocates.
-ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose, double told);
+/// `pose`: of the moving half in the frame of the fixed one, as fitted with a kerf of `told` (m; none: 0). The faces hold
+/// the halves as well as their covariance says (FitPrecisionSum), so that an error across the opening is part of
+/// `spread`. For preparations, not for a tick: it allocates.
+ContourOpening contour_opening(const KerfSide& moving, const KerfSide& fixed, const Pose& pose,
+                               std::optional<double> told);
 
 /// The kerf that the contour says, beside the one that was told.
 struct KerfEstimate {
