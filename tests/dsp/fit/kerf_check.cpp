@@ -34,7 +34,7 @@ struct Oblique {
     fit::KerfEstimate check(std::optional<double> told, const Pose& pose = {}) const {
         return fit::check_kerf({left.points, &moving}, {right.points, &fixed}, pose, told);
     }
-    fit::ContourOpening opening(const Pose& pose, double told = 0.0) const {
+    fit::ContourOpening opening(const Pose& pose, std::optional<double> told = std::nullopt) const {
         return fit::contour_opening({left.points, &moving}, {right.points, &fixed}, pose, told);
     }
     /// m: mean width of a gap along the opening.
