@@ -131,7 +131,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
 void SceneModel::show_bodies() {
     shown_.clear();
     pieces_.clear();
-    bool has_paint = false;
+    bool has_paint = false, has_old_colours = false;
     // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
     std::vector<const SceneOutline::Bodies*> scenes;
     for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
@@ -181,6 +181,7 @@ void SceneModel::show_bodies() {
             if (!scene->plan.empty()) pieces_[i] = {mesh->body, colour, pose, is_chosen(name)};
             if (is_chosen(name)) mark(mesh->bounds, pose);
             has_paint = has_paint || mesh->has_paint;
+            has_old_colours = has_old_colours || mesh->map != map_number_;
             if (!held) continue;
             if (hand) {
                 // The pose commanded by the hand, if it differs.
@@ -200,6 +201,7 @@ void SceneModel::show_bodies() {
     }
     if (map_)
         for (display::Legend::Scale& scale : map_scales(map_->kind, map_range_)) legend_.scales.push_back(scale);
+    if (has_old_colours) legend_.warnings.push_back("the fragments still get their new colours ...");
     if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
 }
 

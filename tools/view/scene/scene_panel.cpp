@@ -178,7 +178,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
         mark_spot("scene picture");
         steer(static_cast<int>(size.x), static_cast<int>(size.y));
-        tend_screens();
+        service_screens();
         render(width, height);
         const bool is_clicked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
                                 ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f;

@@ -105,7 +105,7 @@ private:
     void steer_by_keys(bool is_pointed_at);
     void render(int width, int height);
     void draw_step(display::Picture& picture);
-    void tend_screens();
+    void service_screens();
     void watch_sight();
     display::Legend legend() const;
     void measure(Point pixel);

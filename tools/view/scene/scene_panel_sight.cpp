@@ -52,7 +52,7 @@ void ScenePanel::use_offset(const std::string& offset) {
 void ScenePanel::show_screens(bool wanted) { windows_ = wanted ? Windows::all : Windows::none; }
 
 /// Opens and closes windows between two frames of the scene.
-void ScenePanel::tend_screens() {
+void ScenePanel::service_screens() {
     screens_.tend();
     const Windows wanted = std::exchange(windows_, Windows::as_they_are);
     if (wanted == Windows::as_they_are) return;
