@@ -60,6 +60,7 @@
     X(Expression, math)                 \
     X(Filter, vibration)                \
     X(ForceShaping, coupling)           \
+    X(ForceTone, vibration)             \
     X(FragmentMatcher, planning)        \
     X(Gain, vibration)                  \
     X(Gate, logic)                      \

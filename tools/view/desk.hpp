@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/view/files/file_dialog.hpp"
+#include "tools/view/files/import_dialog.hpp"
 #include "tools/view/files/start_page.hpp"
 #include "tools/view/files/window_memory.hpp"
 #include "tools/view/frame/command_list.hpp"
@@ -97,6 +98,13 @@ private:
     void ask_open();
     void ask_save_as();
     void ask_scan();
+    void ask_import();
+    /// Opens the dialog that makes a bone of it, which then goes to the node, if the patch has one for it.
+    void import_scan(const std::filesystem::path& scan, const std::string& node, std::optional<Point> at);
+    void take_file(const std::filesystem::path& file, const std::string& node, std::optional<Point> at);
+    /// The node under the pointer, where the patch is seen; else the chosen one.
+    std::string node_for_drop() const;
+    std::optional<Point> place_of_drop() const;
     void ask_value(const std::string& node, const std::string& param, const std::string& value);
     void draw_value();
     void go_to_largest_force();
@@ -122,6 +130,7 @@ private:
     WindowMemory& memory_;
     StartPage start_page_;
     FileDialog dialog_;
+    ImportDialog import_;
     CommandList list_;
     bool wants_menus_ = false;
     std::vector<Command> commands_;

@@ -30,6 +30,8 @@ void Desk::add_file_commands(std::vector<Command>& all) {
                    [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled()); }, nullptr, true});
     all.push_back(
         {"File", "Save as...", "Ctrl+Shift+S", "write copy another name", [this] { ask_save_as(); }, is_patch});
+    all.push_back(
+        {"File", "Make a bone of a scan or a mesh...", "", "import ct dicom stl", [this] { ask_import(); }, is_patch});
     all.push_back({"File", "Keep the layout in the patch", "", "window panels",
                    [this] { bench_.keep_layout(std::string(name_of(layout))); }, is_patch});
     all.push_back(
@@ -110,6 +112,9 @@ void Desk::add_run_commands(std::vector<Command>& all) {
                    [this] { bench_.pause(bench_.status()->state == State::runs); }, runs});
     all.push_back({"Run", "Record a take", "Ctrl+R", "save log", [this] { bench_.record(!bench_.is_recording()); },
                    nullptr, [this, runs] { return runs() && bench_.is_recording(); }});
+    all.push_back({"Run", "Hear the force", "", "sound tone audible sonify",
+                   [this] { bench_.hear_force(!bench_.hears_force()); }, [this] { return bench_.can_hear_force(); },
+                   [this] { return bench_.hears_force(); }});
     all.push_back({"Run", "Look at the take", "", "recording open", [this] { bench_.wants_take = true; },
                    [this, runs] {
                        return !runs() && !bench_.take().empty() && fs::exists(bench_.take() / "result.json") &&
@@ -314,11 +319,44 @@ void Desk::take_dropped(const fs::path& file) {
     else if (is_ct(file) && plan_.case_run().is_there()) {
         slices_.open(file);
         use_layout(Layout::plan);
-    } else if (kind != FileKind::plan || !bench_.take_file(file, patch_.selected)) {
-        if (kind == FileKind::plan) wishes.open = file;
-        else bench_.take_file(file, patch_.selected);
-    }
+    } else if (kind == FileKind::scan) import_scan(file, node_for_drop(), place_of_drop());
+    else if (kind == FileKind::plan) wishes.open = file;
+    else if (start_page_.is_open) bench_.tell("open a patch first, then drop " + file.filename().string(), true);
+    else take_file(file, node_for_drop(), place_of_drop());
     if (wishes.any()) start_page_.is_open = false;
+}
+
+std::optional<Point> Desk::place_of_drop() const {
+    return shows(columns_, Panel::patch) ? patch_.mouse_over() : std::nullopt;
+}
+
+std::string Desk::node_for_drop() const {
+    const std::string under = shows(columns_, Panel::patch) ? patch_.node_under_mouse() : "";
+    return under.empty() ? patch_.selected : under;
+}
+
+void Desk::take_file(const fs::path& file, const std::string& node, std::optional<Point> at) {
+    if (const std::string taken = bench_.take_file(file, node, at); !taken.empty()) patch_.choose_only(taken);
+}
+
+void Desk::import_scan(const fs::path& scan, const std::string& node, std::optional<Point> at) {
+    std::error_code ignored;
+    const fs::path patch = bench_.editor().file();
+    const bool is_own = !bench_.is_untitled() && !session::is_of_library(patch);
+    import_.open(scan, is_own ? fs::absolute(patch).parent_path() : fs::current_path(ignored),
+                 [this, node, at](const fs::path& bone, const std::string& text) {
+                     bench_.tell(text);
+                     if (!start_page_.is_open) take_file(bone, node, at);
+                 });
+}
+
+void Desk::ask_import() {
+    std::error_code ignored;
+    FileChooser chooser(FileChooser::For::open, fs::current_path(ignored),
+                        {".nrrd", ".nhdr", ".nii", ".nii.gz", ".dcm", ".zip", ".inv3", ".stl", ".ply", ".obj"});
+    chooser.takes_folders = true;
+    ask_file("Make a bone of a scan or a mesh", std::move(chooser),
+             [this](const fs::path& path) { import_scan(path, patch_.selected, std::nullopt); });
 }
 
 void Desk::draw_start() {
@@ -345,6 +383,7 @@ void Desk::draw_dialogs() {
         ask_save_as();
     }
     dialog_.draw(fonts_);
+    import_.draw(fonts_);
     list_.draw(commands_, fonts_);
     draw_value();
 }

@@ -27,6 +27,12 @@ struct Message {
     bool is_problem = false;
 };
 
+/// The file that a parameter of a new node names.
+struct NodeFile {
+    std::string param;
+    std::filesystem::path path;
+};
+
 class Workbench {
 public:
     /// Reads the patch; compile errors go to `messages`. Throws Error when it cannot be read.
@@ -100,7 +106,8 @@ public:
     /// Adds a node of a type to a lane: a group of the patch, or a rate. It may lack wires; what does not run yet. The
     /// first node of a hand adds a simulated device. Returns its name; empty: refused.
     std::string add_node(const std::string& type, const std::string& lane,
-                         std::optional<patch::PatchPlace> place = std::nullopt);
+                         std::optional<patch::PatchPlace> place = std::nullopt,
+                         const std::optional<NodeFile>& file = std::nullopt);
     const std::string& last_added() const { return last_added_; }
     /// The lane that suits a type best: of what it was used with, or a usual rate.
     std::string lane_for(const std::string& type) const;
@@ -130,13 +137,20 @@ public:
     bool use_file(const std::string& node, const std::string& param, const std::filesystem::path& file);
     /// Replaces the file of an asset.
     bool replace_asset(const std::string& asset, const std::filesystem::path& file);
-    /// A file for a parameter of `selected` that takes such files, or else for an asset that is one. False: nothing
-    /// takes it; the reason is in `messages`.
-    bool take_file(const std::filesystem::path& file, const std::string& selected);
+    /// A file for a node: for `node` when it takes such files, else for one that lacks one, else in place of the only one of
+    /// its kind. Where no node takes it, a sound and a bone bring a node along, `at` a place of the picture. Returns the node; empty:
+    /// nothing takes it, and the reason is in `messages`.
+    std::string take_file(const std::filesystem::path& file, const std::string& node,
+                          std::optional<Point> at = std::nullopt);
     bool set_driver(const std::string& device, const std::string& driver);
     /// An empty value removes the setting.
     bool set_device(const std::string& device, const std::string& name, const std::string& value);
     bool keep_layout(const std::string& layout);
+    /// Makes the force on the first hand audible, or no longer: nodes `force_tone` and `audio_output`, as one edit.
+    bool hear_force(bool wanted);
+    bool hears_force() const;
+    /// The patch has a hand that gets forces.
+    bool can_hear_force() const;
 
     /// Throws Error unless the saved file compiles to the shown plan.
     void check_saved();

@@ -7,7 +7,6 @@
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
-#include "tools/view/files/start_list.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +36,34 @@ bool carries_signal(const std::string& type) {
 
 std::string count_of(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
 
+std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
+    std::string name = file.stem().stem().string();
+    // A letter of several bytes becomes one mark.
+    std::erase_if(name, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; });
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    if (name.empty()) name = "file";
+    const std::string stem = name;
+    for (int i = 2; std::ranges::find(patch.assets, name, &patch::PatchAsset::name) != patch.assets.end(); ++i)
+        name = fmt::format("{}_{}", stem, i);
+    return name;
+}
+
+/// A file as an entry of a patch's [assets].
+struct NamedAsset {
+    std::string name, path;
+    bool is_new = false;  ///< the patch does not name the file yet
+};
+
+NamedAsset asset_for(const fs::path& file, const patch::Patch& patch) {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    const auto known = std::ranges::find_if(patch.assets, [&](const patch::PatchAsset& asset) {
+        return fs::absolute(asset.path).lexically_normal() == path;
+    });
+    if (known != patch.assets.end()) return {known->name, path.string(), false};
+    return {asset_name_of(path, patch), path.string(), true};
+}
+
 }  // namespace
 
 std::string Workbench::free_name(const std::string& type) const {
@@ -62,7 +89,7 @@ std::string Workbench::lane_for(const std::string& type) const {
 }
 
 std::string Workbench::add_node(const std::string& type, const std::string& lane,
-                                std::optional<patch::PatchPlace> place) {
+                                std::optional<patch::PatchPlace> place, const std::optional<NodeFile>& file) {
     const NodeType* known = type_of(type);
     if (!known) {
         tell(fmt::format("no node type '{}'", type), true);
@@ -70,12 +97,16 @@ std::string Workbench::add_node(const std::string& type, const std::string& lane
     }
     const std::string name = free_name(type);
     const bool is_group = std::ranges::find(written_.groups, lane, &patch::PatchGroup::name) != written_.groups.end();
-    const edit::NewNode node{name, type, is_group ? "" : lane, is_group ? lane : "", {}, {}};
+    edit::NewNode node{name, type, is_group ? "" : lane, is_group ? lane : "", {}, {}};
+    const NamedAsset asset = file ? asset_for(file->path, written_) : NamedAsset{};
+    if (file) node.settings.emplace_back(file->param, asset.name);
     const bool is_of_hand = known->role == NodeRole::hand_source || known->role == NodeRole::hand_sink;
     const bool needs_device = is_of_hand && written_.devices.empty();
     const bool made = edit(
         [&](std::string_view text) {
-            std::string changed = edit::with_node(text, node);
+            std::string changed(text);
+            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.path);
+            changed = edit::with_node(changed, node);
             if (needs_device) changed = edit::with_device(changed, "simulated", "simulated");
             if (place) changed = edit::with_places(changed, {{name, *place}});
             return changed;
@@ -192,76 +223,26 @@ bool Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
     return comment({name, words, "", place, {220.0, 80.0}});
 }
 
-namespace {
-
-std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
-    std::string name = file.stem().stem().string();
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
-    if (name.empty()) name = "file";
-    const std::string stem = name;
-    for (int i = 2; std::ranges::find(patch.assets, name, &patch::PatchAsset::name) != patch.assets.end(); ++i)
-        name = fmt::format("{}_{}", stem, i);
-    return name;
-}
-
-}  // namespace
-
 bool Workbench::use_file(const std::string& node, const std::string& param, const fs::path& file) {
-    const fs::path path = fs::absolute(file).lexically_normal();
-    const auto known = std::ranges::find_if(written_.assets, [&](const patch::PatchAsset& asset) {
-        return fs::absolute(asset.path).lexically_normal() == path;
-    });
-    const std::string name = known == written_.assets.end() ? asset_name_of(path, written_) : known->name;
+    const NamedAsset asset = asset_for(file, written_);
     return edit(
         [&](std::string_view text) {
             std::string changed(text);
-            if (known == written_.assets.end()) changed = edit::with_asset(changed, name, path.string());
-            return edit::with_setting(changed, node, param, name);
+            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.path);
+            return edit::with_setting(changed, node, param, asset.name);
         },
-        fmt::format("{}.{} = {}, which is {}", node, param, name, path.string()));
+        fmt::format("{}.{} = {}, which is {}", node, param, asset.name, asset.path));
 }
 
 bool Workbench::replace_asset(const std::string& asset, const fs::path& file) {
     const std::string path = fs::absolute(file).lexically_normal().string();
     // What the command line said of it does not hold any more.
+    const std::vector<std::string> before = choice_.overrides.assets;
     std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
-    return edit([&](std::string_view text) { return edit::with_asset(text, asset, path); },
-                fmt::format("{} is now {}", asset, path));
-}
-
-bool Workbench::take_file(const fs::path& file, const std::string& selected) {
-    const FileKind kind = kind_of_file(file);
-    if (kind == FileKind::scan) {
-        tell(fmt::format("{}: a scan or a mesh becomes a bone first: tactus import {} bone.vdb", file.string(),
-                         file.filename().string()),
-             true);
-        return false;
-    }
-    const std::string name = file.filename().string();
-    const auto suits = [&](const TypePorts::File& asset) {
-        const std::vector<std::string> endings = endings_of_asset(asset.type);
-        return !endings.empty() &&
-               std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
-    };
-    const auto param_of = [&](const patch::PatchNode& node) -> const TypePorts::File* {
-        const TypePorts* ports = ports_of_type(node.type);
-        if (!ports) return nullptr;
-        const auto found = std::ranges::find_if(ports->files, suits);
-        return found == ports->files.end() ? nullptr : &*found;
-    };
-    for (const patch::PatchNode& node : written_.nodes)
-        if (const TypePorts::File* param = node.name == selected ? param_of(node) : nullptr)
-            return use_file(node.name, param->name, file);
-    for (const patch::PatchNode& node : written_.nodes) {
-        const TypePorts::File* param = param_of(node);
-        if (!param) continue;
-        const auto setting = std::ranges::find(node.settings, param->name, &OptionText::name);
-        return setting == node.settings.end() ? use_file(node.name, param->name, file)
-                                              : replace_asset(setting->text, file);
-    }
-    tell(fmt::format("{}: no node of this patch takes such a file", file.string()), true);
-    return false;
+    const bool is_made = edit([&](std::string_view text) { return edit::with_asset(text, asset, path); },
+                              fmt::format("{} is now {}", asset, path));
+    if (!is_made) choice_.overrides.assets = before;
+    return is_made;
 }
 
 bool Workbench::set_driver(const std::string& device, const std::string& driver) {

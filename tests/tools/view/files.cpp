@@ -169,17 +169,57 @@ TEST_CASE("a file that is dropped goes to the node that takes it, as one edit") 
     const std::string before = bench.editor().text();
     REQUIRE(bench.unfinished().find("drum"));
     const auto sound = folder.write("knock one.wav", "x");
-    CHECK_FALSE(bench.take_file(folder.write("scan.nrrd", "x"), ""));
-    CHECK(bench.messages().back().text.find("tactus import") != std::string::npos);
-    CHECK_FALSE(bench.take_file(folder.write("bone.vdb", "x"), ""));
-    REQUIRE(bench.take_file(sound, ""));
+    CHECK(bench.take_file(folder.write("words.txt", "x"), "").empty());
+    CHECK(bench.messages().back().text.find("no node of this patch takes such a file") != std::string::npos);
+    REQUIRE(bench.take_file(sound, "") == "drum");
     CHECK(bench.editor().text().find("knock_one = ") != std::string::npos);
     CHECK(bench.editor().text().find("sound = \"knock_one\"") != std::string::npos);
     // Another one takes its place; the name stays.
     const auto other = folder.write("other.wav", "x");
-    REQUIRE(bench.take_file(other, "drum"));
+    REQUIRE(bench.take_file(other, "drum") == "drum");
     CHECK(bench.editor().text().find("other.wav") != std::string::npos);
     while (bench.undo()) {
     }
+    CHECK(bench.editor().text() == before);
+}
+
+TEST_CASE("a sound that is dropped never takes the place of another one by chance") {
+    const Folder folder;
+    session::RunChoice choice;
+    folder.write("a.wav", "x");
+    folder.write("b.wav", "x");
+    choice.patch =
+        folder
+            .write("p.toml",
+                   "wires = [\"go.out -> drum.trigger\", \"go.out -> bell.trigger\"]\n[assets]\na = \"a.wav\"\n"
+                   "b = \"b.wav\"\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
+                   "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\nsound = \"a\"\n"
+                   "[nodes.bell]\ntype = \"player\"\nrate = \"48 kHz\"\nsound = \"b\"\n")
+            .string();
+    Workbench bench(choice);
+    const std::string before = bench.editor().text();
+    const auto sound = folder.write("LOUD.WAV", "x");
+    CHECK(bench.take_file(sound, "").empty());
+    CHECK(bench.messages().back().text.find("bell, drum") != std::string::npos);
+    CHECK(bench.editor().text() == before);
+    // Where it is dropped, only that node changes.
+    CHECK(bench.take_file(sound, "bell") == "bell");
+    CHECK(bench.editor().text().find("sound = \"a\"") != std::string::npos);
+    CHECK(bench.editor().text().find("sound = \"LOUD\"") != std::string::npos);
+}
+
+TEST_CASE("a sound and a bone that no node takes bring a node along as one edit") {
+    const Folder folder;
+    session::RunChoice choice;
+    choice.patch = folder.write("p.toml", "[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n").string();
+    Workbench bench(choice);
+    const std::string before = bench.editor().text();
+    CHECK(bench.take_file(folder.write("knock.wav", "x"), "", Point{50.0, 60.0}) == "player");
+    CHECK(bench.editor().text().find("sound = \"knock\"") != std::string::npos);
+    REQUIRE(bench.undo());
+    CHECK(bench.editor().text() == before);
+    CHECK(bench.take_file(folder.write("femur.vdb", "x"), "") == "body");
+    CHECK(bench.editor().text().find("bone = \"femur\"") != std::string::npos);
+    REQUIRE(bench.undo());
     CHECK(bench.editor().text() == before);
 }

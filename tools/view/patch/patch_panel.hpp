@@ -43,6 +43,11 @@ public:
     void make_sub_patch();
     void open_palette();
     bool has_minimap = true;
+    void choose_only(const std::string& name);
+    /// The node of the patch's text under the mouse, also while files are dragged; empty: none.
+    std::string node_under_mouse() const;
+    /// The place of the picture under the mouse; none: it is elsewhere.
+    std::optional<Point> mouse_over() const;
     /// Centres the view on a node.
     void look_at(const std::string& node);
     /// Position of "node", "node.output" or "node.input"; none: not visible.
@@ -101,7 +106,6 @@ private:
     void finish_wire(const Hit& over);
     const PictureComment* comment_at(Point world) const;
     std::vector<std::string> chosen_nodes() const;  ///< of the patch's text, once each
-    void choose_only(const std::string& name);
     /// Size of text at this zoom; none: there is no room for readable letters.
     std::optional<double> letters(double size, double room) const;
     void explain(const Hit& over);

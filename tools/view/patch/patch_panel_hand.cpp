@@ -25,6 +25,22 @@ void PatchPanel::choose_only(const std::string& name) {
     if (!name.empty()) chosen.insert(name);
 }
 
+std::optional<Point> PatchPanel::mouse_over() const {
+    const Point pixel = canvas_.to_pixel(mouse_);
+    if (width_ < 8.0 || !Box{0.0, 0.0, width_, height_}.contains(pixel)) return std::nullopt;
+    return mouse_;
+}
+
+std::string PatchPanel::node_under_mouse() const {
+    if (!mouse_over()) return {};
+    const Hit under = hit(bench_.picture(), mouse_, 0.0);
+    const bool is_node =
+        under.what == Hit::What::node || under.what == Hit::What::input || under.what == Hit::What::output;
+    if (!is_node) return {};
+    const std::string& name = bench_.picture().nodes[static_cast<std::size_t>(under.index)].name;
+    return name.find(':') == std::string::npos ? name : "";
+}
+
 void PatchPanel::press_node(const std::string& name) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.KeyShift || io.KeyCtrl) {

@@ -29,6 +29,14 @@ patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& 
     return {corner.x, corner.y - picture.lanes[static_cast<std::size_t>(node.group)].top};
 }
 
+patch::PatchPlace place_in_lane(const PatchPicture& picture, const std::string& lane, Point corner) {
+    constexpr double lane_gap = 14.0;
+    const auto shown = std::ranges::find(picture.lanes, lane, &PictureLane::name);
+    const double below = picture.lanes.empty() ? 0.0 : picture.bounds.bottom + lane_gap;
+    const double top = shown == picture.lanes.end() ? below : shown->top;
+    return {corner.x, std::max(corner.y - top, lane_head_height)};
+}
+
 Hit hit(const PatchPicture& picture, Point at, double reach) {
     const auto near = [&](Point p) { return std::abs(p.x - at.x) <= reach && std::abs(p.y - at.y) <= reach; };
     for (std::size_t n = 0; n < picture.nodes.size(); ++n) {

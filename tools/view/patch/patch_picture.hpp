@@ -91,6 +91,8 @@ PatchPicture picture_of(const compile::Plan& plan);
 
 /// Where a node stands within its lane, as a window keeps it.
 patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& node, Point corner);
+/// The place of a new node in a lane that may not be there yet.
+patch::PatchPlace place_in_lane(const PatchPicture& picture, const std::string& lane, Point corner);
 
 inline constexpr double lane_head_height = 30.0;
 

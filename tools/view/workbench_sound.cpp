@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force on a hand as a tone, for somebody whose hand no device pushes.
+#include "tools/view/workbench.hpp"
+
+#include "graph/edit/patch_arrange.hpp"
+#include "nodes/catalogue.hpp"
+
+#include <algorithm>
+
+namespace tactus::view {
+
+namespace {
+
+constexpr const char *tone = "force_tone", *sound = "force_sound", *audio = "48 kHz";
+
+/// "hand_out.applied"; empty: the patch has no hand.
+std::string force_of(const patch::Patch& patch) {
+    const auto all = nodes::catalogue();
+    for (const patch::PatchNode& node : patch.nodes) {
+        const auto type = std::ranges::find(all, node.type, [](const NodeType* t) { return t->name; });
+        if (type == all.end() || (*type)->role != NodeRole::hand_sink) continue;
+        const TypePorts* ports = ports_of_type(node.type);
+        for (const PicturePort& port : ports->outputs)
+            if (port.name == "applied" && port.type == &value::wrench) return node.name + ".applied";
+    }
+    return {};
+}
+
+}  // namespace
+
+bool Workbench::can_hear_force() const { return !force_of(written_).empty(); }
+
+bool Workbench::hears_force() const {
+    return std::ranges::find(written_.nodes, tone, &patch::PatchNode::type) != written_.nodes.end();
+}
+
+bool Workbench::hear_force(bool wanted) {
+    if (wanted == hears_force()) return true;
+    if (!wanted) {
+        std::vector<std::string> made;
+        for (const patch::PatchNode& node : written_.nodes)
+            if (node.type == tone) made.push_back(node.name);
+        // What plays only that tone.
+        for (const patch::PatchWire& wire : written_.wires)
+            if (std::ranges::find(made, wire.from_node) != made.end() && wire.to_node.starts_with(sound))
+                made.push_back(wire.to_node);
+        return edit([&](std::string_view text) { return edit::without_nodes(text, made); }, "the force is not heard");
+    }
+    const std::string force = force_of(written_);
+    if (force.empty()) {
+        tell("this patch has no hand that gets a force", true);
+        return false;
+    }
+    const std::string tone_name = free_name(tone), sound_name = free_name(sound);
+    return edit(
+        [&](std::string_view text) {
+            const std::string changed =
+                edit::with_node(text, {tone_name, tone, audio, "", {}, {{force, tone_name + ".wrench", {}}}});
+            return edit::with_node(
+                changed,
+                {sound_name, "audio_output", audio, "", {}, {{tone_name + ".signal", sound_name + ".signal", {}}}});
+        },
+        "the force is heard as a tone: the larger, the louder and higher");
+}
+
+}  // namespace tactus::view
