@@ -146,6 +146,7 @@ void Desk::draw() {
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
     ask_farewell();
+    if (!take_) plan_.draw_questions();
     // One dialog at a time.
     draw_dialogs();
     if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();
