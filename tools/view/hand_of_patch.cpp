@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/hand_of_patch.hpp"
 
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+
 #include <algorithm>
 
 namespace tactus::view {
@@ -35,6 +38,27 @@ std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
             hand.nodes.push_back(node.name);
     }
     return hand;
+}
+
+double largest_force(const compile::Plan& plan) {
+    const std::optional<HandOfPatch> hand = hand_of(plan);
+    double most = most_of_device_N;
+    for (const patch::PatchDevice& device : plan.patch.devices)
+        for (const OptionText& setting : device.settings)
+            if (hand && device.name == hand->device && setting.name == "max_force") try {
+                    most = parse_quantity(setting.text).value;
+                } catch (const Error&) {
+                    continue;  // the run says what is wrong
+                }
+    for (const compile::PlanNode& node : plan.nodes) {
+        // Other nodes have a parameter of that name, too: guides and vessels.
+        if (node.type->role != NodeRole::hand_sink) continue;
+        const std::string named = device_named_by(node);
+        const auto limit = node.params.find("max_force");
+        if (limit != node.params.end() && (!hand || named.empty() || named == hand->device))
+            most = std::min(most, limit->second->value);
+    }
+    return most;
 }
 
 }  // namespace tactus::view

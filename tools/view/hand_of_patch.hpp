@@ -18,6 +18,11 @@ struct HandOfPatch {
     /// Nobody moves it: its movement is computed or recorded.
     bool moves_by_itself() const;
 };
+/// Of a hand on a simulated device whose table does not say it.
+inline constexpr double most_of_device_N = 20.0;
+/// The largest force that the hand of the patch can get: the lower one of the limits of its output and of its device, N.
+double largest_force(const compile::Plan& plan);
+
 /// None: no node reads a hand.
 std::optional<HandOfPatch> hand_of(const compile::Plan& plan);
 

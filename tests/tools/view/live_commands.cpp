@@ -2,6 +2,7 @@
 #include "tools/view/plan/live_commands.hpp"
 
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "tests/tools/view/plan_rig.hpp"
 
 using namespace tactus;
@@ -53,4 +54,19 @@ TEST_CASE("a button that is pressed elsewhere after a command does not mean the 
     rig.bench.press("lock");
     rig.pictures(150);
     CHECK(rig.is_locked(3));
+}
+
+TEST_CASE("a plan that cannot be read is told once", "[live]") {
+    PlanRig rig("planning-trauma");
+    file::write_whole_file(rig.run.file(), "no plan");
+    CaseRun other(rig.bench);
+    const auto problems = [&] {
+        return std::ranges::count_if(rig.bench.messages(), [](const Message& m) { return m.is_problem; });
+    };
+    const auto before = problems();
+    for (int n = 0; n < 120; ++n) {
+        other.tend(rig.bench.observer());
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    CHECK(problems() == before + 1);
 }
