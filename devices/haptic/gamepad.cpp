@@ -261,6 +261,7 @@ Settings read_settings(Options& options) {
     simulate::HandDynamics hand = read_hand(options);
     if (!is_given) hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) hand.damping = 30.0;
+    refuse_model(options);
     Settings settings{hand,
                       read_device_info(options, hand, "gamepad"),
                       options.quantity("speed", "100 mm/s", "1 mm/s", "500 mm/s"),

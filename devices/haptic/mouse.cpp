@@ -3,6 +3,9 @@
 
 #include "devices/haptic/operated.hpp"
 #include "devices/hosted/clocks.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -18,7 +21,7 @@ namespace {
 
 // A window needs a moment until its first picture of a run.
 constexpr std::int64_t longest_start_ns = 10'000'000'000;
-constexpr double least_glide_s = 0.004, longest_glide_s = 0.1;
+constexpr double least_glide_s = 0.004, longest_glide_s = 0.5;
 constexpr double farthest_m = 10.0;
 constexpr double fastest_m_s = 0.5, fastest_rad_s = 10.0;  // no hand jumps
 
@@ -59,6 +62,9 @@ public:
         : info_(std::move(info)), link_(link), now_ns_(now_ns) {
         hand_.dynamics = dynamics;
     }
+    ~Mouse() override { --link_.devices; }
+    Mouse(const Mouse&) = delete;
+    Mouse& operator=(const Mouse&) = delete;
 
     const DeviceInfo& info() const override { return info_; }
 
@@ -134,8 +140,15 @@ std::unique_ptr<HapticDevice> open_mouse(Options& options, WindowHand& link, std
     simulate::HandDynamics hand = read_hand(options);
     if (!is_given) hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) hand.damping = 30.0;
+    refuse_model(options);
     DeviceInfo info = read_device_info(options, hand, "hand at the window");
     options.finish();
+    if (link.devices.fetch_add(1) > 0) {
+        --link.devices;
+        throw Error(options.where(), fmt::format("{}: the window has one hand, and another device with the driver "
+                                                 "'mouse' is that already; give this one another driver",
+                                                 options.owner()));
+    }
     return std::make_unique<Mouse>(std::move(info), hand, link, now_ns);
 }
 

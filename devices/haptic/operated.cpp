@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/operated.hpp"
 
+#include "dsp/core/error.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,6 +35,14 @@ const simulate::DeviceModel* read_model(Options& options) {
     }();
     const std::size_t chosen = options.choice("model", names, "ideal");
     return chosen == 0 ? nullptr : &simulate::device_models()[chosen - 1];
+}
+
+void refuse_model(Options& options) {
+    if (read_model(options))
+        throw Error(options.where("model"),
+                    fmt::format("{}: a hand that a person moves has no 'model'; only 'simulated', 'scripted' and "
+                                "'replay' simulate a device as it is",
+                                options.owner()));
 }
 
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name) {

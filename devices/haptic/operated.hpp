@@ -21,6 +21,9 @@ DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand
 /// None: an ideal device.
 const simulate::DeviceModel* read_model(Options& options);
 
+/// For devices whose friction, steps and delay are not simulated. Throws Error when a model is given.
+void refuse_model(Options& options);
+
 /// The last commanded force. A watchdog may set it while the device is read.
 class SharedWrench {
     static_assert(std::atomic<double>::is_always_lock_free);

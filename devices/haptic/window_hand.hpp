@@ -33,6 +33,7 @@ struct WindowHand {
     hosted::Seqlock<WantedHand> wanted;
     hosted::Seqlock<FeltHand> felt;
     std::atomic<int> windows{0};  ///< that are open
+    std::atomic<int> devices{0};  ///< that it moves; one at a time
 };
 
 /// The one of this process.

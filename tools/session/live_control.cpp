@@ -103,6 +103,10 @@ std::string LiveControl::set(const std::string& setting) {
 }
 
 std::string LiveControl::trigger(const std::string& given) {
+    return fmt::format("{} is pressed at {:.3f} s", given, seconds(press_button(given)));
+}
+
+Flicks LiveControl::press_button(const std::string& given) {
     const std::string node = patch::end_within(engine_.plan().patch, given, press).node;
     std::vector<std::string> buttons;
     const Param* param = nullptr;
@@ -121,7 +125,7 @@ std::string LiveControl::trigger(const std::string& given) {
     const double next = std::floor(told == presses_.end() ? param->value : told->second) + 1.0;
     const Flicks when = engine_.set(given, press, fmt::format("{:.0f}", next));
     presses_[node] = next;
-    return fmt::format("{} is pressed at {:.3f} s", given, seconds(when));
+    return when;
 }
 
 std::string LiveControl::answer(const std::string& line) {

@@ -26,9 +26,8 @@ public:
 
     /// Also called from there: edits the run to this text, as if it had been saved.
     void edit(std::string text);
-    /// Presses the button `node` by incrementing its parameter 'press'. Returns the answer for the caller. Throws
-    /// Error.
-    std::string trigger(const std::string& node);
+    /// Presses the button `node` by incrementing its parameter 'press'. Returns when it takes effect. Throws Error.
+    Flicks press_button(const std::string& node);
     /// Handler of a saved file, in place of the default.
     std::function<void()> saved;
 
@@ -39,6 +38,7 @@ private:
     std::string answer(const std::string& line);
     /// Sets "NODE.PARAM=VALUE". Returns the answer for the caller. Throws Error.
     std::string set(const std::string& setting);
+    std::string trigger(const std::string& node);
 
     run::Engine& engine_;
     PatchChoice choice_;

@@ -3,6 +3,7 @@
 
 #include "tools/view/frame/whole_window.hpp"
 #include "tools/view/run_bar.hpp"
+#include "tools/view/scene/hand_offer.hpp"
 #include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
@@ -36,6 +37,7 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
         ask_file(title, std::move(chooser), std::move(done));
     };
     slices_.ask_scan = [this] { ask_scan(); };
+    if (!take_) scene_.hand().offer = [this] { draw_hand_offer(bench_); };
 }
 
 const Feed* Desk::feed() const {
@@ -113,6 +115,7 @@ void Desk::ask_farewell() {
 void Desk::draw() {
     plan_.begin_again();
     follow_run();
+    scene_.hand().stand(!take_ && bench_.status()->state == RunStatus::State::stands);
     scene_.hand().begin_picture();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};
@@ -146,6 +149,7 @@ void Desk::draw() {
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
     ask_farewell();
+    if (!take_) plan_.draw_questions();
     // One dialog at a time.
     draw_dialogs();
     if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();

@@ -4,6 +4,7 @@
 
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/scene/hand_offer.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -152,6 +153,7 @@ std::vector<Command> Desk::all_commands() {
                            [this, path = item.path] { wishes.open = path; }});
     scene_.add_commands(all);
     if (take_) return all;
+    add_hand_commands(bench_, all);
     plan_.add_commands(all);
     if (!take_) slices_.add_commands(all);
     for (const session::HandForces& forces : bench_.status()->forces)

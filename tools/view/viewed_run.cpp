@@ -86,6 +86,7 @@ void ViewedRun::tend(RunSession& session) {
         } catch (const Error& error) {
             say(error.what());
         }
+        ++done_;
     }
     constexpr int looks = 5;  // every 100 ms
     if (tends_++ % looks == 0) look_at(session);
@@ -99,6 +100,8 @@ void ViewedRun::look_at(RunSession& session) {
     status.time = engine.progress_seconds();
     status.folder = session.folder();
     status.edits = engine.edits();
+    status.requests = done_;
+    status.changed_s = changed_s_;
     status.is_recording = engine.is_recording();
     for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
         say(notices[told_notices_]);
@@ -136,11 +139,17 @@ void ViewedRun::say(const std::string& text) {
 void ViewedRun::ask(std::function<void(RunSession&)> what) {
     const std::lock_guard lock(lock_);
     if (over_) return;
+    ++requests_;
     asked_.push_back(std::move(what));
 }
 
+std::int64_t ViewedRun::requests() const {
+    const std::lock_guard lock(lock_);
+    return requests_;
+}
+
 void ViewedRun::set(const std::string& node, const std::string& param, const std::string& value) {
-    ask([=](RunSession& session) { session.engine().set(node, param, value); });
+    ask([=, this](RunSession& session) { changed_s_ = seconds(session.engine().set(node, param, value)); });
 }
 
 void ViewedRun::edit(const std::string& text) {
@@ -163,9 +172,9 @@ void ViewedRun::recover(const std::string& node) {
 }
 
 void ViewedRun::press(const std::string& node) {
-    ask([node](RunSession& session) {
+    ask([this, node](RunSession& session) {
         if (!session.control()) throw Error("this run does not accept buttons (--no-edits)");
-        session.control()->trigger(node);
+        changed_s_ = seconds(session.control()->press_button(node));
     });
 }
 

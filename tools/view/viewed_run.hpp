@@ -45,6 +45,8 @@ struct RunStatus {
     std::vector<session::HandForces> forces;
     std::vector<session::FaultOnRecord> faults;
     std::int64_t edits = 0;
+    std::int64_t requests = 0;  ///< carried out, see ViewedRun::requests
+    double changed_s = 0.0;  ///< logical, s: when the last change of a parameter, or press of a button, takes effect
     bool is_recording = false;
     std::filesystem::path folder;  ///< of its results; empty while it loads
     std::string failure;  ///< why it ended early; empty: it did not
@@ -65,6 +67,8 @@ public:
     bool file_was_saved() { return saved_.exchange(false); }
     bool is_over() const { return over_; }
 
+    /// What was asked of it so far, by the members below.
+    std::int64_t requests() const;
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
     void pause(bool wanted);
@@ -97,6 +101,8 @@ private:
     std::vector<std::function<void(RunSession&)>> asked_;
     std::vector<std::string> messages_;
     std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
+    std::int64_t requests_ = 0, done_ = 0;
+    double changed_s_ = 0.0;
     int tends_ = 0;
     std::size_t told_notices_ = 0;
     session::ForceNews news_;

@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
@@ -356,6 +357,7 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 }
 
 void Workbench::tend() {
+    if (const auto wanted = std::exchange(wanted_hand_, std::nullopt)) begin_with_hand(*wanted);
     if (!run_) return look_at_file();
     for (std::string& text : run_->messages()) tell(std::move(text));
     if (run_->file_was_saved()) take_over_file();

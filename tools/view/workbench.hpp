@@ -162,6 +162,14 @@ public:
     /// Ends the run and begins another one with this file for an asset. A file that the patch does not take leaves all as
     /// it is; the reason is in `messages`.
     void run_with(const std::string& asset, const std::filesystem::path& file);
+    /// The hand of the patch can be moved by mouse and keys in place of the device that the patch names.
+    bool can_take_hand() const;
+    bool has_taken_hand() const { return !hand_settings_.empty(); }
+    /// Lets the window move the hand, or the device of the patch again: an override of this and later runs, no edit.
+    /// False: refused; the reason is in `messages`.
+    bool use_hand_of_window(bool wanted);
+    /// Does so, and the run begins again, at the next `tend`.
+    void want_hand(bool wanted) { wanted_hand_ = wanted; }
     void stop();
     void pause(bool wanted);
     /// Presses a button of the run that is a node of the patch.
@@ -172,6 +180,8 @@ public:
     const std::filesystem::path& take() const { return last_take_; }
     ViewedRun* running() { return run_.get(); }
     std::shared_ptr<const RunStatus> status() const;
+    /// What was asked of the run so far; RunStatus::requests says how much of it is done.
+    std::int64_t requests() const { return run_ ? run_->requests() : 0; }
     std::shared_ptr<observe::Observer> observer() const { return observer_; }
     /// Increases with every new run.
     int runs() const { return runs_; }
@@ -200,6 +210,7 @@ private:
     void adopt();
     void adopt_text();
     void follow();
+    void begin_with_hand(bool of_window);
     void take_over_file();
     void keep_beside(const std::string& text);
     void look_at_file();
@@ -221,6 +232,8 @@ private:
     patch::PatchWindow window_;
     std::string running_text_, last_added_;
     bool is_broken_ = false;
+    std::optional<bool> wanted_hand_;
+    std::vector<std::string> hand_settings_;  // with which the window has taken the hand, among the overrides
     std::shared_ptr<observe::Observer> observer_;
     std::unique_ptr<ViewedRun> run_;
     std::filesystem::path last_take_;

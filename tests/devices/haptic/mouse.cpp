@@ -82,6 +82,42 @@ TEST_CASE("the hand goes from picture to picture in a straight line, without a j
     CHECK(rig.felt.pose.position.x == Approx(0.04).margin(0.5e-3));
 }
 
+TEST_CASE("the hand goes on at the same speed between pictures that take a third of a second") {
+    Rig rig;
+    double fastest = 0.0, slowest = 1.0;
+    for (int picture = 1; picture <= 10; ++picture)
+        for (int n = 0; n < 330; ++n) {
+            if (n % 20 == 0) rig.say({0.01 * picture, 0.0, 0.0}, 0.33);
+            const double speed = rig.tick().twist.linear.x;
+            if (picture < 3) continue;
+            fastest = std::max(fastest, speed);
+            slowest = std::min(slowest, speed);
+        }
+    CHECK(fastest == Approx(0.01 / 0.33).epsilon(0.05));
+    CHECK(slowest == Approx(0.01 / 0.33).epsilon(0.05));
+}
+
+TEST_CASE("a window moves one device at a time") {
+    Rig rig;
+    Options options("device 'other'");
+    try {
+        haptic::open_mouse(options, rig.link, [] { return clock_ns; });
+        FAIL("it was opened");
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()).find("device 'other': the window has one hand") != std::string::npos);
+    }
+    rig.device.reset();
+    Options again("device 'other'");
+    CHECK(haptic::open_mouse(again, rig.link, [] { return clock_ns; }) != nullptr);
+}
+
+TEST_CASE("a hand at the window refuses the model of a device that it does not simulate") {
+    haptic::WindowHand link;
+    Options options("device 'mouse'", {{"model", "touch", {}}});
+    CHECK_THROWS_AS(haptic::open_mouse(options, link, [] { return clock_ns; }), Error);
+    CHECK(link.devices == 0);
+}
+
 TEST_CASE("a window that says several times in a picture that it is alive does not slow the hand down") {
     const auto arrives = [](bool repeats) {
         Rig rig;

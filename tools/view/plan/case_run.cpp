@@ -4,11 +4,13 @@
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/arrangement/history.hpp"
+#include "tools/view/hand_of_patch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
@@ -16,8 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A button is pressed for 20 ms of the run; the next press must come after that.
-constexpr auto between_commands = std::chrono::milliseconds(100), between_looks = std::chrono::milliseconds(300);
+constexpr auto between_looks = std::chrono::milliseconds(300);
 constexpr auto written_within = std::chrono::milliseconds(1000);
 
 const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
@@ -80,10 +81,14 @@ void CaseRun::follow_patch() {
     plan_version_ = bench_.plan_version();
     node_.clear();
     matcher_.clear();
+    holding_.clear();
+    which_.clear();
     buttons_.clear();
     hand_buttons_.clear();
     if (!bench_.plan()) return;
     const compile::Plan& plan = *bench_.plan();
+    const auto hand = hand_of(plan);
+    is_hand_of_person_ = !hand || !hand->moves_by_itself();
     const auto take_hand = [&](const compile::PlanNode& node, const char* input, const char* what) {
         const Source from = source_of(plan, node, input);
         if (!from.node || from.node->type->role != NodeRole::hand_source) return;
@@ -102,6 +107,12 @@ void CaseRun::follow_patch() {
                 const Source from = source_of(plan, node, input);
                 if (from.node && from.node->type->name == "button") buttons_[input] = from.node->name;
             }
+            const auto port_of = [&](const char* input) {
+                const Source from = source_of(plan, node, input);
+                return from.node ? from.node->name + "." + from.output : std::string();
+            };
+            holding_ = port_of("holding");
+            which_ = port_of("which");
             take_hand(node, "settle", "settle");
             struct : MemberVisitor {
                 std::string file;
@@ -118,28 +129,34 @@ void CaseRun::follow_patch() {
     }
 }
 
+/// The figures of the fit, and what tells that the plan is about to change.
+void CaseRun::watch(const std::shared_ptr<observe::Observer>& observer) {
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+    watched_.clear();
+    observer_ = observer;
+    if (!observer_ || !is_there()) return;
+    if (!matcher_.empty())
+        for (const char* figure : figures) watched_.push_back(matcher_ + "." + figure);
+    for (const std::string& port : {holding_, which_, node_ + ".steps"})
+        if (!port.empty()) watched_.push_back(port);
+    for (const std::string& port : watched_) observer_->watch(port, observe::Watch::latest, this);
+}
+
 void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
-    if (plan_version_ != bench_.plan_version()) {
-        follow_patch();
-        observer_.reset();
-        watched_.clear();
-    }
-    if (observer != observer_) {
-        if (observer_)
-            for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
-        watched_.clear();
-        observer_ = observer;
+    const bool is_other_patch = plan_version_ != bench_.plan_version(), is_other_run = observer != observer_;
+    if (is_other_patch) follow_patch();
+    if (is_other_patch || is_other_run) watch(observer);
+    if (is_other_run) {
         commands_.clear();
         plan_.reset();
         steps_.clear();
-        written_ = {};
-        if (observer_ && !matcher_.empty())
-            for (const char* figure : figures) {
-                watched_.push_back(matcher_ + "." + figure);
-                observer_->watch(watched_.back(), observe::Watch::latest, this);
-            }
+        written_ = unread_ = {};
+        steps_done_ = -1.0;
     }
     if (!is_there()) return;
+    commands_.tend();
+    look_for_changes();
     const auto now = Clock::now();
     if (now - looked_ > between_looks) {
         looked_ = now;
@@ -153,12 +170,29 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
             bench_.tell(found_, true);
         }
     }
-    if (commands_.empty() || now - sent_ < between_commands) return;
-    const Command command = commands_.front();
-    commands_.pop_front();
-    sent_ = now;
-    if (command.param.empty()) bench_.press(command.node);
-    else bench_.turn(command.node, command.param, command.value);
+}
+
+void CaseRun::look_for_changes() {
+    // Also those of the hand's buttons and of commands from elsewhere.
+    const double steps = number(node_ + ".steps", -1.0);
+    const bool is_step = std::exchange(steps_done_, steps) != steps;
+    if (is_step || commands_.is_under_way() || commands_.is_paused() || is_holding()) unsettled_ = Clock::now();
+}
+
+bool CaseRun::is_holding() const {
+    if (!is_live() || !is_hand_of_person_) return false;
+    return holding_.empty() ? !which_.empty() && number(which_, -1.0) >= 0.0 : flag(holding_);
+}
+
+bool CaseRun::may_begin_again() {
+    if (is_holding()) {
+        bench_.tell(
+            "let the fragment go first: the run begins again with this change, and where it is held is no step yet",
+            true);
+        return false;
+    }
+    commands_.tell_pause();
+    return true;
 }
 
 void CaseRun::read_plan() {
@@ -167,14 +201,14 @@ void CaseRun::read_plan() {
     file_ = folder / file_name_;
     std::error_code none;
     const fs::file_time_type written = fs::last_write_time(file_, none);
-    if (none || (plan_ && written == written_)) return;
+    if (none || written == unread_ || (plan_ && written == written_)) return;
     try {
         plan_ = cases::load_case_plan(file_);
         steps_ = step_lines(*plan_);
         written_ = written;
     } catch (const Error& error) {
         bench_.tell(error.what(), true);
-        written_ = written;
+        unread_ = written;
     }
 }
 
@@ -185,11 +219,12 @@ bool CaseRun::can_press(const std::string& input) const {
 void CaseRun::press(const std::string& input, int fragment, int other) {
     const auto button = buttons_.find(input);
     if (button == buttons_.end()) return;
-    if (input != "undo" && input != "redo" && input != "show") {
-        commands_.push_back({node_, "choose", std::to_string(fragment)});
-        commands_.push_back({node_, "with", std::to_string(other)});
-    }
-    commands_.push_back({button->second, {}, {}});
+    if (input == "undo" || input == "redo" || input == "show") return commands_.add({{button->second, {}, {}}});
+    commands_.add(
+        {{node_, "choose", std::to_string(fragment)}, {node_, "with", std::to_string(other)}, {button->second, {}, {}}},
+        LiveCommands::Kind::chooses);
+    // A press from elsewhere means the fragment that was held last.
+    commands_.add({{node_, "choose", "-1"}, {node_, "with", "-1"}}, LiveCommands::Kind::tidies);
 }
 
 void CaseRun::join(const std::vector<int>& fragments) {
@@ -198,17 +233,20 @@ void CaseRun::join(const std::vector<int>& fragments) {
 
 bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }
 
-bool CaseRun::is_settled() const { return commands_.empty() && Clock::now() - sent_ > written_within; }
+bool CaseRun::is_settled() const {
+    if (bench_.status()->state == RunStatus::State::over) return true;
+    return !commands_.is_under_way() && Clock::now() - unsettled_ > written_within;
+}
 
 // Only a change counts.
 void CaseRun::go_to_alternative(int place) {
-    commands_.push_back({node_, "alternative", "-1"});
-    commands_.push_back({node_, "alternative", std::to_string(place)});
+    commands_.add({{node_, "alternative", "-1"}});
+    commands_.add({{node_, "alternative", std::to_string(place)}});
 }
 
 void CaseRun::drop_alternative(int place) {
-    commands_.push_back({node_, "drop", "-1"});
-    commands_.push_back({node_, "drop", std::to_string(place)});
+    commands_.add({{node_, "drop", "-1"}});
+    commands_.add({{node_, "drop", std::to_string(place)}});
 }
 
 std::optional<std::size_t> CaseRun::hand_button(const std::string& what) const {

@@ -5,10 +5,10 @@
 
 #include "assets/cases/case_plan.hpp"
 #include "engine/observe/observer.hpp"
+#include "tools/view/plan/live_commands.hpp"
 #include "tools/view/workbench.hpp"
 
 #include <chrono>
-#include <deque>
 #include <filesystem>
 #include <future>
 #include <map>
@@ -32,7 +32,7 @@ std::filesystem::path free_plan(const std::filesystem::path& folder);
 
 class CaseRun {
 public:
-    explicit CaseRun(Workbench& bench) : bench_(bench) {}
+    explicit CaseRun(Workbench& bench) : bench_(bench), commands_(bench) {}
     ~CaseRun();
     CaseRun(const CaseRun&) = delete;
     CaseRun& operator=(const CaseRun&) = delete;
@@ -60,8 +60,16 @@ public:
     void join(const std::vector<int>& fragments);
     /// The patch runs.
     bool is_live() const;
-    /// What was sent last has come into the plan's file.
+    /// All that was done to the plan has come into its file: a run that begins with that file loses nothing. False while
+    /// a fragment is held or the run is paused.
     bool is_settled() const;
+    /// A person holds a fragment: where it is now is no step yet.
+    bool is_holding() const;
+    /// For a change with which the run is to begin again. False: not now; the reason is in the messages. In a pause they
+    /// say that it waits.
+    bool may_begin_again();
+    /// Reads the plan's file if it has changed.
+    void read_plan();
     /// Goes to an alternative of the plan, by its place; their number: begins another one at the current state.
     void go_to_alternative(int place);
     /// Drops an alternative that is not the current one; -2: brings the last one back.
@@ -86,12 +94,9 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    struct Command {
-        std::string node;  ///< a button, or of `param`
-        std::string param, value;  ///< empty: the button is pressed
-    };
     void follow_patch();
-    void read_plan();
+    void watch(const std::shared_ptr<observe::Observer>& observer);
+    void look_for_changes();
     double number(const std::string& port, double otherwise) const;
     bool flag(const std::string& port) const;
 
@@ -103,10 +108,13 @@ private:
     std::map<std::string, std::string> buttons_;  // node, by input
     std::map<std::string, std::size_t> hand_buttons_;
     std::vector<std::string> watched_;
-    std::deque<Command> commands_;
-    Clock::time_point sent_{}, looked_{};
+    LiveCommands commands_;
+    std::string holding_, which_;  // ports; of the held fragment
+    double steps_done_ = -1.0;
+    bool is_hand_of_person_ = true;
+    Clock::time_point unsettled_{}, looked_{};
     std::filesystem::path file_;
-    std::filesystem::file_time_type written_{};
+    std::filesystem::file_time_type written_{}, unread_{};  // unread: of a file that could not be read
     std::optional<cases::CasePlan> plan_;
     std::vector<StepLine> steps_;
     std::future<std::string> study_;

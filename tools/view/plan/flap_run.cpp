@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto now = std::chrono::seconds(0);
-// Of one change: a hand that never rests must not keep it off for ever.
-constexpr int most_repeats = 5;
 
 template <class T>
 bool is_ready(const std::future<T>& work) {
@@ -47,7 +45,7 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
 }  // namespace
 
 void FlapRun::tend() {
-    if (is_ready(changing_)) take_made();
+    tend_change();
     if (is_ready(measuring_)) {
         try {
             verdicts_ = measuring_.get();
@@ -71,26 +69,26 @@ void FlapRun::tend() {
         });
 }
 
-void FlapRun::take_made() {
-    try {
-        fs::path made = changing_.get();
-        if (run_.plan() && run_.written() != made_of_ && repeats_ < most_repeats) {
-            std::error_code none;
-            fs::remove(made, none);
-            ++repeats_;
-            return make();
+void FlapRun::tend_change() {
+    if (is_ready(changing_)) {
+        try {
+            changed_ = changing_.get();
+        } catch (const std::exception& error) {
+            bench_.tell(error.what(), true);
         }
-        changed_ = std::move(made);
-    } catch (const std::exception& error) {
-        bench_.tell(error.what(), true);
     }
+    if (!waits_ || changing_.valid() || !run_.plan() || !run_.is_settled()) return;
+    waits_ = false;
+    run_.read_plan();
+    make();
 }
 
 void FlapRun::begin(WholeChange change) {
-    if (!run_.plan() || changing_.valid()) return;
+    if (!run_.plan() || is_changing() || !run_.may_begin_again()) return;
     change_ = std::move(change);
-    repeats_ = 0;
-    make();
+    waits_ = true;
+    was_live_ = run_.is_live();
+    tend_change();
 }
 
 void FlapRun::make() {
@@ -134,6 +132,17 @@ void FlapRun::lay_plate(const std::string& name, int screws_per_segment, double 
     });
 }
 
-fs::path FlapRun::take_changed() { return std::exchange(changed_, {}); }
+fs::path FlapRun::take_changed() {
+    if (changed_.empty() || !run_.is_settled()) return {};
+    run_.read_plan();
+    fs::path made = std::exchange(changed_, {});
+    const bool has_ended = was_live_ && !run_.is_live();
+    if (!has_ended && run_.plan() && run_.written() == made_of_) return made;
+    std::error_code none;
+    fs::remove(made, none);
+    if (has_ended) bench_.tell("the run has ended, and does not begin again with the change: make it once more", true);
+    else waits_ = true;
+    return {};
+}
 
 }  // namespace tactus::view

@@ -23,6 +23,8 @@ public:
 
     /// Once per picture while it is seen.
     void tend();
+    /// Once per picture, also while it is not seen: goes on with a change.
+    void tend_change();
     /// Of the plan as it is now; null: it has none.
     const std::shared_ptr<const reconstruct::Reconstruction>& reconstruction() const { return now_; }
 
@@ -32,21 +34,20 @@ public:
     };
     const Verdicts& verdicts() const { return verdicts_; }
     bool is_measuring() const { return measuring_.valid(); }
-    /// A change is being made; another one is not begun meanwhile. It is made again when the plan had further steps by
-    /// then, so that the run does not go on without them.
-    bool is_changing() const { return changing_.valid(); }
+    /// A change waits for the steps before it, or is being made; another one is not begun meanwhile. It is made again when
+    /// the plan had further steps by then, so that the run does not go on without them.
+    bool is_changing() const { return waits_ || changing_.valid() || !changed_.empty(); }
 
     void change(Change change);
     /// Lays a plate on the segments and the stumps; one of that name is replaced. m.
     void lay_plate(const std::string& name, int screws_per_segment, double screw_length, double height);
-    /// The plan with the change, once it is made; empty: none. Taken once.
+    /// The plan with the change, once it is made and has all that the run has written; empty: none. Taken once.
     std::filesystem::path take_changed();
 
 private:
     using WholeChange = std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>;
     void begin(WholeChange change);
     void make();
-    void take_made();
 
     Workbench& bench_;
     CaseRun& run_;
@@ -57,7 +58,7 @@ private:
     std::filesystem::path changed_;
     WholeChange change_;  ///< being made
     std::filesystem::file_time_type made_of_{};
-    int repeats_ = 0;
+    bool waits_ = false, was_live_ = false;  ///< was_live: the run was there when the change was asked for
     Verdicts verdicts_;
 };
 

@@ -65,7 +65,27 @@ void PlanAlternatives::tend() {
 
 void PlanAlternatives::ask_name() {
     const cases::CasePlan* const plan = run_.plan();
-    if (plan) ask_name(plan->current, plan->alternatives[static_cast<std::size_t>(plan->current)].name);
+    if (!plan) return;
+    name_ = plan->alternatives[static_cast<std::size_t>(plan->current)].name;
+    wants_question_ = true;
+}
+
+void PlanAlternatives::draw_question() {
+    constexpr const char* title = "another name for the alternative";
+    if (std::exchange(wants_question_, false)) ImGui::OpenPopup(title);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+    if (!ImGui::BeginPopup(title)) return;
+    const cases::CasePlan* const plan = run_.plan();
+    ImGui::TextUnformatted(title);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(16.0f * ImGui::GetFontSize());
+    const bool is_entered = ImGui::InputText("##asked name", &name_,
+                                             ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    mark_spot("asked name of the alternative");
+    ImGui::TextDisabled("The run begins again with it. Enter: take it; Esc: leave the old one.");
+    if (is_entered && plan) rename(plan->alternatives[static_cast<std::size_t>(plan->current)].name, name_);
+    if (is_entered || !plan || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
 }
 
 void PlanAlternatives::ask_name(int place, const std::string& name) {
@@ -93,11 +113,15 @@ void PlanAlternatives::rename(const std::string& name, const std::string& wanted
             true);
     if (!wanted_name_.second.empty() && wanted_name_.first != name)
         return bench_.tell(fmt::format("'{}' is still being renamed; try again in a moment", wanted_name_.first), true);
-    wanted_name_ = {name, wanted};
+    if (run_.may_begin_again()) wanted_name_ = {name, wanted};
 }
 
 std::filesystem::path PlanAlternatives::take_changed() {
     if (wanted_name_.second.empty() || !run_.plan() || !run_.is_settled()) return {};
+    if (!run_.is_live()) {
+        bench_.tell(fmt::format("the run has ended: '{}' keeps its name", std::exchange(wanted_name_, {}).first), true);
+        return {};
+    }
     try {
         const auto written = std::filesystem::last_write_time(run_.file());
         cases::CasePlan plan = cases::load_case_plan(run_.file());

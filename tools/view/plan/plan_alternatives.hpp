@@ -24,8 +24,10 @@ public:
     /// Draws this one over the current one; empty: none.
     void compare(const std::string& name) { compared_ = name; }
 
-    /// Asks for another name of the current one.
+    /// Asks for another name of the current one, in a field of its own: the list may be hidden.
     void ask_name();
+    /// Once per picture, also while the list is hidden.
+    void draw_question();
     void rename(const std::string& name, const std::string& wanted);
     /// The plan with another name, which a new run begins with; empty: none, or the run has not written yet what was done
     /// before. Taken once.
@@ -48,7 +50,7 @@ private:
     std::vector<std::string> numbers_;
     std::pair<std::string, std::string> wanted_name_;  ///< of the alternative that gets another one, and that
     int renamed_ = -1;  ///< place of the alternative whose name is asked for
-    bool wants_focus_ = false;
+    bool wants_focus_ = false, wants_question_ = false;
     std::string name_;
 };
 

@@ -28,8 +28,11 @@ public:
         case_.tend(observer);
         map_.tend();
         alternatives_.tend();
+        flap_.flap().tend_change();
     }
     void draw(const Fonts& fonts);
+    /// Once per picture, also while it is not drawn: what a command asks for.
+    void draw_questions() { alternatives_.draw_question(); }
     /// What its buttons do, by name.
     void add_commands(std::vector<Command>& all);
     /// Once per picture, before the run is looked at: begins the run again when its plan was changed beside it.

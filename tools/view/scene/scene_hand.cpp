@@ -40,6 +40,8 @@ SceneHand::SceneHand() : pulse_(haptic::window_hand(), hosted::steady_ns) {}
 
 void SceneHand::begin_picture() {
     pulse_.begin_picture();
+    // No key was looked at in the picture before: it may have been let go of since, and must be pressed anew.
+    if (!std::exchange(is_steered_, false)) drop_keys();
     const std::int64_t now = hosted::steady_ns();
     interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
     picture_ns_ = now;
@@ -58,11 +60,16 @@ void SceneHand::end_picture() {
 }
 
 void SceneHand::let_go() {
-    keys_ = latched_ = 0;
-    stale_ = ~0u;
+    drop_keys();
+    latched_ = 0;
     is_drag_stale_ = true;
     // Nor does the spring pull on.
     if (is_there_) cursor_.begin(felt_.pose);
+}
+
+void SceneHand::drop_keys() {
+    keys_ = 0;
+    stale_ = ~0u;
 }
 
 void SceneHand::beat() {
@@ -71,7 +78,8 @@ void SceneHand::beat() {
     spoke_ns_ = now;
     std::uint64_t number = 0;
     if (!haptic::window_hand().felt.read(felt_, number)) return;
-    is_there_ = felt_.run != 0 && now - felt_.at_ns < forgotten_ns;
+    // The device of a run that stands still is not read; what it holds stays held.
+    is_there_ = felt_.run != 0 && (now - felt_.at_ns < forgotten_ns || (stands_ && is_there_ && felt_.run == run_));
     if (was_silent) let_go();
     if (!is_there_) return pulse_.forget();
     if (felt_.run != run_) {
@@ -81,6 +89,8 @@ void SceneHand::beat() {
         pictures_ = 0;
         ticked_ns_ = felt_.at_ns;
     }
+    // It goes on from where it is.
+    if (stands_) cursor_.begin(felt_.pose);
     if (pictures_ < first_pictures) return pulse_.forget();
     cursor_.stay_near(felt_.pose, glm::length(felt_.force.force));
     pulse_.say({cursor_.wanted(), held_buttons(), now, interval_ns_, run_});
@@ -124,7 +134,10 @@ HandPlace SceneHand::place() const {
 }
 
 void SceneHand::tools() {
-    if (!is_there_) return;
+    if (!is_there_) {
+        if (offer) offer();
+        return;
+    }
     if (ImGui::SmallButton(is_on_ ? "mouse: hand (H)" : "mouse: view (H)")) is_on_ = !is_on_;
     mark_spot("mouse");
     if (ImGui::IsItemHovered())
@@ -144,6 +157,7 @@ void SceneHand::tools() {
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("press: stays held until pressed again; the key: while it is held");
     }
+    if (offer) offer();
 }
 
 void SceneHand::hold(std::size_t button, bool wanted) {
@@ -158,22 +172,27 @@ void SceneHand::go_to(const Vec3& in_scene) {
 }
 
 void SceneHand::press_keys() {
-    keys_ = 0;
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput || io.KeyCtrl) return;
+    if (io.WantTextInput) return drop_keys();
+    // Keys for something else press nothing, but what is held stays held.
+    const bool is_for_others = io.KeyCtrl || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     for (std::size_t i = 0; i < hand_buttons.size(); ++i) {
         const unsigned bit = 1u << i;
-        if (!ImGui::IsKeyDown(hand_buttons[i].key)) stale_ &= ~bit;
+        if (!ImGui::IsKeyDown(hand_buttons[i].key)) {
+            keys_ &= ~bit;
+            stale_ &= ~bit;
+        } else if (is_for_others && (keys_ & bit) == 0) stale_ |= bit;
         else if ((stale_ & bit) == 0) {
             keys_ |= bit;
             latched_ &= ~bit;
         }
     }
-    if (ImGui::IsKeyPressed('H', false)) is_on_ = !is_on_;
+    if (!is_for_others && ImGui::IsKeyPressed('H', false)) is_on_ = !is_on_;
 }
 
 bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
     if (!is_there_) return false;
+    is_steered_ = true;
     press_keys();
     is_hovered_ = ImGui::IsItemHovered() || ImGui::IsItemActive();
     if (!is_on_) return false;

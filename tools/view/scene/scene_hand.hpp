@@ -30,6 +30,8 @@ public:
     void beat();
     /// Lets go of everything, because the person has left the window: what is held must be pressed anew.
     void let_go();
+    /// The run stands still: its device is not read, and the hand stays where it is.
+    void stand(bool stands) { stands_ = stands; }
     /// A device of the run is moved by the window.
     bool is_there() const { return is_there_; }
     /// The mouse in the scene moves the hand, not the view.
@@ -38,8 +40,9 @@ public:
     /// Watches where the device lies in the scene; null: no run.
     void follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline);
     void forget();
-    /// The buttons above the scene.
+    /// The buttons above the scene; without a hand of the window, `offer`.
     void tools();
+    std::function<void()> offer;
     /// The four buttons of the hand, 0 to 3: trigger, second, third, fourth.
     bool is_held(std::size_t button) const { return ((keys_ | latched_) >> button & 1u) != 0; }
     /// Holds one until it is let go, as a click on its button above the scene.
@@ -56,6 +59,7 @@ private:
     HandPlace place() const;
     std::int64_t held_buttons() const;
     void press_keys();
+    void drop_keys();
     void step_by_keys(const Vec3& right, const Vec3& up, const Vec3& forward, const HandPlace& place);
 
     HandPulse pulse_;
@@ -65,6 +69,7 @@ private:
     HandCursor cursor_;
     std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0, ticked_ns_ = 0, first_ns_ = 0;
     int pictures_ = 0;  // of this run; the first ones make meshes and take long
+    bool is_steered_ = false, stands_ = false;
     bool is_there_ = false, is_on_ = true, is_hovered_ = false;
     unsigned keys_ = 0, latched_ = 0;  // of the four buttons, bit by bit
     unsigned stale_ = 0;  // keys that were down when the person left

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlays of the scene: measured points and the legend.
+#include "tools/view/hand_of_patch.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -119,10 +120,7 @@ void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, doubl
     if (!hand_.is_there() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
     const SceneScreens::Tile& tile = screens_.tiles().front();
     const auto seen = [&](const Vec3& in_scene) { return place_in(tile, tile.views.front(), in_scene, corner, pixel); };
-    double limit = 20.0;  // N, where the patch sets none
-    if (bench_.plan())
-        for (const compile::PlanNode& node : bench_.plan()->nodes)
-            if (const auto most = node.params.find("max_force"); most != node.params.end()) limit = most->second->value;
+    const double limit = bench_.plan() ? largest_force(*bench_.plan()) : most_of_device_N;
     hand_.draw(paint, {corner.x, corner.y, corner.x + size.x, corner.y + size.y}, seen, limit);
 }
 

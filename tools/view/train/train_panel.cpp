@@ -2,9 +2,9 @@
 #include "tools/view/train/train_panel.hpp"
 
 #include "dsp/core/error.hpp"
-#include "tools/study/training/score.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
+#include "tools/view/train/score_words.hpp"
 
 #include <fmt/format.h>
 
@@ -47,28 +47,6 @@ void how_to_move() {
          {"drag: move the hand", "wheel, or drag with Shift: nearer, farther", "right button: turn; with Shift: roll",
           "hold T: the tool runs", "1 to 7: look from another side", "middle button: turn the view"})
         ImGui::TextDisabled("%s", line);
-}
-
-/// What a trainee reads after an attempt.
-std::string score_words(const study::ScoredRun& run) {
-    const study::Score& s = run.score;
-    std::string text = fmt::format("removed {:.0f} mm³ in {:.1f} s; force {:.1f} N mean, {:.1f} N at most\n",
-                                   run.removed_mm3, s.seconds, s.mean_N, run.max_N);
-    if (run.severance.severed) text += "the bone is sawn through\n";
-    if (s.rms_mm && s.max_mm)
-        text += fmt::format("cut {:.2f} mm rms from the plan, {:.2f} mm at most\n", *s.rms_mm, *s.max_mm);
-    text += fmt::format("cut too much: {:.1f} mm³; too little: {:.1f} mm³\n", s.over_mm3, s.under_mm3);
-    for (const study::SparedScore& spared : s.spared)
-        text += spared.injured_mm3 > 0.0
-                    ? fmt::format("{}: injured, {:.1f} mm³\n", spared.name, spared.injured_mm3)
-                    : fmt::format("{}: spared, nearest {:.1f} mm\n", spared.name, spared.closest_mm);
-    if (s.over_limit_Ns > 0.0) text += fmt::format("above the limit of force: {:.2f} N s\n", s.over_limit_Ns);
-    if (s.shown_share && *s.shown_share < study::complete_share)
-        text += fmt::format(
-            "the bone was felt in only {:.0f} % of the time of contact, as forces were away: do not "
-            "compare this attempt with others\n",
-            std::floor(100.0 * *s.shown_share));
-    return text + "the scores are not validated";
 }
 
 }  // namespace
@@ -142,11 +120,16 @@ void TrainPanel::meter(const Fonts& fonts, double force) const {
               : limit_N_ > 0.0 && force > 0.8 * limit_N_ ? tone::warm
                                                          : tone::good,
               4.0);
-    if (limit_N_ > 0.0 && limit_N_ < most) {
-        const double x = bar.left + limit_N_ / most * wide;
+    if (limit_N_ > 0.0) {
+        // One that the device cannot reach stands at the end.
+        const double x = bar.left + std::min(limit_N_ / most * wide, wide - 2.0);
         paint.line({x, bar.top}, {x, bar.bottom}, tone::text, 3.0);
         // Not by colour alone.
-        paint.text({x + 4.0, bar.top + 2.0}, 12.0 * fonts.scale, tone::text, fmt::format("limit {:.0f} N", limit_N_));
+        const std::string text = fmt::format("limit {:.0f} N", limit_N_);
+        const double size = 12.0 * fonts.scale;
+        if (x + 4.0 + paint.width_of(text, size) < bar.right)
+            paint.text({x + 4.0, bar.top + 2.0}, size, tone::text, text);
+        else paint.text_left_of({x - 4.0, bar.top + 2.0}, size, tone::text, text);
     }
     const double peak = bar.left + std::clamp(peak_N_ / most, 0.0, 1.0) * wide;
     paint.line({peak, bar.top}, {peak, bar.bottom}, tone::dim, 1.0);
@@ -197,14 +180,7 @@ void TrainPanel::result() {
         score_ = "computes the score...";
         if (const std::string failure = bench_.status()->failure; !failure.empty()) score_ = failure;
         else if (node_.empty()) score_ = run->summary_text();
-        else
-            scoring_ = std::async(std::launch::async, [folder = bench_.status()->folder] {
-                try {
-                    return score_words(study::score_run(folder));
-                } catch (const Error& error) {
-                    return std::string("no score: ") + error.what();
-                }
-            });
+        else scoring_ = std::async(std::launch::async, score_of, bench_.status()->folder);
     }
     ImGui::Separator();
     ImGui::TextWrapped("%s", score_.c_str());

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/hand_of_patch.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+
+#include <algorithm>
+
+namespace tactus::view {
+
+namespace {
+
+std::string device_named_by(const compile::PlanNode& node) {
+    const auto found = node.texts.find("device");
+    return found == node.texts.end() ? std::string() : found->second->value;
+}
+
+}  // namespace
+
+bool HandOfPatch::moves_by_itself() const {
+    return driver == "simulated" || driver == "scripted" || driver == "replay";
+}
+
+std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
+    const auto source = std::ranges::find_if(
+        plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::hand_source; });
+    if (source == plan.nodes.end()) return std::nullopt;
+    const auto& devices = plan.patch.devices;
+    HandOfPatch hand{source->name, device_named_by(*source), {}, {}};
+    if (hand.device.empty() && devices.size() == 1) hand.device = devices.front().name;
+    // A driver that the patch does not declare can be named as well.
+    const auto declared = std::ranges::find(devices, hand.device, &patch::PatchDevice::name);
+    hand.driver = declared == devices.end() ? hand.device : declared->driver;
+    for (const compile::PlanNode& node : plan.nodes) {
+        const bool is_of_hand = node.type->role == NodeRole::hand_source || node.type->role == NodeRole::hand_sink;
+        const std::string named = device_named_by(node);
+        if (&node == &*source || (is_of_hand && !named.empty() && named == hand.device))
+            hand.nodes.push_back(node.name);
+    }
+    return hand;
+}
+
+double largest_force(const compile::Plan& plan) {
+    const std::optional<HandOfPatch> hand = hand_of(plan);
+    double most = most_of_device_N;
+    for (const patch::PatchDevice& device : plan.patch.devices)
+        for (const OptionText& setting : device.settings)
+            if (hand && device.name == hand->device && setting.name == "max_force") try {
+                    most = parse_quantity(setting.text).value;
+                } catch (const Error&) {
+                    continue;  // the run says what is wrong
+                }
+    for (const compile::PlanNode& node : plan.nodes) {
+        // Other nodes have a parameter of that name, too: guides and vessels.
+        if (node.type->role != NodeRole::hand_sink) continue;
+        const std::string named = device_named_by(node);
+        const auto limit = node.params.find("max_force");
+        if (limit != node.params.end() && (!hand || named.empty() || named == hand->device))
+            most = std::min(most, limit->second->value);
+    }
+    return most;
+}
+
+}  // namespace tactus::view
