@@ -25,7 +25,7 @@ geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
     return {layout.origin, layout.spacing, volume::brick_cells};
 }
 
-StillSurface still_surface(const std::string& path, const std::string& name) {
+StillSurface still_surface(const std::string& path, const std::string& name, const std::stop_token& stop) {
     StillSurface made;
     try {
         const bone::Bone loaded = bone::load_bone(path);
@@ -34,7 +34,7 @@ StillSurface still_surface(const std::string& path, const std::string& name) {
         made.grid = grid_of(editor.layout());
         made.bricks.resize(static_cast<std::size_t>(editor.layout().brick_count()));
         geometry::BrickSurface mesher;
-        for (std::size_t brick = 0; brick < made.bricks.size(); ++brick)
+        for (std::size_t brick = 0; brick < made.bricks.size() && !stop.stop_requested(); ++brick)
             mesher.make(editor.current(), static_cast<std::uint32_t>(brick), made.bricks[brick]);
     } catch (const Error& error) {
         made.problem = fmt::format("{} is not drawn: {}", name, error.message());
@@ -180,12 +180,11 @@ display::Picture& SceneModel::update() {
     remeshed_ = 0;
     constexpr std::chrono::milliseconds most_work{10};
     until_ = std::chrono::steady_clock::now() + most_work;
-    if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        take_body(making_.get());
+    if (making_.is_ready()) take_body(making_.take());
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
-    is_making_ = making_.valid();
+    is_making_ = making_.is_busy();
     shows_grey_ = false;
     show_bones();
     show_still_bones();
@@ -275,12 +274,14 @@ void SceneModel::show_bones() {
 }
 
 void SceneModel::take_still(StillMesh& bone) {
-    if (bone.making.valid()) {
-        if (is_spread_ && bone.making.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-        bone.made = bone.making.get();
-        bone.problem = bone.made.problem;
-        if (bone.problem.empty()) bone.mesh = renderer_.meshes().make(bone.made.grid);
+    if (bone.making.is_busy()) {
+        if (!bone.making.is_ready()) return;
+        bone.made = bone.making.take();
+        bone.is_made = true;
     }
+    if (!bone.is_made) return;
+    bone.problem = bone.made.problem;
+    if (bone.problem.empty() && bone.mesh < 0) bone.mesh = renderer_.meshes().make(bone.made.grid);
     for (; bone.taken < bone.made.bricks.size() && has_time(); ++bone.taken) {
         const geometry::SurfacePatch& patch = bone.made.bricks[bone.taken];
         renderer_.meshes().set_part(bone.mesh, static_cast<std::uint32_t>(bone.taken), patch);
@@ -297,10 +298,14 @@ void SceneModel::show_still_bones() {
         auto known = still_bones_.find(path);
         if (known == still_bones_.end()) {
             known = still_bones_.emplace(path, StillMesh{}).first;
-            known->second.making = std::async(is_spread_ ? std::launch::async : std::launch::deferred,
-                                              [path, name] { return still_surface(path, name); });
+            if (is_spread_)
+                known->second.making.begin(study::Lane::scene, [path, name](const std::stop_token& stop) {
+                    return still_surface(path, name, stop);
+                });
+            else known->second.made = still_surface(path, name, {});
+            known->second.is_made = !is_spread_;
         }
-        take_still(known->second);
+        if (!known->second.is_whole) take_still(known->second);
         if (!known->second.is_whole) {
             is_making_ = true;
             continue;

@@ -7,10 +7,10 @@
 #include "engine/observe/observer.hpp"
 #include "tools/picture/scene/made_body.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
+#include "tools/study/beside.hpp"
 
 #include <chrono>
 #include <filesystem>
-#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -200,7 +200,7 @@ private:
     struct PlanVessels {
         std::vector<PlanVessel> all;
         std::string problem;  ///< why some are missing
-        std::future<VesselTubes> making;
+        study::Beside<VesselTubes> making;
     };
     void put_vessels(PlanVessels& to, const VesselTubes& tubes);
     void take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan);
@@ -234,8 +234,9 @@ private:
         display::Bounds bounds;
         std::string problem;  ///< why it is missing
         int scan = -1;
-        std::future<StillSurface> making;
+        study::Beside<StillSurface> making;
         StillSurface made;  ///< empty again when the mesh is complete
+        bool is_made = false;
         std::size_t taken = 0;  ///< of its bricks
         bool is_whole = false;
     };
@@ -252,9 +253,9 @@ private:
     std::map<std::uint64_t, BodyMesh> bodies_;
     bool is_spread_ = false;
     std::chrono::steady_clock::time_point until_{};  ///< of work that the next picture may continue
-    std::future<MadeBody> making_;
+    study::Beside<MadeBody> making_;
     struct Densities {
-        std::future<std::vector<volume::Grid>> reading;
+        study::Beside<std::vector<volume::Grid>> reading;
         std::vector<volume::Grid> grids;
         bool is_read = false;
     };

@@ -123,7 +123,8 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
         if (!look.body && body->content_hash == content && !body->distance.values.empty()) look.body = body;
     if (!look.body) return nullptr;
     if (!is_spread_) take_body(make_body(std::move(look)));
-    else if (!making_.valid()) making_ = std::async(std::launch::async, make_body, std::move(look));
+    else if (!making_.is_busy())
+        making_.begin(study::Lane::scene, [look = std::move(look)]() mutable { return make_body(std::move(look)); });
     const auto now = bodies_.find(content);
     return now == bodies_.end() ? nullptr : &now->second;
 }

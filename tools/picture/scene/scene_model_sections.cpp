@@ -4,7 +4,6 @@
 #include "tools/picture/scene/section_grey.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tactus::picture {
 
@@ -20,9 +19,9 @@ bool SceneModel::is_reading_density() const {
 std::span<const volume::Grid> SceneModel::densities_of(const std::string& path) {
     Densities& known = densities_[path];
     if (known.is_read) return known.grids;
-    if (!known.reading.valid()) known.reading = std::async(std::launch::async, [path] { return read_densities(path); });
-    if (!waits_for_files_ && known.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-    known.grids = known.reading.get();
+    if (!known.reading.is_busy()) known.reading.begin(study::Lane::scene, [path] { return read_densities(path); });
+    if (!waits_for_files_ && !known.reading.is_ready()) return {};
+    known.grids = known.reading.take();
     known.is_read = true;
     return known.grids;
 }

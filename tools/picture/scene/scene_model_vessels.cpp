@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace tactus::picture {
 
@@ -88,8 +87,7 @@ void SceneModel::put_vessels(PlanVessels& to, const VesselTubes& tubes) {
 void SceneModel::take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan) {
     const cases::PlanState state = cases::state_of(plan);
     PlanVessels& taken = vessels_[file.string()];
-    if (state.reconstruction)
-        taken.making = std::async(std::launch::async, [file, plan] { return flap_tubes(file, plan); });
+    if (state.reconstruction) taken.making.begin(study::Lane::studies, [file, plan] { return flap_tubes(file, plan); });
     else if (state.vessels) put_vessels(taken, scanned_tubes(*state.vessels));
 }
 
@@ -108,10 +106,9 @@ void SceneModel::forget_vessels() {
 void SceneModel::show_vessels() {
     const std::vector<std::optional<Pose>> poses = plan_poses();
     for (auto& [file, vessels] : vessels_) {
-        if (vessels.making.valid() &&
-            (waits_for_files_ || vessels.making.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
-            put_vessels(vessels, vessels.making.get());
-        if (vessels.making.valid()) {
+        if (vessels.making.is_ready() || (waits_for_files_ && vessels.making.is_busy()))
+            put_vessels(vessels, vessels.making.take());
+        if (vessels.making.is_busy()) {
             legend_.warnings.push_back("computing the vessels of the flap ...");
             is_waiting_ = true;
         }

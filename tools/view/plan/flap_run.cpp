@@ -20,14 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto now = std::chrono::seconds(0);
 // Of one change: a hand that never rests must not keep it off for ever.
 constexpr int most_repeats = 5;
-
-template <class T>
-bool is_ready(const std::future<T>& work) {
-    return work.valid() && work.wait_for(now) == std::future_status::ready;
-}
 
 FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folder) {
     study::FlapStudy study(plan, cases::state_of(plan), folder);
@@ -47,10 +41,10 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
 }  // namespace
 
 void FlapRun::tend() {
-    if (is_ready(changing_)) take_made();
-    if (is_ready(measuring_)) {
+    if (changing_.valid() && changing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) take_made();
+    if (measuring_.is_ready()) {
         try {
-            verdicts_ = measuring_.get();
+            verdicts_ = measuring_.take();
         } catch (const std::exception& error) {
             verdicts_ = {};
             bench_.tell(error.what(), true);
@@ -61,12 +55,12 @@ void FlapRun::tend() {
         of_ = {};
         return;
     }
-    if (of_ == run_.written() || measuring_.valid()) return;
+    if (of_ == run_.written() || measuring_.is_busy()) return;
     of_ = run_.written();
     now_ = cases::state_of(*run_.plan()).reconstruction;
     verdicts_ = {};
     if (now_)
-        measuring_ = std::async(std::launch::async, [plan = *run_.plan(), folder = run_.file().parent_path()] {
+        measuring_.begin(study::Lane::studies, [plan = *run_.plan(), folder = run_.file().parent_path()] {
             return verdicts_of(plan, folder);
         });
 }

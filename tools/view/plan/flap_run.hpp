@@ -4,6 +4,7 @@
 #pragma once
 
 #include "assets/reconstruct/reconstruction.hpp"
+#include "tools/study/beside.hpp"
 #include "tools/view/plan/case_run.hpp"
 
 #include <filesystem>
@@ -31,7 +32,7 @@ public:
         std::vector<std::string> lines, warnings;
     };
     const Verdicts& verdicts() const { return verdicts_; }
-    bool is_measuring() const { return measuring_.valid(); }
+    bool is_measuring() const { return measuring_.is_busy(); }
     /// A change is being made; another one is not begun meanwhile. It is made again when the plan had further steps by
     /// then, so that the run does not go on without them.
     bool is_changing() const { return changing_.valid(); }
@@ -52,8 +53,8 @@ private:
     CaseRun& run_;
     std::shared_ptr<const reconstruct::Reconstruction> now_;
     std::filesystem::file_time_type of_{};
-    std::future<Verdicts> measuring_;
-    std::future<std::filesystem::path> changing_;
+    study::Beside<Verdicts> measuring_;
+    std::future<std::filesystem::path> changing_;  ///< writes a file: its end is waited for
     std::filesystem::path changed_;
     WholeChange change_;  ///< being made
     std::filesystem::file_time_type made_of_{};
