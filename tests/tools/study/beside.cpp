@@ -2,6 +2,7 @@
 #include "tools/study/beside.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/tools/held_lane.hpp"
 
 #include <sys/resource.h>
 
@@ -13,34 +14,6 @@
 #include <vector>
 
 using namespace tactus::study;
-
-namespace {
-
-/// Keeps a lane busy until its end.
-class Held {
-public:
-    explicit Held(Lane lane) {
-        job_.begin(lane, [begun = begun_, goes_on = goes_on_] {
-            *begun = true;
-            begun->notify_all();
-            goes_on->wait(false);
-            return true;
-        });
-        begun_->wait(false);
-    }
-    ~Held() {
-        *goes_on_ = true;
-        goes_on_->notify_all();
-        job_.take();
-    }
-
-private:
-    std::shared_ptr<std::atomic<bool>> begun_ = std::make_shared<std::atomic<bool>>(false),
-                                       goes_on_ = std::make_shared<std::atomic<bool>>(false);
-    Beside<bool> job_;
-};
-
-}  // namespace
 
 TEST_CASE("what is computed beside the pictures is let go at once and told to stop") {
     const auto begun = std::make_shared<std::atomic<bool>>(false),
@@ -68,7 +41,7 @@ TEST_CASE("what waits to be computed and is wanted no longer is not computed") {
     const auto count = std::make_shared<std::atomic<int>>(0);
     Beside<int> kept;
     {
-        const Held held(Lane::studies);
+        const tactus::test::HeldLane held(Lane::studies);
         Beside<int> dropped, replaced;
         dropped.begin(Lane::studies, [count] { return ++*count; });
         replaced.begin(Lane::studies, [count] { return ++*count; });
@@ -85,7 +58,7 @@ TEST_CASE("what waits to be computed and is wanted no longer is not computed") {
 }
 
 TEST_CASE("a lane does one thing after another at low priority and the other lane goes on") {
-    const Held studies(Lane::studies);
+    const tactus::test::HeldLane studies(Lane::studies);
     std::atomic<int> at_once{0}, most{0};
     std::vector<Beside<int>> all(8);
     for (auto& one : all)

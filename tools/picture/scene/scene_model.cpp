@@ -64,9 +64,7 @@ SceneModel::~SceneModel() {
     }
     for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
-    for (const auto& [file, vessels] : vessels_)
-        for (const PlanVessel& vessel : vessels.all)
-            for (const MeshOfVessel& part : vessel.parts) renderer_.meshes().remove(part.mesh);
+    for (const auto& [file, vessels] : vessels_) remove(vessels);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     renderer_.meshes().remove(notes_mesh_);
@@ -115,6 +113,7 @@ void SceneModel::follow(SceneOutline outline) {
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
     forget_vessels();
+    plan_written_.reset();  // which vessels are ropes may have changed
     if (std::ranges::all_of(outline_.scenes, [](const auto& scene) { return scene.plan.empty(); }))
         use_hardware(nullptr);
     take_names();
@@ -180,12 +179,17 @@ display::Picture& SceneModel::update() {
     remeshed_ = 0;
     constexpr std::chrono::milliseconds most_work{10};
     until_ = std::chrono::steady_clock::now() + most_work;
-    if (making_.is_ready()) take_body(making_.take());
+    if (making_.is_ready()) try {
+            take_body(making_.take());
+        } catch (const Error& error) {
+            do_not_make(made_body_, error.message());
+        }
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
     is_making_ = making_.is_busy();
-    shows_grey_ = false;
+    shows_grey_ = has_made_scan_ = is_making_scan_ = false;
+    labels_.clear();
     show_bones();
     show_still_bones();
     show_bodies();
@@ -215,16 +219,17 @@ display::Picture& SceneModel::update() {
 }
 
 void SceneModel::show_part(const std::string& name, bool wanted) {
-    if (wanted) hidden_.erase(name);
-    else hidden_.insert(name);
+    if (wanted) look_.hidden.erase(name);
+    else look_.hidden.insert(name);
 }
 
 void SceneModel::choose_part(const std::string& name, bool adds) {
-    const bool was_only = chosen_.size() == 1 && chosen_.front() == name;
-    const auto known = std::ranges::find(chosen_, name);
-    if (adds && known != chosen_.end()) return static_cast<void>(chosen_.erase(known));
-    if (!adds) chosen_.clear();
-    if (!name.empty() && !was_only) chosen_.push_back(name);
+    std::vector<std::string>& chosen = look_.chosen;
+    const bool was_only = chosen.size() == 1 && chosen.front() == name;
+    const auto known = std::ranges::find(chosen, name);
+    if (adds && known != chosen.end()) return static_cast<void>(chosen.erase(known));
+    if (!adds) chosen.clear();
+    if (!name.empty() && !was_only) chosen.push_back(name);
 }
 
 std::string SceneModel::part_of(std::size_t index) const {
@@ -234,7 +239,7 @@ std::string SceneModel::part_of(std::size_t index) const {
 }
 
 bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
-    parts_.push_back({name, colour, !hidden_.contains(name)});
+    parts_.push_back({name, colour, !look_.hidden.contains(name)});
     return parts_.back().is_shown;
 }
 
@@ -248,7 +253,7 @@ void SceneModel::show_bones() {
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
             renderer_.scans().remove(bone.scan);
-            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false};
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false, {}, {}};
         }
         const std::vector<std::uint32_t> changed = seen->changed_since(bone.update);
         bone.left.insert(changed.begin(), changed.end());
@@ -266,8 +271,7 @@ void SceneModel::show_bones() {
         if (!is_part_shown(node_of(port), still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
-        if (has_density_ && bone.scan < 0)
-            bone.scan = renderer_.scans().make(density_of(seen->snapshot()), section_grey);
+        find_scan(bone, *seen);
         show_scan(bone.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
@@ -318,8 +322,7 @@ void SceneModel::show_still_bones() {
         part_of_mesh_.emplace_back(picture_.meshes.size(), name);
         show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
         if (has_density_ && known->second.scan < 0)
-            if (const auto grids = densities_of(path); grids.size() == 1)
-                known->second.scan = renderer_.scans().make(grids[0], section_grey);
+            if (const auto images = densities_of(path); images.size() == 1) make_scan(known->second.scan, images[0]);
         show_scan(known->second.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }

@@ -40,11 +40,12 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
 
 }  // namespace
 
-void FlapRun::tend() {
+void FlapRun::tend(bool measures) {
     if (changing_.valid() && changing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) take_made();
     if (measuring_.is_ready()) {
         try {
-            verdicts_ = measuring_.take();
+            Verdicts verdicts = measuring_.take();
+            if (measured_ == of_) verdicts_ = std::move(verdicts);
         } catch (const std::exception& error) {
             verdicts_ = {};
             bench_.tell(error.what(), true);
@@ -52,13 +53,16 @@ void FlapRun::tend() {
     }
     if (!run_.plan()) {
         now_.reset();
-        of_ = {};
+        of_ = measured_ = {};
         return;
     }
-    if (of_ == run_.written() || measuring_.is_busy()) return;
-    of_ = run_.written();
-    now_ = cases::state_of(*run_.plan()).reconstruction;
-    verdicts_ = {};
+    if (of_ != run_.written()) {
+        of_ = run_.written();
+        now_ = cases::state_of(*run_.plan()).reconstruction;
+        verdicts_ = {};
+    }
+    if (!measures || measured_ == of_ || measuring_.is_busy()) return;
+    measured_ = of_;
     if (now_)
         measuring_.begin(study::Lane::studies, [plan = *run_.plan(), folder = run_.file().parent_path()] {
             return verdicts_of(plan, folder);

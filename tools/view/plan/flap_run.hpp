@@ -22,8 +22,8 @@ public:
 
     FlapRun(Workbench& bench, CaseRun& run) : bench_(bench), run_(run) {}
 
-    /// Once per picture while it is seen.
-    void tend();
+    /// Once per picture. `measures`: somebody sees the verdicts, which take long.
+    void tend(bool measures = true);
     /// Of the plan as it is now; null: it has none.
     const std::shared_ptr<const reconstruct::Reconstruction>& reconstruction() const { return now_; }
 
@@ -52,7 +52,7 @@ private:
     Workbench& bench_;
     CaseRun& run_;
     std::shared_ptr<const reconstruct::Reconstruction> now_;
-    std::filesystem::file_time_type of_{};
+    std::filesystem::file_time_type of_{}, measured_{};
     study::Beside<Verdicts> measuring_;
     std::future<std::filesystem::path> changing_;  ///< writes a file: its end is waited for
     std::filesystem::path changed_;

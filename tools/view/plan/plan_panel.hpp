@@ -28,6 +28,7 @@ public:
         case_.tend(observer);
         map_.tend();
         alternatives_.tend();
+        flap_.tend();
     }
     void draw(const Fonts& fonts);
     /// What its buttons do, by name.
