@@ -6,6 +6,7 @@
 #include "dsp/display/camera.hpp"
 #include "dsp/volume/grid.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,18 @@ struct GreyScale {
     double black = 0.0, white = 1.0;
 };
 
+/// What a scan is kept as.
+struct GreyImage {
+    std::array<int, 3> size{};
+    std::vector<std::uint8_t> grey;
+    Mat4 to_texture{1.0};  ///< from the frame of the grid to the texture's coordinates
+    bool empty() const { return grey.empty(); }
+};
+
+/// The grey values of a grid of at least 2 samples per axis in 8 bits, and of a very large one every n-th sample; empty
+/// for an empty grid. Needs no context, and can be made on another thread.
+GreyImage grey_image(const volume::Grid& grid, const GreyScale& scale);
+
 /// All scans of one OpenGL context, which must be current in every call.
 class ScanPool {
 public:
@@ -27,9 +40,8 @@ public:
     ScanPool(const ScanPool&) = delete;
     ScanPool& operator=(const ScanPool&) = delete;
 
-    /// Keeps the grey values of a grid of at least 2 samples per axis in 8 bits, and of a very large one every n-th
-    /// sample. -1 for an empty grid.
-    Scan make(const volume::Grid& grid, const GreyScale& scale);
+    /// -1 for an empty one.
+    Scan make(const GreyImage& image);
     void remove(Scan scan);
     /// From the frame of the grid to the texture's coordinates.
     const Mat4& to_texture(Scan scan) const { return scans_[static_cast<std::size_t>(scan)].to_texture; }

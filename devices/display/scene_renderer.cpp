@@ -327,7 +327,8 @@ std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnVie
     glEnable(GL_CLIP_DISTANCE0);
     for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
         const DrawnMesh& drawn = picture.meshes[i];
-        if (drawn.opacity < 1.0 || !is_valid(drawn.pose)) continue;
+        // Arrows, axes and the boxes of chosen parts are signs, not surfaces.
+        if (drawn.opacity < 1.0 || drawn.shines_through || !is_valid(drawn.pose)) continue;
         const Mat4 to_eye = view.projection.to_eye * matrix_of(drawn.pose);
         set(program.uniform("to_eye"), to_eye);
         set_clip(program, picture, drawn);

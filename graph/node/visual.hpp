@@ -40,7 +40,7 @@ enum class VisualKind : std::uint8_t {
     plane,  ///< through `at` with the normal `direction` (length 1)
     path,  ///< through `points`; `is_closed`
     box,  ///< around `at`, of `size`
-    rope,  ///< the rope output `value`
+    rope,  ///< the rope output `value`; `asset`: the course from which it was made
     spring,  ///< between `hand` and `pose`
     mark,  ///< `radius` about `pose`, with the number `value` beside it in the legend, while it is above `length`
     task,  ///< the planned cut of the task `asset`, its depth stop and what it spares

@@ -71,7 +71,7 @@ struct Vessel {
     Param twist_limit{discrete, "90 deg", "0 deg", "720 deg",
                       "beyond it: 3 of 8 flaps survive 180 deg (rat, Guven 2012)"};
 
-    std::vector<Visual> visuals() const { return {{.kind = VisualKind::rope, .value = "rope"}}; }
+    std::vector<Visual> visuals() const { return {{.kind = VisualKind::rope, .value = "rope", .asset = "course"}}; }
 
     void prepare(const Setup& setup) {
         name_ = setup.name;

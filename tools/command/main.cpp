@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/catalogue.hpp"
+#include "tools/study/beside.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,5 +13,7 @@ int main(int argc, char** argv) {
             ::close(handle);
             break;
         }
-    return tactus::command::command_line(tactus::command::tactus_program(), argc, argv);
+    const int code = tactus::command::command_line(tactus::command::tactus_program(), argc, argv);
+    tactus::study::end_beside();
+    return code;
 }

@@ -312,6 +312,8 @@ void Workbench::run_with(const std::string& asset, const fs::path& file) {
         choice_.overrides.assets = before;
         return tell(*problem, true);
     }
+    if (is_recording())
+        tell(fmt::format("the recording into {} ends here: the run begins again", last_take_.string()), true);
     run_.reset();
     adopt();
     run();

@@ -9,6 +9,7 @@
 #include "tests/support/can_render.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/tools/held_lane.hpp"
 #include "tools/picture/scene/body_surface.hpp"
 
 #include <glm/geometric.hpp>
@@ -16,10 +17,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 using namespace tactus;
@@ -331,12 +334,13 @@ TEST_CASE("a large mesh that is new delays no picture of a window, and comes to 
     CHECK(window.triangles() == triangles);
 }
 
-TEST_CASE("plates with their screws and implants are drawn where the plan has them, and picked by name") {
+TEST_CASE("plates with their screws implants and sites are drawn where the plan has them, and picked by name") {
     if (!can_render()) return;
     auto all = std::make_shared<reconstruct::Reconstruction>();
     all->flap.plates = {{"p1", 7e-3, 2.5e-3, {{-0.02, 0, 0}, {0.02, 0, 0}}, {{0, -1, 0}, {0, -1, 0}}, {}}};
     all->flap.plates[0].screws = {{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, 12e-3, 2e-3}};
     all->flap.implants = {{"i1", {0.0, 0.0, 0.05}, {0.0, 0.0, -1.0}, 4e-3, 14e-3}};
+    all->flap.sites = {{"facial artery", reconstruct::VesselKind::artery, {0.015, 0.0, 0.03}}};
     observe::Observer observer;
     display::PictureMaker maker(128, 128);
     SceneModel model({}, observer, maker.renderer());
@@ -344,9 +348,13 @@ TEST_CASE("plates with their screws and implants are drawn where the plan has th
     CHECK(model.parts().empty());
     model.use_hardware(all);
     display::Picture& picture = model.update();
-    REQUIRE(model.parts().size() == 2);
+    REQUIRE(model.parts().size() == 3);
     CHECK(model.parts()[0].name == "plate p1");
     CHECK(model.parts()[1].name == "implant i1");
+    CHECK(model.parts()[2].name == "site facial artery");
+    REQUIRE(model.labels().size() == 1);
+    CHECK(model.labels()[0].text == "site facial artery");
+    CHECK(glm::length(model.labels()[0].at - Vec3(0.015, 0.0, 0.03)) < 0.2e-3);
     // The plate is 40 mm long, the screw ends 12 mm behind its contour, the implant reaches from 36 to 50 mm.
     CHECK(model.bounds().low.x == Approx(-0.02).margin(2e-4));
     CHECK(model.bounds().high.x == Approx(0.02).margin(2e-4));
@@ -365,6 +373,7 @@ TEST_CASE("plates with their screws and implants are drawn where the plan has th
     };
     CHECK(picked_at({0.015, 0.0, 0.0}) == "plate p1");
     CHECK(picked_at({0.0, 0.0, 0.043}) == "implant i1");
+    CHECK(picked_at({0.015, 0.0, 0.03}) == "site facial artery");
     CHECK(picked_at({0.015, 0.0, 0.043}).empty());
     model.show_part("plate p1", false);
     CHECK(picked_at({0.015, 0.0, 0.0}).empty());
@@ -448,6 +457,264 @@ TEST_CASE("a section shows in grey the density of the place that is cut, whateve
                 picture.clip.reset();
                 picture.is_quick = false;
             }
+}
+
+TEST_CASE("the density of bones comes into the sections of a window beside its pictures") {
+    if (!can_render()) return;
+    volume::Grid density = ball(0.01);
+    std::ranges::fill(density.values, 1800.0f);
+    volume::BoneEditor editor(ball(0.01), density, {.band = 0.002});
+    observe::Observer observer;
+    const volume::BoneSnapshot initial = editor.current();
+    const auto a = observer.open({"a.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    const auto b = observer.open({"b.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.bones = {{"a.bone"}, {"b.bone"}};
+    SceneModel model(outline, observer, maker.renderer());
+    model.spread_work();
+    observer.advance();
+    const auto wait = [&](const auto& is_there) {
+        for (int n = 0; n < 5000 && !is_there(); ++n) {
+            model.update();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return is_there();
+    };
+    REQUIRE(wait([&] { return model.is_fitted(); }));
+    const auto scans = [&] {
+        return std::ranges::count_if(model.update().meshes, [](const auto& drawn) { return drawn.scan >= 0; });
+    };
+    model.show_density(true);
+    {
+        const test::HeldLane held(study::Lane::scene);
+        REQUIRE(wait([&] { return study::jobs_waiting(study::Lane::scene) == 2; }));
+        CHECK(scans() == 0);
+        CHECK(model.is_reading_density());
+    }
+    REQUIRE(wait([&] { return !model.is_reading_density(); }));
+    CHECK(scans() == 2);
+}
+
+TEST_CASE("bones of files are made one after another and those of a scene that is gone are not made") {
+    if (!can_render()) return;
+    observe::Observer observer;
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.still_bones = {{"a", "no-a.vdb", ""}, {"b", "no-b.vdb", ""}};
+    const test::HeldLane held(study::Lane::scene);
+    {
+        SceneModel model(outline, observer, maker.renderer());
+        model.spread_work();
+        model.update();
+        CHECK(study::jobs_waiting(study::Lane::scene) == 2);
+        CHECK(model.legend().warnings.empty());
+    }
+}
+
+TEST_CASE("two bodies of one shape are both drawn and listed and a body of two scenes once") {
+    if (!can_render()) return;
+    Ball both;
+    both.scene.count = 2;
+    both.scene.objects[1] = both.scene.objects[0];
+    both.scene.objects[1].pose.position.x = 0.03;
+    both.scene.content_hash = coupling::hash_of(both.scene);
+    const Ball one;
+    observe::Observer observer;
+    const auto first =
+        observer.open({"all.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(both.scene));
+    const auto second =
+        observer.open({"one.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(one.scene));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"all.scene", {"a.body", "b.body"}, ""}, {"one.scene", {"a.body"}, ""}};
+    SceneModel model(outline, observer, maker.renderer());
+    observer.advance();
+    model.update();
+    REQUIRE(model.parts().size() == 2);
+    CHECK(model.parts()[0].name == "a");
+    CHECK(model.parts()[1].name == "b");
+    CHECK(model.bounds().high.x == Approx(0.038).margin(2e-3));
+    // They share a mesh, which is not made anew in every picture.
+    const std::uint64_t changes = maker.renderer().meshes().changes();
+    for (int n = 0; n < 3; ++n) model.update();
+    CHECK(maker.renderer().meshes().changes() == changes);
+    CHECK(model.parts()[0].colour != model.parts()[1].colour);
+}
+
+TEST_CASE("a body that cannot be drawn is told and the others are drawn") {
+    if (!can_render()) return;
+    for (const bool is_spread : {false, true}) {
+        Ball good, bad;
+        bad.field.grid.values[100] = std::numeric_limits<float>::quiet_NaN();
+        coupling::Scene scene = good.scene;
+        scene.count = 2;
+        scene.objects[1] = bad.scene.objects[0];
+        scene.objects[1].body.content_hash = 8;
+        std::swap(scene.objects[0], scene.objects[1]);
+        scene.content_hash = coupling::hash_of(scene);
+        observe::Observer observer;
+        const auto port = observer.open({"all.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(scene));
+        display::PictureMaker maker(64, 64);
+        SceneOutline outline;
+        outline.scenes = {{"all.scene", {"bad.body", "good.body"}, ""}};
+        SceneModel model(outline, observer, maker.renderer());
+        if (is_spread) model.spread_work();
+        observer.advance();
+        for (int n = 0; n < 5000 && (model.parts().empty() || !model.is_fitted()); ++n) {
+            REQUIRE_NOTHROW(model.update());
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        REQUIRE(model.parts().size() == 1);
+        CHECK(model.parts()[0].name == "good");
+        CHECK(model.is_fitted());
+        REQUIRE(model.legend().warnings.size() == 1);
+        CHECK(model.legend().warnings[0].find("bad is not drawn: ") == 0);
+    }
+}
+
+TEST_CASE("a pick goes through the box of a chosen part") {
+    if (!can_render()) return;
+    const Ball body;
+    observe::Observer observer;
+    const auto port =
+        observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(body.scene));
+    constexpr int size = 256;
+    display::PictureMaker maker(size, size);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {"a.body"}, ""}};
+    SceneModel model(outline, observer, maker.renderer());
+    observer.advance();
+    model.choose_part("a");
+    model.update();
+    display::OrbitCamera camera;
+    camera.look_from(display::NamedView::front);
+    camera.fit(model.bounds(), 1.0);
+    int on_ball = 0, beside = 0;
+    display::Picture& picture = model.update();
+    const auto views = display::views_of(camera, picture.bounds, size, size, display::StereoMode::mono);
+    for (int y = 0; y < size; y += 4)
+        for (int x = 0; x < size; x += 4)
+            if (const auto picked = maker.renderer().pick(picture, views[0], x, y))
+                ++(glm::length(picked->position) < 0.009 ? on_ball : beside);
+    CHECK(on_ball > 100);
+    CHECK(beside == 0);
+}
+
+TEST_CASE("what was hidden and chosen and coloured in a scene stays so in the next run of its patch") {
+    if (!can_render()) return;
+    const Ball body;
+    observe::Observer observer;
+    const auto port =
+        observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(body.scene));
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {"a.body"}, ""}};
+    observer.advance();
+    SceneModel::Look look;
+    {
+        SceneModel before(outline, observer, maker.renderer());
+        before.show_part("a", false);
+        before.choose_part("a");
+        before.colour_part("a", {0.1, 0.2, 0.3});
+        look = before.look();
+    }
+    SceneModel model(outline, observer, maker.renderer());
+    model.use_look(look);
+    model.update();
+    REQUIRE(model.parts().size() == 1);
+    CHECK_FALSE(model.parts()[0].is_shown);
+    CHECK(model.parts()[0].colour == Vec3(0.1, 0.2, 0.3));
+    CHECK(model.chosen_parts() == std::vector<std::string>{"a"});
+}
+
+TEST_CASE("vessels and sites of a scene are those of its plan after each step and each undo") {
+    if (!can_render()) return;
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path / "case.plan.json";
+    const auto plan_of = [](const std::string& vessel) {
+        cases::CasePlan plan;
+        cases::PlanStep step;
+        step.kind = cases::StepKind::vessels;
+        step.vessels =
+            std::make_shared<const std::vector<reconstruct::FlapVessel>>(std::vector<reconstruct::FlapVessel>{
+                {vessel, reconstruct::VesselKind::artery, 2e-3, {Vec3(0.0), Vec3(0.1)}}});
+        cases::add_step(plan, step);
+        return plan;
+    };
+    cases::save_case_plan(plan_of("carotid"), file);
+    observe::Observer observer;
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {}, file.string()}};
+    SceneModel model(outline, observer, maker.renderer());
+    const auto names = [&] {
+        model.update();
+        std::vector<std::string> all;
+        for (const SceneModel::Part& part : model.parts()) all.push_back(part.name);
+        return all;
+    };
+    REQUIRE(names() == std::vector<std::string>{"carotid"});
+    using namespace std::chrono_literals;
+    const auto begin = std::filesystem::last_write_time(file);
+    const std::uint64_t changes = maker.renderer().meshes().changes();
+    model.use_plan(file, plan_of("carotid"), begin);
+    CHECK(names() == std::vector<std::string>{"carotid"});
+    CHECK(maker.renderer().meshes().changes() == changes);  // the same again
+    model.use_plan(file, plan_of("jugular"), begin + 1s);
+    CHECK(names() == std::vector<std::string>{"jugular"});
+    model.use_plan(file, {}, begin + 2s);
+    CHECK(names().empty());
+}
+
+TEST_CASE("a rope of the patch stands for the vessel of its course and the other vessels of a flap are drawn") {
+    if (!can_render()) return;
+    const std::filesystem::path folder = tactus::test::library_folder() / "cases/fibula-flap";
+    observe::Observer observer;
+    display::PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.scenes = {{"case.scene", {}, (folder / "case.plan.json").string()}};
+    const auto vessels = [&](std::vector<std::string> courses) {
+        outline.ropes.clear();
+        for (const std::string& course : courses)
+            outline.ropes.push_back({"rope", "rope.rope", course.empty() ? "" : (folder / course).string()});
+        SceneModel model(outline, observer, maker.renderer());
+        model.show_density(false, true);
+        model.update();
+        std::vector<std::string> names;
+        for (const SceneModel::Part& part : model.parts())
+            if (part.name == "artery" || part.name == "vein") names.push_back(part.name);
+        return names;
+    };
+    CHECK(vessels({}) == std::vector<std::string>{"artery", "vein"});
+    CHECK(vessels({""}) == std::vector<std::string>{"artery", "vein"});
+    CHECK(vessels({"artery.csv"}) == std::vector<std::string>{"vein"});
+    CHECK(vessels({"artery.csv", "vein.csv"}).empty());
+}
+
+TEST_CASE("paint is on the side that was painted and not on the back of a thin wall") {
+    // A wall of 0.6 mm; its upper side is painted.
+    volume::Grid wall{{33, 33, 17}, Vec3(-0.004, -0.004, -0.002), Vec3(0.00025), {}};
+    for (int k = 0; k < 17; ++k)
+        for (int j = 0; j < 33; ++j)
+            for (int i = 0; i < 33; ++i) {
+                const Vec3 p = glm::abs(wall.position(i, j, k)) - Vec3(0.003, 0.003, 0.0003);
+                wall.values.push_back(static_cast<float>(std::max({p.x, p.y, p.z})));
+            }
+    observe::SeenBody body;
+    body.distance = wall;
+    for (int j = -4; j <= 4; ++j)
+        for (int i = -4; i <= 4; ++i) {
+            body.points.emplace_back(0.0005 * i, 0.0005 * j, 0.0003);
+            body.labels.push_back(contact::surface_label::fracture);
+        }
+    const BodySurface made = make_body_surface(body, contact::make_voxmap(wall), Vec3(1.0), Vec3(1.0, 0.0, 0.0));
+    CHECK(made.has_paint);
+    int above = 0, below = 0;
+    for (const geometry::SurfaceVertex& vertex : made.patch.vertices)
+        if (vertex.colour[1] < 128) ++(vertex.position[2] > 0.0f ? above : below);
+    CHECK(above > 100);
+    CHECK(below == 0);
 }
 
 TEST_CASE("a view is fitted to a body that comes after the hand, too") {

@@ -167,3 +167,22 @@ TEST_CASE("sections know the density inside bodies, because their nodes name the
     CHECK(fragments.still_bones.empty());
     CHECK(plan.still_bones.empty());
 }
+
+TEST_CASE("a view suits an outline of other sizes and not one of other things") {
+    const SceneOutline saw = outline_in_library("saw-training");
+    SceneOutline longer = saw;
+    longer.blades[0].shape.length *= 2.0;
+    CHECK(longer.shows_the_same(saw));
+    SceneOutline more = saw;
+    more.still_bones.push_back({"jaw", "jaw.vdb", ""});
+    CHECK_FALSE(more.shows_the_same(saw));
+    CHECK_FALSE(saw.shows_the_same(more));
+    CHECK_FALSE(SceneOutline{}.shows_the_same(saw));
+}
+
+TEST_CASE("a rope names the course of the vessel that it stands for") {
+    const SceneOutline outline = outline_in_library("planning-reconstruction");
+    REQUIRE(outline.ropes.size() == 2);
+    CHECK(outline.ropes[0].course.ends_with("artery.csv"));
+    CHECK(outline.ropes[1].course.ends_with("vein.csv"));
+}

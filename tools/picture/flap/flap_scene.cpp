@@ -17,6 +17,8 @@ namespace tactus::picture {
 
 namespace {
 
+constexpr double site_radius = 2e-3;  // m
+
 geometry::TriangleSurface surface_of(const reconstruct::Block& block) {
     geometry::TriangleSurface box;
     // Each face has corners of its own, for flat shading.
@@ -109,9 +111,18 @@ void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<Picture
         labels.push_back({implant.name, implant.head, implant_colour});
     for (const reconstruct::RecipientSite& site : flap.sites) {
         const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
-        meshes.push_back(ball_mesh(site.at, 2e-3, colour));
+        meshes.push_back(ball_mesh(site.at, site_radius, colour));
         labels.push_back({site.name, site.at, colour});
     }
+}
+
+std::vector<Hardware> sites_of(const reconstruct::Flap& flap) {
+    std::vector<Hardware> all;
+    for (const reconstruct::RecipientSite& site : flap.sites) {
+        const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+        all.push_back({"site " + site.name, colour, {ball_mesh(site.at, site_radius, colour)}});
+    }
+    return all;
 }
 
 void add_vessels(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,

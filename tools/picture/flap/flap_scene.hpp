@@ -25,13 +25,15 @@ display::PictureMesh picture_mesh(const geometry::TriangleSurface& surface, cons
 display::PictureMesh tube_mesh(const std::vector<Vec3>& line, double radius, const Vec3& colour);
 display::PictureMesh ball_mesh(const Vec3& centre, double radius, const Vec3& colour);
 
-/// A plate with its screws, or an implant.
+/// A plate with its screws, an implant, or a site.
 struct Hardware {
     std::string name;  ///< "plate p1", "implant i1"
     Vec3 colour{0.0};
     std::vector<display::PictureMesh> meshes;
 };
 std::vector<Hardware> hardware_of(const reconstruct::Flap& flap);
+/// The vessels to which those of the flap are joined, as balls: "site" and the name.
+std::vector<Hardware> sites_of(const reconstruct::Flap& flap);
 
 /// Plates, screws, implants and sites, with labels for implants and sites.
 void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,

@@ -147,7 +147,8 @@ display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Paint
         }
     }
     for (std::size_t n = 0; n < normals.size(); ++n) {
-        const Vec3& colour = paint.covers(from.surface.vertices[n]) ? scene_colours::paint_colour : from.colour;
+        const Vec3& colour =
+            paint.covers(from.surface.vertices[n], normals[n]) ? scene_colours::paint_colour : from.colour;
         for (int a = 0; a < 3; ++a) {
             mesh.positions.push_back(static_cast<float>(from.surface.vertices[n][a] - origin[a]));
             mesh.normals.push_back(static_cast<float>(normals[n][a] * 1e6));
@@ -177,11 +178,14 @@ display::View closest(display::View view, const std::vector<display::PictureMesh
 }  // namespace
 
 void write_picture(const study::Inspection& found, const std::filesystem::path& path) {
-    PaintedPoints paint;
-    for (const Vec3& point : found.painted) paint.add(point);
+    // Of each surface its own: a neighbour that touches it is not painted.
+    std::vector<PaintedPoints> paint(found.surfaces.size());
+    for (std::size_t n = 0; n < std::min(paint.size(), found.painted.size()); ++n)
+        for (const auto& [at, normal] : found.painted[n]) paint[n].add(at, normal);
+    const bool is_painted = !std::ranges::all_of(paint, &PaintedPoints::empty);
     Canvas canvas;
     canvas.image.height = 2 * panel + gap;
-    canvas.image.width = canvas.image.height + (paint.empty() ? 0 : panel + gap);
+    canvas.image.width = canvas.image.height + (is_painted ? panel + gap : 0);
     canvas.image.rgb.assign(
         static_cast<std::size_t>(canvas.image.width) * static_cast<std::size_t>(canvas.image.height) * 3, 12);
     Vec3 low(1e30), high(-1e30);
@@ -189,8 +193,9 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
         for (const Vec3& v : each.surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     const Vec3 middle = low.x <= high.x ? 0.5 * (low + high) : found.grey.origin;
     std::vector<display::PictureMesh> meshes;
-    for (const auto& each : found.surfaces)
-        if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, paint, middle));
+    for (std::size_t n = 0; n < found.surfaces.size(); ++n)
+        if (!found.surfaces[n].surface.triangles.empty())
+            meshes.push_back(picture_mesh(found.surfaces[n], paint[n], middle));
     const auto view = [&](const std::string& name, const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
         const display::View from = closest(display::fit_view(low - middle, high - middle, direction, up), meshes);
@@ -221,7 +226,7 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
         }
     }
     view("front left", Vec3(-0.55, 0.8, -0.25), Vec3(0, 0, 1), panel + gap, panel + gap);
-    if (!paint.empty()) {
+    if (is_painted) {
         // Paint may lie on any side.
         view("back right, from below", Vec3(0.55, -0.8, 0.25), Vec3(0, 0, 1), 2 * (panel + gap), panel + gap);
         view("front right, from below", Vec3(0.8, 0.55, 0.5), Vec3(0, 0, 1), 2 * (panel + gap), 0);

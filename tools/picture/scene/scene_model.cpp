@@ -25,7 +25,7 @@ geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
     return {layout.origin, layout.spacing, volume::brick_cells};
 }
 
-StillSurface still_surface(const std::string& path, const std::string& name) {
+StillSurface still_surface(const std::string& path, const std::string& name, const std::stop_token& stop) {
     StillSurface made;
     try {
         const bone::Bone loaded = bone::load_bone(path);
@@ -34,7 +34,7 @@ StillSurface still_surface(const std::string& path, const std::string& name) {
         made.grid = grid_of(editor.layout());
         made.bricks.resize(static_cast<std::size_t>(editor.layout().brick_count()));
         geometry::BrickSurface mesher;
-        for (std::size_t brick = 0; brick < made.bricks.size(); ++brick)
+        for (std::size_t brick = 0; brick < made.bricks.size() && !stop.stop_requested(); ++brick)
             mesher.make(editor.current(), static_cast<std::uint32_t>(brick), made.bricks[brick]);
     } catch (const Error& error) {
         made.problem = fmt::format("{} is not drawn: {}", name, error.message());
@@ -64,9 +64,7 @@ SceneModel::~SceneModel() {
     }
     for (const auto& [path, task] : tasks_) remove(task);
     for (const auto& [port, rope] : ropes_) renderer_.meshes().remove(rope.mesh);
-    for (const auto& [file, vessels] : vessels_)
-        for (const PlanVessel& vessel : vessels.all)
-            for (const MeshOfVessel& part : vessel.parts) renderer_.meshes().remove(part.mesh);
+    for (const auto& [file, vessels] : vessels_) remove(vessels);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     renderer_.meshes().remove(notes_mesh_);
@@ -115,6 +113,7 @@ void SceneModel::follow(SceneOutline outline) {
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
     shapes_.clear();  // the length of a blade may have changed
     forget_vessels();
+    plan_written_.reset();  // which vessels are ropes may have changed
     if (std::ranges::all_of(outline_.scenes, [](const auto& scene) { return scene.plan.empty(); }))
         use_hardware(nullptr);
     take_names();
@@ -180,13 +179,17 @@ display::Picture& SceneModel::update() {
     remeshed_ = 0;
     constexpr std::chrono::milliseconds most_work{10};
     until_ = std::chrono::steady_clock::now() + most_work;
-    if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        take_body(making_.get());
+    if (making_.is_ready()) try {
+            take_body(making_.take());
+        } catch (const Error& error) {
+            do_not_make(made_body_, error.message());
+        }
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     is_waiting_ = false;
-    is_making_ = making_.valid();
-    shows_grey_ = false;
+    is_making_ = making_.is_busy();
+    shows_grey_ = has_made_scan_ = is_making_scan_ = false;
+    labels_.clear();
     show_bones();
     show_still_bones();
     show_bodies();
@@ -216,16 +219,17 @@ display::Picture& SceneModel::update() {
 }
 
 void SceneModel::show_part(const std::string& name, bool wanted) {
-    if (wanted) hidden_.erase(name);
-    else hidden_.insert(name);
+    if (wanted) look_.hidden.erase(name);
+    else look_.hidden.insert(name);
 }
 
 void SceneModel::choose_part(const std::string& name, bool adds) {
-    const bool was_only = chosen_.size() == 1 && chosen_.front() == name;
-    const auto known = std::ranges::find(chosen_, name);
-    if (adds && known != chosen_.end()) return static_cast<void>(chosen_.erase(known));
-    if (!adds) chosen_.clear();
-    if (!name.empty() && !was_only) chosen_.push_back(name);
+    std::vector<std::string>& chosen = look_.chosen;
+    const bool was_only = chosen.size() == 1 && chosen.front() == name;
+    const auto known = std::ranges::find(chosen, name);
+    if (adds && known != chosen.end()) return static_cast<void>(chosen.erase(known));
+    if (!adds) chosen.clear();
+    if (!name.empty() && !was_only) chosen.push_back(name);
 }
 
 std::string SceneModel::part_of(std::size_t index) const {
@@ -235,7 +239,7 @@ std::string SceneModel::part_of(std::size_t index) const {
 }
 
 bool SceneModel::is_part_shown(const std::string& name, const Vec3& colour) {
-    parts_.push_back({name, colour, !hidden_.contains(name)});
+    parts_.push_back({name, colour, !look_.hidden.contains(name)});
     return parts_.back().is_shown;
 }
 
@@ -249,7 +253,7 @@ void SceneModel::show_bones() {
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
             renderer_.scans().remove(bone.scan);
-            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false};
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}, -1, {}, false, {}, {}};
         }
         const std::vector<std::uint32_t> changed = seen->changed_since(bone.update);
         bone.left.insert(changed.begin(), changed.end());
@@ -267,20 +271,21 @@ void SceneModel::show_bones() {
         if (!is_part_shown(node_of(port), still_colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), node_of(port));
         show(bone.mesh, {}, bone.bounds);
-        if (has_density_ && bone.scan < 0)
-            bone.scan = renderer_.scans().make(density_of(seen->snapshot()), section_grey);
+        find_scan(bone, *seen);
         show_scan(bone.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
 
 void SceneModel::take_still(StillMesh& bone) {
-    if (bone.making.valid()) {
-        if (is_spread_ && bone.making.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-        bone.made = bone.making.get();
-        bone.problem = bone.made.problem;
-        if (bone.problem.empty()) bone.mesh = renderer_.meshes().make(bone.made.grid);
+    if (bone.making.is_busy()) {
+        if (!bone.making.is_ready()) return;
+        bone.made = bone.making.take();
+        bone.is_made = true;
     }
+    if (!bone.is_made) return;
+    bone.problem = bone.made.problem;
+    if (bone.problem.empty() && bone.mesh < 0) bone.mesh = renderer_.meshes().make(bone.made.grid);
     for (; bone.taken < bone.made.bricks.size() && has_time(); ++bone.taken) {
         const geometry::SurfacePatch& patch = bone.made.bricks[bone.taken];
         renderer_.meshes().set_part(bone.mesh, static_cast<std::uint32_t>(bone.taken), patch);
@@ -297,10 +302,14 @@ void SceneModel::show_still_bones() {
         auto known = still_bones_.find(path);
         if (known == still_bones_.end()) {
             known = still_bones_.emplace(path, StillMesh{}).first;
-            known->second.making = std::async(is_spread_ ? std::launch::async : std::launch::deferred,
-                                              [path, name] { return still_surface(path, name); });
+            if (is_spread_)
+                known->second.making.begin(study::Lane::scene, [path, name](const std::stop_token& stop) {
+                    return still_surface(path, name, stop);
+                });
+            else known->second.made = still_surface(path, name, {});
+            known->second.is_made = !is_spread_;
         }
-        take_still(known->second);
+        if (!known->second.is_whole) take_still(known->second);
         if (!known->second.is_whole) {
             is_making_ = true;
             continue;
@@ -313,8 +322,7 @@ void SceneModel::show_still_bones() {
         part_of_mesh_.emplace_back(picture_.meshes.size(), name);
         show(known->second.mesh, pose_of(at).value_or(Pose{}), known->second.bounds);
         if (has_density_ && known->second.scan < 0)
-            if (const auto grids = densities_of(path); grids.size() == 1)
-                known->second.scan = renderer_.scans().make(grids[0], section_grey);
+            if (const auto images = densities_of(path); images.size() == 1) make_scan(known->second.scan, images[0]);
         show_scan(known->second.scan, {});
         if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }

@@ -7,10 +7,11 @@
 #include "engine/observe/observer.hpp"
 #include "tools/picture/scene/made_body.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
+#include "tools/picture/scene/section_grey.hpp"
+#include "tools/study/beside.hpp"
 
 #include <chrono>
 #include <filesystem>
-#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,6 +39,7 @@ struct VesselTubes {
     struct Vessel {
         std::string name;
         Vec3 colour{0.0};
+        bool is_rope = false;  ///< a rope of the patch stands for it
         std::vector<Part> parts;
     };
     std::vector<Vessel> all;
@@ -84,6 +86,15 @@ public:
         int fits = -1;  ///< place of the body that it was fitted to; -1: none
     };
     const std::vector<Part>& parts() const { return parts_; }
+    /// What was chosen for the parts, by their names.
+    struct Look {
+        std::unordered_set<std::string> hidden;
+        std::vector<std::string> chosen;
+        std::map<std::string, Vec3> colours;
+    };
+    const Look& look() const { return look_; }
+    /// That of an earlier model of the same patch.
+    void use_look(Look look) { look_ = std::move(look); }
     /// Hides a part by name, or shows it, from the next picture on.
     void show_part(const std::string& name, bool wanted);
     /// Gives a body a colour of its own, sRGB, from the next picture on.
@@ -94,7 +105,18 @@ public:
     /// Draws the fragments of the plan a second time from the next picture on, see-through and in another colour, where
     /// these poses of their files differ from those of the scene; empty: no longer. `name`: for the legend.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
-    /// The plates with their screws and the implants that are drawn from the next picture on, in the frame of the case;
+    /// The plan of the scene as it is now: from the next picture on its vessels, plates, implants and sites are drawn in
+    /// place of those of the file with which the scene began. `file`: the plan's, now; `written`: when.
+    void use_plan(const std::filesystem::path& file, const cases::CasePlan& plan,
+                  std::filesystem::file_time_type written);
+    /// A name at a place of the scene, m.
+    struct Label {
+        std::string text;
+        Vec3 at{0.0}, colour{0.0};
+    };
+    /// Of the sites in the last picture.
+    const std::vector<Label>& labels() const { return labels_; }
+    /// The plates with their screws, the implants and the sites that are drawn from the next picture on, in the frame of the case;
     /// at first those of the plan's file. Null: none.
     void use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of);
     /// Whether sections show the density of what is cut, from the next picture on. Files are read beside the pictures, and
@@ -116,7 +138,7 @@ public:
     /// By place; those that are hidden are missing.
     const std::map<std::size_t, PlanPiece>& plan_pieces() const { return pieces_; }
     /// Parts that are marked, in the order in which they were chosen.
-    const std::vector<std::string>& chosen_parts() const { return chosen_; }
+    const std::vector<std::string>& chosen_parts() const { return look_.chosen; }
     /// Marks a part, or no longer if it was the only one; `adds`: the others stay as they are. Empty: none.
     void choose_part(const std::string& name, bool adds = false);
     /// The part that mesh `index` of the last picture belongs to; empty: none.
@@ -145,6 +167,8 @@ private:
         int scan = -1;
         std::set<std::uint32_t> left;  ///< bricks to be meshed
         bool is_whole = false;  ///< every brick was meshed once
+        DensityCopy density = {};
+        study::Beside<display::GreyImage> greying = {};
     };
     struct BodyMesh {
         Vec3 colour{0.0};
@@ -195,15 +219,19 @@ private:
     struct PlanVessel {
         std::string name;
         Vec3 colour{0.0};
+        bool is_rope = false;
         std::vector<MeshOfVessel> parts;
     };
     struct PlanVessels {
         std::vector<PlanVessel> all;
         std::string problem;  ///< why some are missing
-        std::future<VesselTubes> making;
+        std::string of;  ///< what they were made of
+        study::Beside<VesselTubes> making;
     };
     void put_vessels(PlanVessels& to, const VesselTubes& tubes);
-    void take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan);
+    /// `name`: of the plan in the outline; `file`: where it is now.
+    void take_vessels(const std::string& name, const std::filesystem::path& file, const cases::CasePlan& plan);
+    void remove(const PlanVessels& vessels);
     void forget_vessels();
     void show_vessels();
     void show_tasks();
@@ -216,10 +244,14 @@ private:
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     void mark(const display::Bounds& bounds, const Pose& pose);
     /// The densities of a file: those of its bone, or of a plan's fragments in their order; empty: being read, or none.
-    std::span<const volume::Grid> densities_of(const std::string& path);
+    std::span<const display::GreyImage> densities_of(const std::string& path);
+    /// Makes at most one in a picture of a window.
+    bool make_scan(int& scan, const display::GreyImage& image);
+    void find_scan(BoneMesh& bone, const observe::SeenBone& seen);
     void find_scan(BodyMesh& mesh, const SceneOutline::Bodies& scene, std::size_t place);
     void show_scan(int scan, const Pose& to_scan);
     void take_body(const MadeBody& made);
+    void do_not_make(std::uint64_t content, const std::string& why);
     bool has_time() const { return !is_spread_ || std::chrono::steady_clock::now() < until_; }
     BodyMesh* mesh_of(std::uint64_t content, const Vec3& colour);
 
@@ -234,8 +266,9 @@ private:
         display::Bounds bounds;
         std::string problem;  ///< why it is missing
         int scan = -1;
-        std::future<StillSurface> making;
+        study::Beside<StillSurface> making;
         StillSurface made;  ///< empty again when the mesh is complete
+        bool is_made = false;
         std::size_t taken = 0;  ///< of its bricks
         bool is_whole = false;
     };
@@ -252,10 +285,12 @@ private:
     std::map<std::uint64_t, BodyMesh> bodies_;
     bool is_spread_ = false;
     std::chrono::steady_clock::time_point until_{};  ///< of work that the next picture may continue
-    std::future<MadeBody> making_;
+    study::Beside<MadeBody> making_;
+    std::uint64_t made_body_ = 0;  ///< content of the body that `making_` makes
+    std::map<std::uint64_t, std::string> unmade_;  ///< bodies that cannot be made, by content: why
     struct Densities {
-        std::future<std::vector<volume::Grid>> reading;
-        std::vector<volume::Grid> grids;
+        study::Beside<std::vector<display::GreyImage>> reading;
+        std::vector<display::GreyImage> images;
         bool is_read = false;
     };
     std::map<std::string, Densities> densities_;  // by path
@@ -263,6 +298,7 @@ private:
     std::string compared_name_;
     std::map<std::size_t, PlanPiece> pieces_;
     std::map<std::size_t, std::uint64_t> content_at_;  // of the plan's scene: what was seen last, by place
+    bool has_made_scan_ = false, is_making_scan_ = false;  ///< in the last picture; some are still to be made
     bool has_density_ = false, waits_for_files_ = false, shows_grey_ = false;
     std::shared_ptr<const SurfaceMap> map_;
     double map_range_ = 1e-3;
@@ -272,16 +308,17 @@ private:
         Vec3 colour{0.0};
         display::MeshPool::Mesh mesh = -1;
         display::Bounds bounds;
+        std::string label = {};  ///< at its middle; empty: none
     };
     std::vector<HardwareMesh> hardware_;
+    std::vector<Label> labels_;
+    std::optional<std::filesystem::file_time_type> plan_written_;
     std::shared_ptr<const reconstruct::Reconstruction> hardware_of_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;
     std::vector<Part> parts_;
-    std::unordered_set<std::string> hidden_;
-    std::vector<std::string> chosen_;
-    std::map<std::string, Vec3> given_colours_;  // by part
+    Look look_;
     struct NamedBody {
         std::string name;
         std::optional<Vec3> colour;

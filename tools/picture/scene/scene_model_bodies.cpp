@@ -39,7 +39,7 @@ void SceneModel::take_names() {
             for (const cases::PlanFragment& fragment : plan.fragments)
                 named.push_back({fragment.name, is_coloured ? std::optional(fragment.colour) : std::nullopt});
             use_hardware(cases::state_of(plan).reconstruction);
-            take_vessels(scene.plan, plan);
+            take_vessels(scene.plan, scene.plan, plan);
         } catch (const Error&) {
             named.clear();  // the run says what is wrong
             use_hardware(nullptr);
@@ -54,14 +54,14 @@ std::string SceneModel::name_of_body(const SceneOutline::Bodies& scene, std::siz
 }
 
 Vec3 SceneModel::colour_of_body(const std::string& name, const SceneOutline::Bodies& scene, std::size_t place) const {
-    if (const auto given = given_colours_.find(name); given != given_colours_.end()) return given->second;
+    if (const auto given = look_.colours.find(name); given != look_.colours.end()) return given->second;
     const auto named = named_.find(scene.plan);
     if (named != named_.end() && place < named->second.size() && named->second[place].colour)
         return *named->second[place].colour;
     return group_colours[place % group_colours.size()];
 }
 
-void SceneModel::colour_part(const std::string& name, const Vec3& colour) { given_colours_[name] = colour; }
+void SceneModel::colour_part(const std::string& name, const Vec3& colour) { look_.colours[name] = colour; }
 
 void SceneModel::use_map(std::shared_ptr<const SurfaceMap> map, double range) {
     if (map == map_ && (!map || range == map_range_)) return;
@@ -113,6 +113,9 @@ void SceneModel::take_body(const MadeBody& made) {
     renderer_.meshes().set_part(mesh.mesh, 0, made.surface.patch, made.levels);
 }
 
+/// One that cannot be drawn does not keep the others from it.
+void SceneModel::do_not_make(std::uint64_t content, const std::string& why) { unmade_[content] = why; }
+
 /// Null: it was not seen, or is being made. Until new colours are made, it has those before.
 SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& colour) {
     const auto known = bodies_.find(content);
@@ -122,8 +125,15 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
     for (const auto& body : observer_.bodies())
         if (!look.body && body->content_hash == content && !body->distance.values.empty()) look.body = body;
     if (!look.body) return nullptr;
-    if (!is_spread_) take_body(make_body(std::move(look)));
-    else if (!making_.valid()) making_ = std::async(std::launch::async, make_body, std::move(look));
+    if (!is_spread_) try {
+            take_body(make_body(std::move(look)));
+        } catch (const Error& error) {
+            do_not_make(content, error.message());
+        }
+    else if (!making_.is_busy()) {
+        made_body_ = content;
+        making_.begin(study::Lane::scene, [look = std::move(look)]() mutable { return make_body(std::move(look)); });
+    }
     const auto now = bodies_.find(content);
     return now == bodies_.end() ? nullptr : &now->second;
 }
@@ -131,6 +141,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
 void SceneModel::show_bodies() {
     shown_.clear();
     pieces_.clear();
+    std::unordered_set<std::uint64_t> told;  // bodies whose problem is in the legend
     bool has_paint = false, has_old_colours = false;
     // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
     std::vector<const SceneOutline::Bodies*> scenes;
@@ -140,12 +151,23 @@ void SceneModel::show_bodies() {
         const auto seen = observer_.latest<observe::SeenScene>(scene->port);
         is_waiting_ = is_waiting_ || !seen || seen->value.count == 0;
         if (!seen) continue;
+        const std::unordered_set<std::uint64_t> of_others = shown_;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
-            if (object.body == 0 || !shown_.insert(object.body).second) continue;
+            if (object.body == 0 || of_others.contains(object.body)) continue;
             const std::string name = name_of_body(*scene, i);
             const Vec3 colour = colour_of_body(name, *scene, i);
-            BodyMesh* mesh = mesh_of(object.body, colour);
+            if (const auto why = unmade_.find(object.body); why != unmade_.end()) {
+                if (told.insert(object.body).second)
+                    legend_.warnings.push_back(fmt::format("{} is not drawn: {}", name, why->second));
+                continue;
+            }
+            // Two bodies of one shape share a mesh, which has the colours of the first.
+            const bool is_first = shown_.insert(object.body).second;
+            const auto known = bodies_.find(object.body);
+            BodyMesh* mesh = is_first                 ? mesh_of(object.body, colour)
+                             : known != bodies_.end() ? &known->second
+                                                      : nullptr;
             is_waiting_ = is_waiting_ || !mesh;
             if (!mesh) continue;
             Pose pose = object.pose;
@@ -176,6 +198,10 @@ void SceneModel::show_bodies() {
             }
             part_of_mesh_.emplace_back(picture_.meshes.size(), name);
             show(mesh->mesh, pose, mesh->bounds);
+            if (!is_first && !map_ && mesh->colour != colour) {
+                picture_.meshes.back().tint = colour;
+                picture_.meshes.back().tinted = 1.0;
+            }
             find_scan(*mesh, *scene, i);
             show_scan(mesh->scan, mesh->body->home);
             if (!scene->plan.empty()) pieces_[i] = {mesh->body, colour, pose, is_chosen(name)};
@@ -205,7 +231,9 @@ void SceneModel::show_bodies() {
     if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
 }
 
-bool SceneModel::is_chosen(const std::string& name) const { return std::ranges::find(chosen_, name) != chosen_.end(); }
+bool SceneModel::is_chosen(const std::string& name) const {
+    return std::ranges::find(look_.chosen, name) != look_.chosen.end();
+}
 
 /// The bounding box of a chosen part.
 void SceneModel::mark(const display::Bounds& bounds, const Pose& pose) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plates with their screws and implants of a plan.
+// Plates with their screws, implants and sites of a plan.
 #include "assets/reconstruct/reconstruction.hpp"
 #include "tools/picture/flap/flap_scene.hpp"
 #include "tools/picture/scene/scene_model.hpp"
@@ -29,7 +29,7 @@ void SceneModel::use_hardware(std::shared_ptr<const reconstruct::Reconstruction>
     for (const HardwareMesh& one : hardware_) renderer_.meshes().remove(one.mesh);
     hardware_.clear();
     if (!hardware_of_) return;
-    for (const Hardware& one : picture::hardware_of(hardware_of_->flap)) {
+    const auto add = [&](const Hardware& one) -> HardwareMesh& {
         geometry::SurfacePatch patch;
         for (const display::PictureMesh& mesh : one.meshes) append(patch, mesh);
         HardwareMesh& made = hardware_.emplace_back();
@@ -38,7 +38,10 @@ void SceneModel::use_hardware(std::shared_ptr<const reconstruct::Reconstruction>
         made.bounds = display::bounds_of(patch);
         made.mesh = renderer_.meshes().make();
         renderer_.meshes().set_part(made.mesh, 0, patch);
-    }
+        return made;
+    };
+    for (const Hardware& one : picture::hardware_of(hardware_of_->flap)) add(one);
+    for (const Hardware& one : sites_of(hardware_of_->flap)) add(one).label = one.name;
 }
 
 void SceneModel::show_hardware() {
@@ -46,6 +49,7 @@ void SceneModel::show_hardware() {
         if (!is_part_shown(one.name, one.colour)) continue;
         part_of_mesh_.emplace_back(picture_.meshes.size(), one.name);
         show(one.mesh, {}, one.bounds);
+        if (!one.label.empty()) labels_.push_back({one.label, 0.5 * (one.bounds.low + one.bounds.high), one.colour});
         if (is_chosen(one.name)) mark(one.bounds, {});
     }
 }

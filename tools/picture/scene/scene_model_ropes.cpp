@@ -72,7 +72,7 @@ void add_tube(geometry::SurfacePatch& patch, const rope::RopeShape& shape) {
 }  // namespace
 
 void SceneModel::show_ropes() {
-    for (const auto& [node, port] : outline_.ropes) {
+    for (const auto& [node, port, course] : outline_.ropes) {
         const auto seen = observer_.latest<rope::RopeShape>(port);
         if (!seen || seen->value.count < 2) continue;
         const rope::RopeShape& shape = seen->value;

@@ -4,7 +4,7 @@
 #include "tools/picture/scene/section_grey.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <utility>
 
 namespace tactus::picture {
 
@@ -14,17 +14,52 @@ void SceneModel::show_density(bool wanted, bool waits) {
 }
 
 bool SceneModel::is_reading_density() const {
-    return std::ranges::any_of(densities_, [](const auto& known) { return !known.second.is_read; });
+    return has_density_ && (is_making_scan_ ||
+                            std::ranges::any_of(densities_, [](const auto& known) { return !known.second.is_read; }));
 }
 
-std::span<const volume::Grid> SceneModel::densities_of(const std::string& path) {
+std::span<const display::GreyImage> SceneModel::densities_of(const std::string& path) {
     Densities& known = densities_[path];
-    if (known.is_read) return known.grids;
-    if (!known.reading.valid()) known.reading = std::async(std::launch::async, [path] { return read_densities(path); });
-    if (!waits_for_files_ && known.reading.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-    known.grids = known.reading.get();
+    if (known.is_read) return known.images;
+    if (!known.reading.is_busy())
+        known.reading.begin(study::Lane::scene, [path] {
+            std::vector<display::GreyImage> images;
+            for (const volume::Grid& grid : read_densities(path))
+                images.push_back(display::grey_image(grid, section_grey));
+            return images;
+        });
+    if (!waits_for_files_ && !known.reading.is_ready()) return {};
+    known.images = known.reading.take();
     known.is_read = true;
-    return known.grids;
+    return known.images;
+}
+
+/// The graphics card copies it, which takes as long as a picture may.
+bool SceneModel::make_scan(int& scan, const display::GreyImage& image) {
+    if (image.empty()) return true;
+    if (is_spread_ && has_made_scan_) {
+        is_making_scan_ = true;
+        return false;
+    }
+    scan = renderer_.scans().make(image);
+    has_made_scan_ = true;
+    return true;
+}
+
+/// A bone that is carved changes between two pictures: it is copied in pictures, and made grey beside them.
+void SceneModel::find_scan(BoneMesh& bone, const observe::SeenBone& seen) {
+    if (!has_density_ || bone.scan >= 0) return;
+    is_making_scan_ = is_making_scan_ || is_spread_;
+    if (bone.greying.is_ready()) {
+        if (!has_made_scan_) make_scan(bone.scan, bone.greying.take());
+        return;
+    }
+    if (bone.greying.is_busy()) return;
+    while (!bone.density.add_layer(seen.snapshot()))
+        if (!has_time()) return;
+    auto grey = [copy = std::exchange(bone.density, {})] { return display::grey_image(copy.grid, section_grey); };
+    if (is_spread_) bone.greying.begin(study::Lane::scene, std::move(grey));
+    else make_scan(bone.scan, grey());
 }
 
 /// The scan that a node declares for the scene, or for the output that is wired to the slot of the body.
@@ -34,10 +69,10 @@ void SceneModel::find_scan(BodyMesh& mesh, const SceneOutline::Bodies& scene, st
         const bool is_scene = scan.port == scene.port,
                    is_slot = place < scene.bodies.size() && scan.port == scene.bodies[place];
         if (!is_scene && !is_slot) continue;
-        const std::span<const volume::Grid> grids = densities_of(scan.path);
+        const std::span<const display::GreyImage> images = densities_of(scan.path);
         if (!densities_.at(scan.path).is_read) return;
         const std::size_t number = is_slot ? 0 : place;
-        if (number < grids.size()) mesh.scan = renderer_.scans().make(grids[number], section_grey);
+        if (number < images.size() && !make_scan(mesh.scan, images[number])) return;
         break;
     }
     mesh.has_scan = true;

@@ -2,6 +2,8 @@
 // Vessels of a plan: those of the scan where they were scanned, those of a flap on the segments that they run along.
 #include "assets/cases/plan_file.hpp"
 #include "assets/reconstruct/flap_files.hpp"
+#include "assets/reconstruct/reconstruction.hpp"
+#include "assets/vessel/course_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/vessel/line_branch.hpp"
@@ -12,9 +14,9 @@
 #include "tools/study/planning/flap_study.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <chrono>
 
 namespace tactus::picture {
 
@@ -44,14 +46,33 @@ void add_tube(VesselTubes::Vessel& to, const std::vector<Vec3>& line, double rad
 VesselTubes scanned_tubes(const std::vector<reconstruct::FlapVessel>& vessels) {
     VesselTubes tubes;
     for (const reconstruct::FlapVessel& vessel : vessels) {
-        tubes.all.push_back({vessel.name, colour_of(vessel), {}});
+        tubes.all.push_back({vessel.name, colour_of(vessel), false, {}});
         add_tube(tubes.all.back(), vessel.points, vessel.radius, -1);
     }
     return tubes;
 }
 
-/// Those of the flap: the fibula is planned for it, which takes long.
-VesselTubes flap_tubes(const std::filesystem::path& file, const cases::CasePlan& plan) {
+/// Whether a vessel runs along the course of a file. One that cannot be read is of no vessel: the run says so.
+bool runs_along(const reconstruct::FlapVessel& vessel, const std::filesystem::path& course) {
+    constexpr double beside = 1e-3;  // m
+    try {
+        const std::vector<Vec3> points = vessel::load_course(course).points;
+        return std::ranges::all_of(vessel.points, [&](const Vec3& p) {
+            for (std::size_t n = 1; n < points.size(); ++n) {
+                const Vec3 along = points[n] - points[n - 1], to = p - points[n - 1];
+                const double share = std::clamp(glm::dot(to, along) / glm::dot(along, along), 0.0, 1.0);
+                if (glm::length(to - share * along) < beside) return true;
+            }
+            return false;
+        });
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// Those of the flap: the fibula is planned for it, which takes long. `courses`: files of the ropes of the patch.
+VesselTubes flap_tubes(const std::filesystem::path& file, const cases::CasePlan& plan,
+                       const std::vector<std::filesystem::path>& courses) {
     VesselTubes tubes;
     try {
         const cases::PlanState state = cases::state_of(plan);
@@ -61,7 +82,9 @@ VesselTubes flap_tubes(const std::filesystem::path& file, const cases::CasePlan&
         const reconstruct::FibulaPlan fibula = reconstruct::plan_fibula(inputs);
         const std::vector<int> segments = segments_of(plan, state);
         for (const reconstruct::FlapVessel& vessel : made.flap.vessels) {
-            tubes.all.push_back({vessel.name, colour_of(vessel), {}});
+            tubes.all.push_back({vessel.name, colour_of(vessel), false, {}});
+            tubes.all.back().is_rope =
+                std::ranges::any_of(courses, [&](const auto& course) { return runs_along(vessel, course); });
             for (const reconstruct::VesselPart& part : reconstruct::parts_of(vessel, inputs, fibula))
                 if (part.kind == reconstruct::VesselPart::Kind::attached && part.segment < segments.size())
                     add_tube(tubes.all.back(), part.points, vessel.radius, segments[part.segment]);
@@ -77,7 +100,7 @@ VesselTubes flap_tubes(const std::filesystem::path& file, const cases::CasePlan&
 void SceneModel::put_vessels(PlanVessels& to, const VesselTubes& tubes) {
     to.problem = tubes.problem;
     for (const VesselTubes::Vessel& vessel : tubes.all) {
-        PlanVessel& one = to.all.emplace_back(PlanVessel{vessel.name, vessel.colour, {}});
+        PlanVessel& one = to.all.emplace_back(PlanVessel{vessel.name, vessel.colour, vessel.is_rope, {}});
         for (const VesselTubes::Part& part : vessel.parts) {
             one.parts.push_back({renderer_.meshes().make(), display::bounds_of(part.patch), part.place});
             renderer_.meshes().set_part(one.parts.back().mesh, 0, part.patch);
@@ -85,21 +108,56 @@ void SceneModel::put_vessels(PlanVessels& to, const VesselTubes& tubes) {
     }
 }
 
-void SceneModel::take_vessels(const std::filesystem::path& file, const cases::CasePlan& plan) {
+void SceneModel::remove(const PlanVessels& vessels) {
+    for (const PlanVessel& vessel : vessels.all)
+        for (const MeshOfVessel& part : vessel.parts) renderer_.meshes().remove(part.mesh);
+}
+
+void SceneModel::take_vessels(const std::string& name, const std::filesystem::path& file, const cases::CasePlan& plan) {
     const cases::PlanState state = cases::state_of(plan);
-    PlanVessels& taken = vessels_[file.string()];
+    PlanVessels& taken = vessels_[name];
+    std::vector<std::filesystem::path> courses;
+    for (const SceneOutline::Rope& rope : outline_.ropes)
+        if (!rope.course.empty()) courses.emplace_back(rope.course);
+    // Most steps of a plan leave its vessels as they are.
+    std::string of;
+    if (state.reconstruction) {
+        of = reconstruct::json_of(*state.reconstruction).dump();
+        for (const int piece : state.pieces) of += fmt::format(" {}", piece);
+        for (const auto& course : courses) of += " " + course.string();
+    } else if (state.vessels)
+        for (const reconstruct::FlapVessel& vessel : *state.vessels) {
+            of += fmt::format("{} {} {}", vessel.name, static_cast<int>(vessel.kind), vessel.radius);
+            for (const Vec3& p : vessel.points) of += fmt::format(" {} {} {}", p.x, p.y, p.z);
+        }
+    if (of == taken.of) return;
+    remove(taken);
+    taken = {};
+    taken.of = std::move(of);
     if (state.reconstruction)
-        taken.making = std::async(std::launch::async, [file, plan] { return flap_tubes(file, plan); });
+        taken.making.begin(study::Lane::studies, [file, plan, courses] { return flap_tubes(file, plan, courses); });
     else if (state.vessels) put_vessels(taken, scanned_tubes(*state.vessels));
+}
+
+void SceneModel::use_plan(const std::filesystem::path& file, const cases::CasePlan& plan,
+                          std::filesystem::file_time_type written) {
+    if (plan_written_ == written) return;
+    const auto scene = std::ranges::find_if(outline_.scenes, [](const auto& one) { return !one.plan.empty(); });
+    if (scene == outline_.scenes.end()) return;
+    plan_written_ = written;
+    try {
+        use_hardware(cases::state_of(plan).reconstruction);
+        take_vessels(scene->plan, file, plan);
+    } catch (const Error&) {
+        // The run says what is wrong.
+    }
 }
 
 void SceneModel::forget_vessels() {
     std::erase_if(vessels_, [&](const auto& known) {
         const bool is_gone =
             std::ranges::find(outline_.scenes, known.first, &SceneOutline::Bodies::plan) == outline_.scenes.end();
-        for (const PlanVessel& vessel : known.second.all)
-            for (const MeshOfVessel& part : vessel.parts)
-                if (is_gone) renderer_.meshes().remove(part.mesh);
+        if (is_gone) remove(known.second);
         if (is_gone) named_.erase(known.first);
         return is_gone;
     });
@@ -108,10 +166,9 @@ void SceneModel::forget_vessels() {
 void SceneModel::show_vessels() {
     const std::vector<std::optional<Pose>> poses = plan_poses();
     for (auto& [file, vessels] : vessels_) {
-        if (vessels.making.valid() &&
-            (waits_for_files_ || vessels.making.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
-            put_vessels(vessels, vessels.making.get());
-        if (vessels.making.valid()) {
+        if (vessels.making.is_ready() || (waits_for_files_ && vessels.making.is_busy()))
+            put_vessels(vessels, vessels.making.take());
+        if (vessels.making.is_busy()) {
             legend_.warnings.push_back("computing the vessels of the flap ...");
             is_waiting_ = true;
         }
@@ -121,9 +178,7 @@ void SceneModel::show_vessels() {
                 const auto place = static_cast<std::size_t>(part.place);
                 return part.place < 0 ? Pose{} : place < poses.size() ? poses[place] : std::optional<Pose>{};
             };
-            // Where ropes are in the scene they are the vessels of its flap.
-            const bool is_rope = !outline_.ropes.empty() && !vessel.parts.empty() && vessel.parts[0].place >= 0;
-            if (vessel.parts.empty() || is_rope || !is_part_shown(vessel.name, vessel.colour)) continue;
+            if (vessel.parts.empty() || vessel.is_rope || !is_part_shown(vessel.name, vessel.colour)) continue;
             for (const MeshOfVessel& part : vessel.parts) {
                 const std::optional<Pose> pose = pose_of_part(part);
                 if (!pose) continue;

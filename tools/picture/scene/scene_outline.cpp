@@ -123,7 +123,9 @@ void add(const Visual& declared, const NodeView& view, SceneOutline& outline) {
                 else outline.still_bones.push_back({name, path, v.pose});
             }
             break;
-        case VisualKind::rope: outline.ropes.push_back({view.node.name, v.value}); break;
+        case VisualKind::rope:
+            outline.ropes.push_back({view.node.name, v.value, path_of(view.plan, view.asset(v.asset))});
+            break;
         case VisualKind::point:
         case VisualKind::line:
         case VisualKind::plane:
@@ -208,6 +210,18 @@ std::vector<std::string> SceneOutline::ports() const {
     for (const auto& [node, v] : guides) all.insert({v.pose, v.hand, v.force, v.frame});
     all.erase("");
     return {all.begin(), all.end()};
+}
+
+bool SceneOutline::shows_the_same(const SceneOutline& other) const {
+    const auto files = [](const SceneOutline& of) {
+        std::set<std::string> all;
+        for (const StillBone& bone : of.still_bones) all.insert("bone " + bone.path);
+        for (const Bodies& scene : of.scenes) all.insert(scene.plan.empty() ? "no plan" : "plan");
+        for (const Task& task : of.tasks) all.insert("task " + task.path);
+        for (const Guide& guide : of.guides) all.insert("guide " + guide.node);
+        return all;
+    };
+    return ports() == other.ports() && files(*this) == files(other) && fixed_balls.size() == other.fixed_balls.size();
 }
 
 SceneOutline outline_of(const compile::Plan& plan) {

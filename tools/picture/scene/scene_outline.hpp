@@ -92,6 +92,7 @@ struct SceneOutline {
     /// A rope, such as a vessel.
     struct Rope {
         std::string node, shape;
+        std::string course = {};  ///< file of the vessel that it stands for; empty: none
     };
     /// A planned cut, from a task file.
     struct Task {
@@ -126,6 +127,9 @@ struct SceneOutline {
     bool empty() const;
     /// All outputs of the outline, each once.
     std::vector<std::string> ports() const;
+    /// Whether the same things are drawn, of whatever size, or another plan: a view that was fitted to the one suits the
+    /// other if the plans are of one case.
+    bool shows_the_same(const SceneOutline& other) const;
 };
 
 /// The outline of a compiled plan; assets are not needed.

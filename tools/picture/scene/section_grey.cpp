@@ -17,27 +17,30 @@ display::Legend::Scale section_scale() {
             fmt::format("{:g}", section_grey.white), Vec3(0.0), Vec3(1.0)};
 }
 
-volume::Grid density_of(const volume::BoneSnapshot& bone) {
+bool DensityCopy::add_layer(const volume::BoneSnapshot& bone) {
     const volume::BrickLayout& layout = bone.layout();
-    volume::Grid grid{layout.size, layout.origin, layout.spacing, {}};
-    grid.values.assign(grid.count(), 0.0f);
-    for (int bz = 0; bz < layout.bricks[2]; ++bz)
-        for (int by = 0; by < layout.bricks[1]; ++by)
-            for (int bx = 0; bx < layout.bricks[0]; ++bx) {
-                const float* const brick = bone.root->density[static_cast<std::size_t>(layout.brick_index(bx, by, bz))];
-                if (!brick) continue;
-                const std::array<int, 3> first{bx * volume::brick_cells, by * volume::brick_cells,
-                                               bz * volume::brick_cells};
-                const auto past = [&](std::size_t axis) {
-                    return std::min(volume::brick_side, layout.size[axis] - first[axis]);
-                };
-                for (int z = 0; z < past(2); ++z)
-                    for (int y = 0; y < past(1); ++y)
-                        for (int x = 0; x < past(0); ++x)
-                            grid.at(first[0] + x, first[1] + y, first[2] + z) =
-                                brick[volume::BrickLayout::sample_index(x, y, z)];
-            }
-    return grid;
+    if (layers == 0) {
+        grid = {layout.size, layout.origin, layout.spacing, {}};
+        grid.values.assign(grid.count(), 0.0f);
+    }
+    if (layers == layout.bricks[2]) return true;
+    const int bz = layers++;
+    for (int by = 0; by < layout.bricks[1]; ++by)
+        for (int bx = 0; bx < layout.bricks[0]; ++bx) {
+            const float* const brick = bone.root->density[static_cast<std::size_t>(layout.brick_index(bx, by, bz))];
+            if (!brick) continue;
+            const std::array<int, 3> first{bx * volume::brick_cells, by * volume::brick_cells,
+                                           bz * volume::brick_cells};
+            const auto past = [&](std::size_t axis) {
+                return std::min(volume::brick_side, layout.size[axis] - first[axis]);
+            };
+            for (int z = 0; z < past(2); ++z)
+                for (int y = 0; y < past(1); ++y)
+                    for (int x = 0; x < past(0); ++x)
+                        grid.at(first[0] + x, first[1] + y, first[2] + z) =
+                            brick[volume::BrickLayout::sample_index(x, y, z)];
+        }
+    return layers == layout.bricks[2];
 }
 
 std::vector<volume::Grid> read_densities(const std::filesystem::path& file) {

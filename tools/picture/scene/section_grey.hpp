@@ -16,8 +16,14 @@ namespace tactus::picture {
 inline constexpr display::GreyScale section_grey{0.0, 2000.0};
 display::Legend::Scale section_scale();
 
-/// kg/m³ at all samples of a bone; where nothing is stored, 0.
-volume::Grid density_of(const volume::BoneSnapshot& bone);
+/// kg/m³ at all samples of a bone; where nothing is stored, 0. Copied layer by layer.
+struct DensityCopy {
+    volume::Grid grid;
+    int layers = 0;  ///< of bricks, copied
+
+    /// Copies the next layer of bricks. True: it was the last one.
+    bool add_layer(const volume::BoneSnapshot& bone);
+};
 
 /// kg/m³: of the bone of a file, or of each fragment of a plan, in its order; one that is not a bone's file has an empty
 /// grid. Empty when the file cannot be read.

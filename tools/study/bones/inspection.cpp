@@ -241,9 +241,10 @@ Inspection inspect_bones(const std::filesystem::path& path) {
         found.parts.push_back({bone.name, mesh::volume_of(surface) * 1e9, bounds_of(surface)});
         found.surfaces.push_back({std::move(surface), bone.colour});
         double painted = 0.0;
+        found.painted.emplace_back();
         for (const contact::SurfacePoint& point : bone.points)
             if (point.label == contact::surface_label::fracture) {
-                found.painted.push_back(point.position);
+                found.painted.back().push_back({point.position, point.normal});
                 painted += point.area;
             }
         if (painted > 0.0)

@@ -43,7 +43,11 @@ struct Inspection {
     std::array<double, 2> window{};         ///< black and white level of the slices
     bool is_labels = false;                 ///< slices are coloured by label
     std::vector<mesh::ColouredSurface> surfaces;  ///< surfaces for the view
-    std::vector<Vec3> painted;  ///< of bones: points that are painted as fracture, m
+    /// Of bones: the points of each of `surfaces` that are painted as fracture; m, unit normals outwards.
+    struct Painted {
+        Vec3 at, normal;
+    };
+    std::vector<std::vector<Painted>> painted;
 };
 
 /// How to read the file: as in bone::ImportOptions.

@@ -4,11 +4,9 @@
 #include "dsp/segment/strokes.hpp"
 #include "dsp/segment/uncertain.hpp"
 #include "dsp/segment/watershed.hpp"
+#include "tools/study/beside.hpp"
 
 #include <fmt/format.h>
-
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -38,13 +36,6 @@ std::vector<std::size_t> voxels_of(const std::vector<std::uint8_t>& label, std::
     for (const std::uint8_t l : label)
         if (l != 0) ++count[l - 1u];
     return count;
-}
-
-/// This thread, and those that it makes from now on, get the priority of background work.
-void let_others_go_first() noexcept {
-    constexpr int nice = 10;
-    // On Linux it is a value of the thread, and threads get that of the one that makes them.
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
 }
 
 }  // namespace
@@ -137,7 +128,7 @@ void LiveLabels::show(LiveLabelling answer) {
 }
 
 void LiveLabels::work() {
-    let_others_go_first();
+    study::let_others_go_first();
     constexpr double slow = 0.4;  // s; a hand does not wait for less
     std::optional<segment::Walks> before;
     double last = 0.0;

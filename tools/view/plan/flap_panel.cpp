@@ -216,9 +216,13 @@ void FlapPanel::dialog() {
     ImGui::EndPopup();
 }
 
+void FlapPanel::tend() {
+    flap_.tend(std::exchange(is_drawn_, false));
+    if (run_.plan()) scene_.use_plan(run_.file(), *run_.plan(), run_.written());
+}
+
 void FlapPanel::draw() {
-    flap_.tend();
-    if (run_.plan()) scene_.use_hardware(flap_.reconstruction());
+    is_drawn_ = true;
     const std::shared_ptr<const reconstruct::Reconstruction> all = flap_.reconstruction();
     if (!all) return;
     ImGui::TextWrapped("reconstruction (for research, not a medical device)");

@@ -16,6 +16,8 @@ class FlapPanel {
 public:
     FlapPanel(Workbench& bench, CaseRun& run, ScenePanel& scene) : run_(run), flap_(bench, run), scene_(scene) {}
 
+    /// Once per picture, also while it is not drawn: the scene shows what the plan has now.
+    void tend();
     /// Draws nothing for a plan without a reconstruction.
     void draw();
     FlapRun& flap() { return flap_; }
@@ -44,7 +46,7 @@ private:
     FlapRun flap_;
     ScenePanel& scene_;
     Form form_;
-    bool wants_dialog_ = false;
+    bool wants_dialog_ = false, is_drawn_ = false;
 };
 
 }  // namespace tactus::view

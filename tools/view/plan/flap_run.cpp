@@ -20,11 +20,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto now = std::chrono::seconds(0);
-
 template <class T>
 bool is_ready(const std::future<T>& work) {
-    return work.valid() && work.wait_for(now) == std::future_status::ready;
+    return work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folder) {
@@ -44,11 +42,12 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
 
 }  // namespace
 
-void FlapRun::tend() {
+void FlapRun::tend(bool measures) {
     tend_change();
-    if (is_ready(measuring_)) {
+    if (measuring_.is_ready()) {
         try {
-            verdicts_ = measuring_.get();
+            Verdicts verdicts = measuring_.take();
+            if (measured_ == of_) verdicts_ = std::move(verdicts);
         } catch (const std::exception& error) {
             verdicts_ = {};
             bench_.tell(error.what(), true);
@@ -56,15 +55,18 @@ void FlapRun::tend() {
     }
     if (!run_.plan()) {
         now_.reset();
-        of_ = {};
+        of_ = measured_ = {};
         return;
     }
-    if (of_ == run_.written() || measuring_.valid()) return;
-    of_ = run_.written();
-    now_ = cases::state_of(*run_.plan()).reconstruction;
-    verdicts_ = {};
+    if (of_ != run_.written()) {
+        of_ = run_.written();
+        now_ = cases::state_of(*run_.plan()).reconstruction;
+        verdicts_ = {};
+    }
+    if (!measures || measured_ == of_ || measuring_.is_busy()) return;
+    measured_ = of_;
     if (now_)
-        measuring_ = std::async(std::launch::async, [plan = *run_.plan(), folder = run_.file().parent_path()] {
+        measuring_.begin(study::Lane::studies, [plan = *run_.plan(), folder = run_.file().parent_path()] {
             return verdicts_of(plan, folder);
         });
 }

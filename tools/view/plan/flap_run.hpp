@@ -4,6 +4,7 @@
 #pragma once
 
 #include "assets/reconstruct/reconstruction.hpp"
+#include "tools/study/beside.hpp"
 #include "tools/view/plan/case_run.hpp"
 
 #include <filesystem>
@@ -21,10 +22,8 @@ public:
 
     FlapRun(Workbench& bench, CaseRun& run) : bench_(bench), run_(run) {}
 
-    /// Once per picture while it is seen.
-    void tend();
-    /// Once per picture, also while it is not seen: goes on with a change.
-    void tend_change();
+    /// Once per picture: also goes on with a change. `measures`: somebody sees the verdicts, which take long.
+    void tend(bool measures = true);
     /// Of the plan as it is now; null: it has none.
     const std::shared_ptr<const reconstruct::Reconstruction>& reconstruction() const { return now_; }
 
@@ -33,7 +32,7 @@ public:
         std::vector<std::string> lines, warnings;
     };
     const Verdicts& verdicts() const { return verdicts_; }
-    bool is_measuring() const { return measuring_.valid(); }
+    bool is_measuring() const { return measuring_.is_busy(); }
     /// A change waits for the steps before it, or is being made; another one is not begun meanwhile. It is made again when
     /// the plan had further steps by then, so that the run does not go on without them.
     bool is_changing() const { return waits_ || changing_.valid() || !changed_.empty(); }
@@ -48,13 +47,14 @@ private:
     using WholeChange = std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>;
     void begin(WholeChange change);
     void make();
+    void tend_change();
 
     Workbench& bench_;
     CaseRun& run_;
     std::shared_ptr<const reconstruct::Reconstruction> now_;
-    std::filesystem::file_time_type of_{};
-    std::future<Verdicts> measuring_;
-    std::future<std::filesystem::path> changing_;
+    std::filesystem::file_time_type of_{}, measured_{};
+    study::Beside<Verdicts> measuring_;
+    std::future<std::filesystem::path> changing_;  ///< writes a file: its end is waited for
     std::filesystem::path changed_;
     WholeChange change_;  ///< being made
     std::filesystem::file_time_type made_of_{};

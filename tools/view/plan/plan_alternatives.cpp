@@ -11,7 +11,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 
 namespace tactus::view {
@@ -34,10 +33,10 @@ void continue_line(const char* label) {
 }  // namespace
 
 void PlanAlternatives::tend() {
-    if (counting_.valid() && counting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    if (counting_.is_ready()) {
         numbers_.clear();
         try {
-            for (const AlternativeNumbers& one : counting_.get()) numbers_.push_back(words_of(one));
+            for (const AlternativeNumbers& one : counting_.take()) numbers_.push_back(words_of(one));
         } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
         }
@@ -50,7 +49,7 @@ void PlanAlternatives::tend() {
         return;
     }
     if (shown_ == compared_ && of_ == run_.written()) return;
-    if (counting_.valid()) return;  // of the plan as it was; then again
+    if (counting_.is_busy()) return;  // of the plan as it was; then again
     if (!scene_.is_fitted()) return;  // the middles of the fragments are known when their bodies are made
     shown_ = compared_;
     of_ = run_.written();
@@ -58,7 +57,7 @@ void PlanAlternatives::tend() {
     std::vector<Vec3> middles;
     for (const auto& body : scene_.plan_bodies()) middles.push_back(body ? body->home.position : Vec3(0.0));
     differences_ = differences(*plan, plan->current, other, middles);
-    counting_ = std::async(std::launch::async, [plan = *plan, other, folder = run_.file().parent_path()] {
+    counting_.begin(study::Lane::studies, [plan = *plan, other, folder = run_.file().parent_path()] {
         return Numbers{numbers_of_alternative(plan, plan.current, folder), numbers_of_alternative(plan, other, folder)};
     });
 }
@@ -189,7 +188,7 @@ void PlanAlternatives::draw() {
     ImGui::EndDisabled();
     if (shown_.empty()) return;
     for (const std::string& line : numbers_) ImGui::TextWrapped("%s", line.c_str());
-    if (counting_.valid()) ImGui::TextDisabled("...");
+    if (counting_.is_busy()) ImGui::TextDisabled("...");
     if (differences_.empty()) ImGui::TextDisabled("all fragments lie alike");
     for (const std::string& line : differences_) ImGui::TextWrapped("%s", line.c_str());
 }

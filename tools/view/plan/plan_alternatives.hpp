@@ -2,12 +2,12 @@
 // The alternatives of the plan of a run as a list: go to one, begin another, drop one, and compare two in the scene.
 #pragma once
 
+#include "tools/study/beside.hpp"
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/plan/plan_comparison.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
 #include <array>
-#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,7 +46,7 @@ private:
     std::string compared_, shown_;  ///< names; shown: what the scene has
     std::filesystem::file_time_type of_{};
     std::vector<std::string> differences_;
-    std::future<Numbers> counting_;
+    study::Beside<Numbers> counting_;
     std::vector<std::string> numbers_;
     std::pair<std::string, std::string> wanted_name_;  ///< of the alternative that gets another one, and that
     int renamed_ = -1;  ///< place of the alternative whose name is asked for

@@ -34,9 +34,9 @@ void PlanMap::tend() {
     // Nobody could take the colours away.
     if (!run_.is_there()) show({});
     draw_range();
-    if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    if (making_.is_ready()) {
         try {
-            auto map = std::make_shared<const picture::SurfaceMap>(making_.get());
+            auto map = std::make_shared<const picture::SurfaceMap>(making_.take());
             // What was asked for may have changed meanwhile.
             if (kind_ == map->kind) scene_.use_map(std::move(map), drawn_range_ = range_);
         } catch (const std::exception& error) {
@@ -45,16 +45,16 @@ void PlanMap::tend() {
         }
     }
     // Of all fragments at once: each new map colours those anew that are there.
-    if (!kind_ || making_.valid() || !run_.plan() || !scene_.is_fitted()) return;
+    if (!kind_ || making_.is_busy() || !run_.plan() || !scene_.is_fitted()) return;
     std::vector<std::shared_ptr<const observe::SeenBody>> bodies = scene_.plan_bodies();
     const auto seen = bodies.size() - static_cast<std::size_t>(std::ranges::count(bodies, nullptr));
     if (seen == 0 || (made_ == kind_ && of_ == run_.written() && seen == seen_)) return;
     made_ = kind_;
     seen_ = seen;
     of_ = run_.written();
-    making_ = std::async(std::launch::async, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
-                                              bodies = std::move(bodies), stop = stop_.get_token()] {
-        return picture::make_surface_map(kind, plan, folder, bodies, stop);
+    making_.begin(study::Lane::studies, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
+                                         bodies = std::move(bodies)](std::stop_token stop) {
+        return picture::make_surface_map(kind, plan, folder, bodies, std::move(stop));
     });
 }
 

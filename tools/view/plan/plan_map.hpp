@@ -4,15 +4,14 @@
 #pragma once
 
 #include "tools/picture/scene/surface_map.hpp"
+#include "tools/study/beside.hpp"
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 
 #include <chrono>
 #include <cstddef>
-#include <future>
 #include <memory>
 #include <optional>
-#include <stop_token>
 
 namespace tactus::view {
 
@@ -21,17 +20,13 @@ public:
     using Kind = picture::SurfaceMap::Kind;
 
     PlanMap(Workbench& bench, CaseRun& run, ScenePanel& scene) : bench_(bench), run_(run), scene_(scene) {}
-    /// What is being computed is given up.
-    ~PlanMap() { stop_.request_stop(); }
-    PlanMap(const PlanMap&) = delete;
-    PlanMap& operator=(const PlanMap&) = delete;
 
     /// Once per picture.
     void tend();
     /// None: the fragments have their own colours.
     void show(std::optional<Kind> kind);
     const std::optional<Kind>& shown() const { return kind_; }
-    bool is_busy() const { return making_.valid(); }
+    bool is_busy() const { return making_.is_busy(); }
     /// m, distance of the fullest colour.
     double range() const { return range_; }
     void set_range(double range);
@@ -46,8 +41,7 @@ private:
     double range_ = 1e-3;
     std::filesystem::file_time_type of_{};
     std::size_t seen_ = 0;  ///< bodies that were drawn when it was made
-    std::stop_source stop_;
-    std::future<picture::SurfaceMap> making_;
+    study::Beside<picture::SurfaceMap> making_;
     double drawn_range_ = 1e-3;
     std::chrono::steady_clock::time_point ranged_at_{}, drawn_at_{};  ///< the range was changed; was drawn
 };

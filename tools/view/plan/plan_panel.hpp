@@ -28,7 +28,7 @@ public:
         case_.tend(observer);
         map_.tend();
         alternatives_.tend();
-        flap_.flap().tend_change();
+        flap_.tend();
     }
     void draw(const Fonts& fonts);
     /// Once per picture, also while it is not drawn: what a command asks for.

@@ -32,6 +32,7 @@ void ScenePanel::add_commands(std::vector<Command>& all) {
                                             "Clip the scene along z", "Clip the scene along the view"};
     for (int axis = -1; axis <= 3; ++axis)
         add(clips[axis + 1], "section plane cut", [this, axis] { clip(axis, clip_share_); });
+    add("Clip the scene through three measured points", "section plane cut oblique", [this] { clip_through_marks(); });
     if (clip_axis_ < 0) return;
     constexpr double step = 0.05;
     add("Clip more", "section plane", [this] { clip(clip_axis_, std::max(0.0, clip_share_ - step)); });

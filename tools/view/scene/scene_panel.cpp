@@ -3,6 +3,8 @@
 
 #include "dsp/core/error.hpp"
 #include "tools/view/frame/damage.hpp"
+#include "tools/view/scene/clip_place.hpp"
+#include "tools/view/slices/plan_scan.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -11,13 +13,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tactus::view {
 
 using picture::outline_of;
 using picture::SceneOutline;
+
+namespace {
+
+std::string plan_of(const SceneOutline& outline) {
+    for (const SceneOutline::Bodies& scene : outline.scenes)
+        if (!scene.plan.empty()) return scene.plan;
+    return {};
+}
+
+bool is_case_of(const SceneOutline& one, const SceneOutline& other) {
+    return plan_of(one) == plan_of(other) || are_of_one_case(plan_of(one), plan_of(other));
+}
+
+}  // namespace
 
 void ScenePanel::attempt(const std::function<void()>& what) {
     try {
@@ -58,8 +73,9 @@ std::vector<std::shared_ptr<const observe::SeenBody>> ScenePanel::plan_bodies() 
     return model_ ? model_->plan_bodies() : std::vector<std::shared_ptr<const observe::SeenBody>>();
 }
 
-void ScenePanel::use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of) {
-    if (model_) model_->use_hardware(std::move(of));
+void ScenePanel::use_plan(const std::filesystem::path& file, const cases::CasePlan& plan,
+                          std::filesystem::file_time_type written) {
+    if (model_) model_->use_plan(file, plan, written);
 }
 
 const std::map<std::size_t, SceneModel::PlanPiece>& ScenePanel::plan_pieces() const {
@@ -67,12 +83,7 @@ const std::map<std::size_t, SceneModel::PlanPiece>& ScenePanel::plan_pieces() co
     return model_ ? model_->plan_pieces() : none;
 }
 
-std::string ScenePanel::plan_file() const {
-    if (model_)
-        for (const SceneOutline::Bodies& scene : model_->outline().scenes)
-            if (!scene.plan.empty()) return scene.plan;
-    return {};
-}
+std::string ScenePanel::plan_file() const { return model_ ? plan_of(model_->outline()) : std::string(); }
 
 void ScenePanel::compare(std::vector<std::optional<Pose>> poses, const std::string& name) {
     compared_ = std::move(poses);
@@ -92,14 +103,7 @@ std::vector<int> ScenePanel::chosen_places() const {
 
 void ScenePanel::clip(int axis, double share) {
     if (axis == 3 && clip_axis_ != 3) clip_normal_ = camera.orientation * Vec3(0.0, 0.0, 1.0);
-    if (axis == 4 && clip_axis_ != 4) {
-        const Vec3 normal = marks_.size() == 3 ? glm::cross(marks_[1] - marks_[0], marks_[2] - marks_[0]) : Vec3(0.0);
-        if (!(glm::length(normal) > 0.0)) {
-            bench_.tell("to clip along a plane of your own, measure three points that are not in a line", true);
-            return;
-        }
-        clip_normal_ = glm::normalize(normal);
-    }
+    if (axis == 4 && clip_axis_ != 4) return clip_through_marks();
     if (axis >= 0 && axis < 3) {
         clip_normal_ = Vec3(0.0);
         clip_normal_[axis] = 1.0;
@@ -109,16 +113,19 @@ void ScenePanel::clip(int axis, double share) {
     needs_picture_ = true;
 }
 
+void ScenePanel::clip_through_marks() {
+    const Vec3 normal = marks_.size() == 3 ? glm::cross(marks_[1] - marks_[0], marks_[2] - marks_[0]) : Vec3(0.0);
+    if (!(glm::length(normal) > 0.0) || !model_)
+        return bench_.tell("to clip along a plane of your own, measure three points that are not in a line", true);
+    clip_normal_ = glm::normalize(normal);
+    clip_axis_ = 4;
+    clip_share_ = share_through(model_->bounds(), clip_normal_, marks_[0]);
+    needs_picture_ = true;
+}
+
 std::optional<display::Plane> ScenePanel::clip_plane() const {
     if (clip_axis_ < 0 || model_->bounds().empty()) return std::nullopt;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& corner : model_->bounds().corners()) {
-        low = std::min(low, glm::dot(corner, clip_normal_));
-        high = std::max(high, glm::dot(corner, clip_normal_));
-    }
-    const Vec3 middle = 0.5 * (model_->bounds().low + model_->bounds().high);
-    const double at = low + clip_share_ * (high - low);
-    return display::Plane{middle + clip_normal_ * (at - glm::dot(middle, clip_normal_)), clip_normal_};
+    return plane_at(model_->bounds(), clip_normal_, clip_share_);
 }
 
 bool ScenePanel::is_empty() {
@@ -129,13 +136,19 @@ bool ScenePanel::is_empty() {
     return is_empty_;
 }
 
+/// What is hidden, chosen or coloured stays so in the next run.
+void ScenePanel::forget_model() {
+    if (model_) look_ = model_->look();
+    model_.reset();
+}
+
 void ScenePanel::rest() {
     if (!observer_) return;
     if (screens_.are_open()) windows_ = Windows::all;
     screens_.close();
     for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
     watched_.clear();
-    model_.reset();
+    forget_model();
     hand_.forget();
     observer_.reset();
     motion_.forget();
@@ -147,7 +160,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
     try {
         if (!renderer_) renderer_ = std::make_unique<display::SceneRenderer>();
         if (observer != observer_) {
-            model_.reset();
+            forget_model();
             observer_ = observer;
             watched_.clear();
             motion_.forget();
@@ -155,16 +168,20 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         }
         if (plan_version_ != bench_.plan_version()) {
             SceneOutline outline = outline_of(*bench_.plan());
+            // Who has turned a slider or begun again goes on looking from where they are.
+            is_aimed_ = is_aimed_ && outline.shows_the_same(aimed_at_) && is_case_of(outline, aimed_at_);
+            aimed_at_ = outline;
             if (!model_) {
                 model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
                 model_->spread_work();
+                model_->use_look(std::exchange(look_, {}));
             } else model_->follow(std::move(outline));
             model_->use_map(map_, map_range_);
             model_->compare(compared_, compared_name_);
             sight_.follow(model_->outline());
             hand_.follow(observer_, model_->outline());
             plan_version_ = bench_.plan_version();
-            is_aimed_ = false;
+            needs_picture_ = true;
         }
         watch_sight();
         tools();
@@ -183,10 +200,12 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         const bool is_clicked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
                                 ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f;
         const Point clicked = (point(ImGui::GetIO().MousePos) - corner) * dense;
+        const bool has_hand_click = !is_measuring && !is_siting && ImGui::GetTime() - sited_at_ > 1.0;
         if (is_clicked && is_siting) move_site(clicked);
         else if (is_clicked && is_measuring) measure(clicked);
         else if (is_clicked) choose(clicked);
-        if (hand_.has_mouse() && ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+        if (has_hand_click && hand_.has_mouse() && ImGui::IsItemHovered() &&
+            ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
             lead_hand(clicked);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);
         if (sight_.display_file())
@@ -204,7 +223,10 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
                            sight_.display_file()->screens[i].name);
         }
         draw_cursor(paint, corner, 1.0 / dense);
-        draw_marks(paint, corner, 1.0 / dense);
+        draw_labels(paint, corner, 1.0 / dense);
+        for (const picture::Measurement& kept : measurements_)
+            draw_measured(kept, tone::dim, paint, corner, 1.0 / dense);
+        draw_measured({{}, marks_}, tone::chosen, paint, corner, 1.0 / dense);
         draw_hand(paint, corner, size, 1.0 / dense);
         if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);
     } catch (const Error& error) {

@@ -31,6 +31,10 @@ using picture::SightChoice;
 class ScenePanel {
 public:
     explicit ScenePanel(Workbench& bench) : bench_(bench) {}
+    /// Writes kept measurements that are in no file yet, and says where on standard error.
+    ~ScenePanel();
+    ScenePanel(const ScenePanel&) = delete;
+    ScenePanel& operator=(const ScenePanel&) = delete;
 
     /// `observer` may be null; a different one means a new run.
     void draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts);
@@ -55,8 +59,10 @@ public:
     /// Resets the view: iso, all visible, no clipping, no measurement.
     void reset();
     /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping; 3: along the line of sight as
-    /// it is now; 4: along the normal of the plane through three measured points.
+    /// it is now; 4: along the normal of the plane through three measured points, at first through these.
     void clip(int axis, double share);
+    /// Clips the scene along the plane through three measured points.
+    void clip_through_marks();
     /// Number of pictures drawn, each step of one that is drawn in steps; a scene that does not change is not drawn again.
     std::int64_t pictures() const { return pictures_; }
     /// The parts of the last picture.
@@ -76,8 +82,9 @@ public:
     const std::map<std::size_t, SceneModel::PlanPiece>& plan_pieces() const;
     /// File of the plan in the scene, as the run began; empty: none.
     std::string plan_file() const;
-    /// Draws the plates and implants of this one, in place of those of the plan's file.
-    void use_hardware(std::shared_ptr<const reconstruct::Reconstruction> of);
+    /// Draws vessels, plates, implants and sites of the plan as it is now; see SceneModel.
+    void use_plan(const std::filesystem::path& file, const cases::CasePlan& plan,
+                  std::filesystem::file_time_type written);
     /// Draws the fragments of a plan a second time, at these poses of their files and in another colour; empty: no longer.
     void compare(std::vector<std::optional<Pose>> poses, const std::string& name);
     /// A place that slices share, m; a click on a surface moves it. None: there are no slices.
@@ -114,6 +121,9 @@ private:
     void lead_hand(Point pixel);
     void keep_measurement();
     void save_measurements();
+    /// Throws Error when there is no folder for it. Returns the file.
+    std::filesystem::path write_measurements();
+    void forget_model();
     void draw_measurements();
     std::optional<display::Plane> clip_plane() const;
     std::optional<display::Picked> pick(Point pixel);
@@ -121,7 +131,9 @@ private:
     static std::optional<Point> place_in(const SceneScreens::Tile& tile, const display::DrawnView& view,
                                          const Vec3& in_scene, Point corner, double pixel);
     void draw_cursor(const Painter& paint, Point corner, double pixel);
-    void draw_marks(const Painter& paint, Point corner, double pixel);
+    void draw_measured(const picture::Measurement& measured, ImU32 colour, const Painter& paint, Point corner,
+                       double pixel);
+    void draw_labels(const Painter& paint, Point corner, double pixel);
     void draw_hand(const Painter& paint, Point corner, Point size, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);
     void attempt(const std::function<void()>& what);
@@ -154,6 +166,10 @@ private:
     std::string display_file_, offset_ = "as the display file says";
     std::vector<Vec3> marks_;
     std::vector<picture::Measurement> measurements_;
+    bool has_unwritten_ = false;  ///< of the measurements
+    SceneModel::Look look_;  ///< for the next model
+    picture::SceneOutline aimed_at_;
+    double sited_at_ = -10.0;  ///< when a click has moved the saw; its second click is none for the hand
     std::string problem_, note_;  ///< note: why a screen is not shown as requested
 };
 

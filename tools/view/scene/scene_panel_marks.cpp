@@ -46,6 +46,7 @@ void ScenePanel::move_site(Point pixel) {
     if (!picked || !model_->is_bone(picked->mesh))
         return bench_.tell("there is no bone under the pointer; click on the bone where the saw is to cut", true);
     is_siting = !bench_.cut_at(picked->position);
+    if (!is_siting) sited_at_ = ImGui::GetTime();
 }
 
 /// The part under the pointer; with Ctrl it is added to the chosen ones. The cursor of the slices goes there.
@@ -92,26 +93,41 @@ void ScenePanel::draw_cursor(const Painter& paint, Point corner, double pixel) {
         }
 }
 
-void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
-    if (marks_.empty()) return;
-    const std::string text = picture::measurement_words({{}, marks_});
+void ScenePanel::draw_labels(const Painter& paint, Point corner, double pixel) {
+    const double size = 0.85 * static_cast<double>(ImGui::GetFontSize());
+    for (const SceneScreens::Tile& tile : screens_.tiles())
+        for (const display::DrawnView& view : tile.views)
+            for (const SceneModel::Label& label : model_->labels())
+                if (const auto at = place_in(tile, view, label.at, corner, pixel)) {
+                    const Point to = *at + Point{8.0, -0.5 * size};
+                    paint.box({to.x - 3, to.y - 1, to.x + paint.width_of(label.text, size) + 3, to.y + size + 3},
+                              colour(0xffffff, 200), 3.0);
+                    paint.text(to, size, packed(0.7 * label.colour), label.text);
+                }
+}
+
+void ScenePanel::draw_measured(const picture::Measurement& measured, ImU32 ink, const Painter& paint, Point corner,
+                               double pixel) {
+    const std::vector<Vec3>& points = measured.points;
+    if (points.empty()) return;
+    const std::string text = picture::measurement_words(measured);
     const double size = static_cast<double>(ImGui::GetFontSize());
     for (const SceneScreens::Tile& tile : screens_.tiles())
         for (const display::DrawnView& view : tile.views) {
             // Drawn for each eye at their 3-D position.
             std::vector<Point> seen;
-            for (const Vec3& mark : marks_)
+            for (const Vec3& mark : points)
                 if (const auto at = place_in(tile, view, mark, corner, pixel)) seen.push_back(*at);
-            if (seen.size() != marks_.size()) continue;
+            if (seen.size() != points.size()) continue;
             for (std::size_t i = 0; i < seen.size(); ++i) {
-                if (i > 0) paint.line(seen[i - 1], seen[i], tone::chosen, 2.0);
-                paint.dot(seen[i], 4.0, tone::chosen);
+                if (i > 0) paint.line(seen[i - 1], seen[i], ink, 2.0);
+                paint.dot(seen[i], 4.0, ink);
             }
             if (text.empty()) continue;
             const double wide = paint.width_of(text, size);
             const Point at = seen.back() + Point{10.0, -0.5 * size};
             paint.box({at.x - 4, at.y - 2, at.x + wide + 4, at.y + size + 4}, colour(0x12161d, 220), 4.0);
-            paint.text(at, size, tone::chosen, text);
+            paint.text(at, size, ink, text);
         }
 }
 

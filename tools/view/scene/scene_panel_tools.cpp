@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buttons above the scene's picture.
+#include "tools/view/scene/clip_place.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
+#include <array>
 #include <cstdio>
 
 namespace tactus::view {
@@ -51,12 +53,19 @@ void ScenePanel::tools() {
     if (ImGui::Combo("##axis", &axis, axes, 6)) clip(axis - 1, clip_share_);
     mark_spot("clip");
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("view: across the line of sight as it is now; plane: that of three measured points");
+        ImGui::SetTooltip("view: across the line of sight as it is now; plane: through three measured points");
     if (clip_axis_ >= 0) {
         ImGui::SameLine();
         ImGui::SetNextItemWidth(-1.0f);
-        auto share = static_cast<float>(clip_share_);
-        if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+        const auto [low, high] =
+            model_ && !model_->bounds().empty() ? extent_along(model_->bounds(), clip_normal_) : std::array{0.0, 0.0};
+        auto place = static_cast<float>(1e3 * (low + clip_share_ * (high - low)));
+        if (ImGui::SliderFloat("##clip", &place, static_cast<float>(1e3 * low), static_cast<float>(1e3 * high),
+                               "%.1f mm") &&
+            high > low)
+            clip(clip_axis_, (1e-3 * static_cast<double>(place) - low) / (high - low));
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("place along the direction of the clip, in the axes of the scene");
     }
     hand_.tools();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bones and bodies of the scene as a list: show, hide, choose.
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/terminal.hpp"
 #include "tools/view/frame/elide.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
@@ -8,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 
 namespace tactus::view {
 
@@ -35,8 +38,9 @@ void ScenePanel::draw_tree() {
     }
     // What is drawn may change the list.
     const std::vector<SceneModel::Part> parts = model_->parts();
-    for (const SceneModel::Part& part : parts) {
-        ImGui::PushID(part.name.c_str());
+    for (std::size_t place = 0; place < parts.size(); ++place) {
+        const SceneModel::Part& part = parts[place];
+        ImGui::PushID(static_cast<int>(place));  // several may have one name
         bool is_shown = part.is_shown;
         if (ImGui::Checkbox("##shown", &is_shown)) {
             model_->show_part(part.name, is_shown);
@@ -79,17 +83,38 @@ void ScenePanel::draw_tree() {
 void ScenePanel::keep_measurement() {
     if (marks_.size() < 2) return;
     measurements_.push_back({fmt::format("measurement {}", measurements_.size() + 1), marks_});
+    has_unwritten_ = true;
 }
 
-void ScenePanel::save_measurements() {
-    const std::filesystem::path folder = bench_.status()->folder;
+std::filesystem::path ScenePanel::write_measurements() {
+    std::filesystem::path folder = bench_.status()->folder;
+    // A take is in a folder of its own.
+    const std::filesystem::path beside = bench_.editor().file().parent_path();
+    if (folder.empty() && std::filesystem::exists(beside / "take.json")) folder = beside;
+    if (folder.empty())
+        throw Error("there is no run whose folder would take the measurements; start one, then save them");
     std::filesystem::path file;
     for (int i = 1; file.empty() || std::filesystem::exists(file); ++i)
         file = folder / fmt::format("measurements-{}.mrk.json", i);
+    file::write_whole_file(file, picture::markups_text(measurements_));
+    has_unwritten_ = false;
+    return file;
+}
+
+void ScenePanel::save_measurements() {
     attempt([&] {
-        file::write_whole_file(file, picture::markups_text(measurements_));
+        const std::filesystem::path file = write_measurements();
         bench_.tell(fmt::format("{} measurements written to {}", measurements_.size(), file.string()));
     });
+}
+
+ScenePanel::~ScenePanel() {
+    if (!has_unwritten_ || measurements_.empty()) return;
+    try {
+        say(stderr, fmt::format("tactus: the kept measurements are in {}\n", write_measurements().string()));
+    } catch (const std::exception& error) {
+        say(stderr, fmt::format("tactus: the kept measurements are not saved: {}\n", error.what()));
+    }
 }
 
 /// Below the parts: what was measured, and kept.
@@ -111,7 +136,7 @@ void ScenePanel::draw_measurements() {
     if (measurements_.empty()) return;
     if (ImGui::SmallButton("save for Slicer")) save_measurements();
     mark_spot("save for Slicer");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("as .mrk.json in the folder of the run");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("as .mrk.json in the folder of the run; when the window closes, too");
 }
 
 }  // namespace tactus::view

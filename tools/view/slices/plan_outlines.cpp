@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace tactus::view {
@@ -69,13 +68,12 @@ const PlanOutlines::Surface* PlanOutlines::surface_of(const std::shared_ptr<cons
     if (!body || body->distance.values.empty()) return nullptr;
     Surface& surface = surfaces_[body->content_hash];
     if (surface.is_made) return &surface;
-    if (!surface.making.valid()) {
+    if (!surface.making.is_busy()) {
         surface.body = body;
-        surface.making =
-            std::async(std::launch::async, [body] { return geometry::iso_surface(body->distance, 0.0f, false); });
+        surface.making.begin(study::Lane::scene, [body] { return geometry::iso_surface(body->distance, 0.0f, false); });
     }
-    if (surface.making.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return nullptr;
-    surface.triangles = surface.making.get();
+    if (!surface.making.is_ready()) return nullptr;
+    surface.triangles = surface.making.take();
     surface.is_made = true;
     for (const Vec3& v : surface.triangles.vertices) surface.radius = std::max(surface.radius, glm::length(v));
     return &surface;

@@ -4,11 +4,11 @@
 
 #include "dsp/geometry/iso_surface.hpp"
 #include "tools/picture/scene/scene_model.hpp"
+#include "tools/study/beside.hpp"
 #include "tools/view/paint/slice_plane.hpp"
 
 #include <array>
 #include <cstdint>
-#include <future>
 #include <map>
 #include <memory>
 #include <vector>
@@ -36,7 +36,7 @@ public:
 private:
     struct Surface {
         std::shared_ptr<const observe::SeenBody> body;
-        std::future<geometry::TriangleSurface> making;
+        study::Beside<geometry::TriangleSurface> making;
         geometry::TriangleSurface triangles;
         double radius = 0.0;  ///< m, about the origin of the body
         bool is_made = false;

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -101,16 +100,16 @@ bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::p
 }
 
 void PlanScan::read(const std::filesystem::path& scan) {
-    reading_ = std::async(std::launch::async, [scan] { return read_plan_scan(scan); });
+    reading_.begin(study::Lane::studies, [scan] { return read_plan_scan(scan); });
 }
 
 void PlanScan::read_fragments(const std::filesystem::path& plan) {
-    reading_ = std::async(std::launch::async, [plan] { return scan_of_fragments(plan); });
+    reading_.begin(study::Lane::studies, [plan] { return scan_of_fragments(plan); });
 }
 
 bool PlanScan::tend() {
-    if (!reading_.valid() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    auto read = std::make_unique<PlanScanData>(reading_.get());
+    if (!reading_.is_ready()) return false;
+    auto read = std::make_unique<PlanScanData>(reading_.take());
     if (read->grid.values.empty()) return false;
     now_ = std::move(read);
     return true;

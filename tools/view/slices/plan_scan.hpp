@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scan beside the scene of a plan: a CT, or what the bones of its fragments hold of it. Read on a thread of its own.
+// The scan beside the scene of a plan: a CT, or what the bones of its fragments hold of it. Read beside the pictures.
 // No user interface.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
+#include "tools/study/beside.hpp"
 #include "tools/view/paint/slice_plane.hpp"
 
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,7 +35,7 @@ bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::p
 
 class PlanScan {
 public:
-    /// Reads it; what is read already stays until then. Waits for one that is being read.
+    /// Reads it; what is read already stays until then. One that is being read is given up.
     void read(const std::filesystem::path& scan);
     void read_fragments(const std::filesystem::path& plan);
 
@@ -46,10 +46,10 @@ public:
     bool tend();
     /// Null: none.
     const PlanScanData* now() const { return now_.get(); }
-    bool is_reading() const { return reading_.valid(); }
+    bool is_reading() const { return reading_.is_busy(); }
 
 private:
-    std::future<PlanScanData> reading_;
+    study::Beside<PlanScanData> reading_;
     std::unique_ptr<PlanScanData> now_;
 };
 
