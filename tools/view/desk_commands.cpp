@@ -4,6 +4,7 @@
 
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/run_bar.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -110,6 +111,7 @@ void Desk::add_run_commands(std::vector<Command>& all) {
                    [this] { bench_.pause(bench_.status()->state == State::runs); }, runs});
     all.push_back({"Run", "Record a take", "Ctrl+R", "save log", [this] { bench_.record(!bench_.is_recording()); },
                    nullptr, [this, runs] { return runs() && bench_.is_recording(); }});
+    all.push_back({"Run", "Faults of this run", "", "history errors forces", [this] { show_faults(bench_); }});
     all.push_back({"Run", "Look at the take", "", "recording open", [this] { bench_.wants_take = true; },
                    [this, runs] {
                        return !runs() && !bench_.take().empty() && fs::exists(bench_.take() / "result.json") &&
@@ -146,6 +148,7 @@ std::vector<Command> Desk::all_commands() {
             all.push_back({"open", "Open " + item.title, "", "file recent take plan",
                            [this, path = item.path] { wishes.open = path; }});
     scene_.add_commands(all);
+    if (shows(columns_, Panel::scopes)) scopes_.add_commands(all);
     if (take_) return all;
     plan_.add_commands(all);
     if (!take_) slices_.add_commands(all);
