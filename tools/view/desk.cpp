@@ -32,6 +32,10 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
       memory_(memory),
       start_page_(memory) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
+    if (take) {
+        const std::filesystem::path& folder = take->take().folder;
+        scopes_.folder_of_take = folder.has_filename() ? folder : folder.parent_path();
+    }
     commands_ = make_commands();
     nodes_.ask_file = [this](const std::string& title, FileChooser chooser, FileDialog::Done done) {
         ask_file(title, std::move(chooser), std::move(done));
@@ -49,9 +53,7 @@ const Feed* Desk::feed() const {
 void Desk::follow_run() {
     if (take_) {
         take_->tend(static_cast<double>(ImGui::GetIO().DeltaTime));
-        double longest = 0.1;
-        for (const Scopes::Scope& scope : scopes_.list()) longest = std::max(longest, scope.span);
-        take_->feed().traced_s = longest;
+        take_->feed().traced_s = scopes_.longest_span();
         take_->feed().follow(looked_at_, scopes_.traced());
         return;
     }
@@ -65,6 +67,11 @@ void Desk::follow_run() {
     std::set<std::string> traced = scopes_.traced();
     calibration_.add_traced(traced);
     live_->follow(looked_at_, traced);
+}
+
+void Desk::rest() {
+    if (take_) bench_.tend();
+    else follow_run();
 }
 
 void Desk::show_messages(double height) {
@@ -125,7 +132,7 @@ void Desk::draw() {
     // On a narrow window the words of the run need the room of the menus.
     draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0,
                std::exchange(wants_menus_, false));
-    run_bar(bench_, take_, fonts_);
+    run_bar(bench_, *bench_.status(), take_, fonts_);
     const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;

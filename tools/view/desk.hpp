@@ -42,6 +42,8 @@ public:
 
     /// Draws one frame, between Window::begin and Window::end.
     void draw();
+    /// Instead of `draw` while no picture is shown: what is traced goes on without gaps.
+    void rest();
 
     Workbench& bench() { return bench_; }
     TakeBench* take() { return take_; }

@@ -4,6 +4,7 @@
 
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/run_bar.hpp"
 #include "tools/view/scene/hand_offer.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -116,6 +117,7 @@ void Desk::add_run_commands(std::vector<Command>& all) {
     all.push_back({"Run", "Hear the force", "", "sound tone audible sonify",
                    [this] { bench_.hear_force(!bench_.hears_force()); }, [this] { return bench_.can_hear_force(); },
                    [this] { return bench_.hears_force(); }});
+    all.push_back({"Run", "Faults of this run", "", "history errors forces", [this] { show_faults(bench_); }});
     all.push_back({"Run", "Look at the take", "", "recording open", [this] { bench_.wants_take = true; },
                    [this, runs] {
                        return !runs() && !bench_.take().empty() && fs::exists(bench_.take() / "result.json") &&
@@ -152,6 +154,7 @@ std::vector<Command> Desk::all_commands() {
             all.push_back({"open", "Open " + item.title, "", "file recent take plan",
                            [this, path = item.path] { wishes.open = path; }});
     scene_.add_commands(all);
+    if (shows(columns_, Panel::scopes)) scopes_.add_commands(all);
     if (take_) return all;
     add_hand_commands(bench_, all);
     plan_.add_commands(all);

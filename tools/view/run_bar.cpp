@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
@@ -60,7 +61,7 @@ void words(const std::string& text, ImU32 ink) {
     ImGui::SameLine();
 }
 
-/// Whether the hands feel forces; earlier faults behind a button.
+/// Whether the hands feel forces.
 void forces_word(const RunStatus& status) {
     using control::ForceState;
     const session::HandForces* worst = nullptr;
@@ -76,11 +77,19 @@ void forces_word(const RunStatus& status) {
               : is_on ? tone::good
                       : tone::warm);
     }
+}
+
+bool wants_faults = false;
+
+std::string faults_label(const RunStatus& status) {
+    return fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
+}
+
+/// Faults of the run behind a button, which stays when the run is over.
+void history_of_faults(const RunStatus& status) {
+    const bool asked = std::exchange(wants_faults, false);
     if (status.faults.empty()) return;
-    if (ImGui::GetCursorPosX() + 5.0f * ImGui::GetFontSize() > words_end) return;
-    const std::string label =
-        fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
-    if (ImGui::Button(label.c_str())) ImGui::OpenPopup("history of faults");
+    if (ImGui::Button(faults_label(status).c_str()) || asked) ImGui::OpenPopup("history of faults");
     mark_spot("faults");
     ImGui::SameLine();
     if (!ImGui::BeginPopup("history of faults")) return;
@@ -90,6 +99,18 @@ void forces_word(const RunStatus& status) {
         ImGui::PopStyleColor();
     }
     ImGui::EndPopup();
+}
+
+constexpr const char* look_label = "Look at the take";
+
+bool offers_take(Workbench& bench, const RunStatus& status) {
+    const bool runs = bench.running() && status.state != RunStatus::State::over;
+    return !runs && !bench.take().empty() && std::filesystem::exists(bench.take() / "result.json");
+}
+
+float button_width(const char* label) {
+    return ImGui::CalcTextSize(label, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x +
+           ImGui::GetStyle().ItemSpacing.x;
 }
 
 void run_buttons(Workbench& bench, const RunStatus& status) {
@@ -109,10 +130,14 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
         bench.record(!(runs && status.is_recording));
     static const char* const names[] = {"loading", "runs", "forces fade", "paused", "not running"};
     const ImU32 ink = status.state == State::runs ? tone::good : status.state == State::stands ? tone::warm : tone::dim;
+    const bool has_take = offers_take(bench, status);
+    // A button comes before words.
+    if (has_take) words_end -= button_width(look_label);
     words(names[static_cast<std::size_t>(status.state)], ink);
-    if (!runs && !bench.take().empty() && std::filesystem::exists(bench.take() / "result.json")) {
+    if (has_take) {
+        words_end += button_width(look_label);
         ImGui::BeginDisabled(!bench.editor().is_saved());
-        if (button("Look at the take")) bench.wants_take = true;
+        if (button(look_label)) bench.wants_take = true;
         ImGui::EndDisabled();
         ImGui::SameLine();
     }
@@ -162,14 +187,21 @@ void take_line(Workbench& bench, TakeBench& take) {
 
 }  // namespace
 
-void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
+void show_faults(Workbench& bench) {
+    if (bench.status()->faults.empty()) bench.tell("this run has had no fault");
+    else wants_faults = true;
+}
+
+void run_bar(Workbench& bench, const RunStatus& status, TakeBench* take, const Fonts& fonts) {
     const char* const save = bench.editor().is_saved() ? "Saved" : "Save";
     const ImGuiStyle& style = ImGui::GetStyle();
     float wide = 3.0f * 2.0f * style.FramePadding.x + 3.0f * style.ItemSpacing.x + style.WindowPadding.x;
     for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
+    if (!status.faults.empty()) wide += button_width(faults_label(status).c_str());
     words_end = ImGui::GetWindowWidth() - (take ? 0.0f : wide);
     // A long title leaves room for the buttons of the run.
-    const float signs = 3.0f * (1.4f * ImGui::GetFrameHeight() + style.ItemSpacing.x) + 2.0f * style.WindowPadding.x;
+    const float signs = 3.0f * (1.4f * ImGui::GetFrameHeight() + style.ItemSpacing.x) + 2.0f * style.WindowPadding.x +
+                        (!take && offers_take(bench, status) ? button_width(look_label) : 0.0f);
     const double room = static_cast<double>(std::clamp(words_end - signs, 0.0f, 0.3f * ImGui::GetWindowWidth()));
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     ImGui::PushFont(fonts.bold);
@@ -177,8 +209,9 @@ void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
         words(paint.shortened(bench.title(), static_cast<double>(ImGui::GetFontSize()), room, true), tone::text);
     ImGui::PopFont();
     if (take) return take_line(bench, *take);
-    run_buttons(bench, *bench.status());
+    run_buttons(bench, status);
     ImGui::SameLine(words_end);
+    history_of_faults(status);
     ImGui::BeginDisabled(!bench.editor().can_undo());
     if (button("Undo")) bench.undo();
     ImGui::EndDisabled();

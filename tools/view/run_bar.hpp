@@ -9,7 +9,9 @@ namespace tactus::view {
 
 class TakeBench;
 
-/// `take`: null for a run.
-void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts);
+/// `status`: of the run, or of the last one. `take`: null for a run.
+void run_bar(Workbench& bench, const RunStatus& status, TakeBench* take, const Fonts& fonts);
+/// Opens the history of faults with the next picture.
+void show_faults(Workbench& bench);
 
 }  // namespace tactus::view

@@ -117,7 +117,7 @@ public:
                 window_.end();
                 desk_->scene().hand().end_picture();
             } else {
-                bench_->tend();
+                desk_->rest();
                 desk_->scene().hand().begin_picture();
                 desk_->scene().hand().end_picture();
             }

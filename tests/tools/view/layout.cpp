@@ -218,7 +218,7 @@ TEST_CASE("a tone is a line of its frequency in a scope's spectrum, and a refere
     signal::WelchSettings settings;
     signal::Spectrum louder = signal::welch<double>(trace.columns[0], settings);
     for (double& power : louder.power) power *= 100.0;
-    const Plot plot = spectrum_plot(trace, {1.0, "V", 1}, 48000.0, 1.0, 1.0, louder);
+    const Plot plot = spectrum_plot(trace, 0, {1.0, "V", 1}, 48000.0, 1.0, 1.0, louder);
     REQUIRE(plot.curves.size() == 2);
     CHECK(plot.curves[0].is_reference);
     const auto peak = [](const Curve& curve) { return *std::ranges::max_element(curve.points, {}, &Point::y); };

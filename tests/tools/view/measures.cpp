@@ -82,16 +82,38 @@ TEST_CASE("the histogram of a sine is that of the arc sine law, and counts every
 
 TEST_CASE("pairs of sine and cosine lie on their ellipse, and a slower signal is held") {
     const Trace trace = tones(1.0);
-    const auto points = pairs_of(trace, 0, trace, 1, {0.0, 1.0}, 500);
-    CHECK(points.size() == 500);
-    for (const Point& p : points) CHECK(std::pow(p.x / 2.0, 2.0) + std::pow(p.y / 0.5, 2.0) == Approx(1.0));
+    const Pairs pairs = pairs_of(trace, 0, trace, 1, {0.0, 1.0}, 500);
+    CHECK(pairs.points.size() == 500);
+    for (const Point& p : pairs.points) CHECK(std::pow(p.x / 2.0, 2.0) + std::pow(p.y / 0.5, 2.0) == Approx(1.0));
     Trace slow;
     slow.times = {0.1, 0.3};
     slow.columns = {{5.0, 7.0}};
-    const auto held = pairs_of(slow, 0, trace, 1, {0.0, 0.5}, 100'000);
+    const auto held = pairs_of(slow, 0, trace, 1, {0.0, 0.5}, 100'000).points;
     CHECK(held.size() == 3201);  // none before the first value
     CHECK(held.front().x == 5.0);
     CHECK(held.back().x == 7.0);
+}
+
+TEST_CASE("of many pairs the newest are shown one after another with how far back they go") {
+    const Trace trace = tones(1.0);
+    const Pairs pairs = pairs_of(trace, 0, trace, 1, {0.0, 1.0}, 500);
+    CHECK(pairs.is_cut);
+    CHECK(pairs.since == Approx(trace.times[8000 - 500]));
+    REQUIRE(pairs.points.size() == 500);
+    for (std::size_t i = 0; i < 500; ++i) CHECK(pairs.points[i].x == trace.columns[0][7500 + i]);
+    CHECK_FALSE(pairs_of(trace, 0, trace, 1, {0.0, 1.0}, 8000).is_cut);
+}
+
+TEST_CASE("a waterfall begins at its first bin and names the bin of each cell") {
+    const Waterfall all = waterfall_of(tones(2.0, 1000.0), 0, rate, {0.0, 2.0}, 48, 160);
+    // 2 s of 8 kHz in 48 rows: segments of 64 samples.
+    CHECK(all.hz.low == Approx(125.0));
+    CHECK(all.bins[all.index_of(10, 0)] == Approx(125.0));
+    CHECK(all.bins[all.index_of(10, 159)] == Approx(4000.0));
+    for (int c = 0; c < 160; ++c) {
+        const double hz = all.hz.low * std::pow(all.hz.high / all.hz.low, (c + 0.5) / 160);
+        CHECK(std::abs(all.bins[all.index_of(10, c)] - hz) <= 63.0);
+    }
 }
 
 TEST_CASE("a waterfall shows a tone where it is, when it is") {
@@ -110,7 +132,7 @@ TEST_CASE("a waterfall shows a tone where it is, when it is") {
         int loudest = 0;
         for (int c = 0; c < 50; ++c)
             if (all.at(row, c) > all.at(row, loudest)) loudest = c;
-        const double hz = all.hz.low * std::pow(all.hz.high / all.hz.low, (loudest + 0.5) / 50);
+        const double hz = all.bins[all.index_of(row, loudest)];
         CAPTURE(row, hz);
         CHECK(hz == Approx(row < 4 ? 200.0 : 1600.0).epsilon(0.1));
         CHECK(all.at(row, loudest) > all.at(row, row < 4 ? 49 : 0) + 40.0);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -94,19 +95,19 @@ TEST_CASE("the level of a tone in a spectrum is its power over the window's band
     // At the middle of a bin; a Hann window has a bandwidth of 1.5 bins.
     const std::size_t segment = signal::suggested_segment(rate, static_cast<std::size_t>(rate));
     const double df = rate / static_cast<double>(segment), hz = df * std::round(1000.0 / df);
-    const Plot plot = spectrum_plot(sine(1.0, 0.5, hz), volts, rate, 1.0, 1.0, {});
+    const Plot plot = spectrum_plot(sine(1.0, 0.5, hz), 0, volts, rate, 1.0, 1.0, {});
     const double wanted = 10.0 * std::log10(0.5 * 0.5 / 2.0 / (1.5 * df));
     const Point at{hz, 0.0};
     const std::string words = spectrum_words(plot, std::span(&at, 1));
     CHECK(words == fmt::format("{:.5g} Hz: {:.2f} dB re (V)²/Hz", hz, wanted));
-    const Plot full = spectrum_plot(sine(1.0, 1.0, hz), volts, rate, 1.0, 1.0, {});
+    const Plot full = spectrum_plot(sine(1.0, 1.0, hz), 0, volts, rate, 1.0, 1.0, {});
     CHECK(spectrum_words(full, std::span(&at, 1)) ==
           fmt::format("{:.5g} Hz: {:.2f} dB re (V)²/Hz", hz, wanted + 20.0 * std::log10(2.0)));
 
     std::mt19937 random(1);
     std::normal_distribution<double> normal(0.0, 0.1);
     const Trace noise = trace_of(10.0, [&](double) { return normal(random); });
-    const Plot flat = spectrum_plot(noise, volts, rate, 10.0, 10.0, {});
+    const Plot flat = spectrum_plot(noise, 0, volts, rate, 10.0, 10.0, {});
     double sum = 0.0;
     int count = 0;
     for (const Point& p : flat.curves[0].points)
@@ -119,19 +120,23 @@ TEST_CASE("the level of a tone in a spectrum is its power over the window's band
 TEST_CASE("a waterfall tells the level of the cell under the pointer, and the difference of two") {
     // 100 times the power in the second half.
     const Trace trace = trace_of(2.0, [](double t) { return (t < 1.0 ? 0.1 : 1.0) * std::sin(2.0 * pi * 1000.0 * t); });
-    const Plot plot = waterfall_plot(trace, volts, rate, 2.0, 2.0);
+    const Plot plot = waterfall_plot(trace, 0, volts, rate, 2.0, 2.0);
     const Point at[] = {{1000.0, 0.5}, {1000.0, 1.5}};
     CHECK(waterfall_words(plot, at) == "Δ 0 Hz, Δ 20.00 dB");
     const std::string one = waterfall_words(plot, std::span(at).subspan(1, 1));
-    CHECK(one.starts_with("1000 Hz: "));
+    CHECK(one.starts_with("937.5 Hz: "));
     CHECK(one.ends_with(" dB re (V)²/Hz"));
     CHECK(waterfall_words({}, at).empty());
+    // Before the first value nothing was measured.
+    const Plot early = waterfall_plot(trace, 0, volts, rate, 2.0, 4.0);
+    const Point before{1000.0, -1.5};
+    CHECK(waterfall_words(early, std::span(&before, 1)).empty());
 }
 
 TEST_CASE("a histogram tells the share of the part under the pointer, and that between two cursors") {
     // Even between 0 and 6: each of 60 parts has a sixtieth.
     const Trace even = trace_of(1.0, [](double t) { return 6.0 * t * rate / (rate - 1.0); });
-    const Plot plot = histogram_plot(even, volts, 1.0, 1.0);
+    const Plot plot = histogram_plot(even, 0, volts, 1.0, 1.0);
     for (const double x : {0.01, 0.09, 3.01, 3.09, 5.99}) {
         const Point at{x, 0.0};
         const double low = std::floor(x / 0.1) * 0.1;
@@ -153,16 +158,28 @@ TEST_CASE("a curve of pairs tells where the pointer is, in the units of both axe
     CHECK(plot.height_at(plot.up(300.0)) == Approx(300.0));
 }
 
-TEST_CASE("a table of a scope spells the unit of every column") {
-    const test::Folder folder;
-    Trace trace;
-    trace.times = {0.5, 0.501, 0.502};
-    trace.columns = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
-    trace.names = {"fx", "tx"};
-    write_csv(trace, {0.5005, 0.6}, {"N", "N m"}, folder.path / "force.csv");
-    CHECK(test::slurp(folder.path / "force.csv") == "time s,fx N,tx N m\n0.501,2,5\n0.502,3,6\n");
-    CHECK(column_units(value::pose, "m").size() == value::pose.columns.size());
-    CHECK(column_units(value::wrench, "N").size() == value::wrench.columns.size());
-    CHECK(column_units(value::twist, "").at(3) == "rad/s");
-    CHECK(column_units(value::number, "K") == std::vector<std::string>{"K"});
+TEST_CASE("the peak of a tone is read at its frequency, however many bins share a step of the curve") {
+    const double df = rate / 8192.0;
+    for (const int bin : {171, 172, 173, 1000}) {
+        const Plot plot = spectrum_plot(sine(1.0, 1.0, bin * df), 0, volts, rate, 1.0, 1.0, {});
+        const auto& points = plot.curves[0].points;
+        const double hz = std::ranges::max_element(points, {}, &Point::y)->x;
+        CAPTURE(bin, bin * df);
+        CHECK(hz == Approx(bin * df).margin(0.01));
+    }
+}
+
+TEST_CASE("a spectrum begins at its first bin, and says when there are too few values") {
+    const double slow = 100.0;
+    Trace trace{{}, {{}}, {"value"}, 1.0 / slow};
+    for (int k = 0; k < 2000; ++k) {
+        trace.times.push_back(k / slow);
+        trace.columns[0].push_back(std::sin(2.0 * pi * 3.125 * k / slow));
+    }
+    const Plot plot = spectrum_plot(trace, 0, volts, slow, 20.0, 20.0, {});
+    CHECK(plot.x.low < 2.0);
+    CHECK(plot.note.empty());
+    CHECK(std::ranges::max_element(plot.curves[0].points, {}, &Point::y)->x == Approx(3.125).margin(0.01));
+    CHECK(spectrum_plot(trace, 0, volts, slow, 20.0, 0.2, {}).note == "too few values for a spectrum");
+    CHECK(waterfall_plot(trace, 0, volts, slow, 20.0, 0.2).note == "too few values for a spectrum");
 }

@@ -58,16 +58,26 @@ Range fitted(Range shown, Range values) {
     return holds && shown.span() < 2.0 * wanted.span() ? shown : wanted;
 }
 
-Envelope envelope_of(std::span<const double> times, std::span<const double> values, Range time, int columns) {
+Envelope envelope_of(std::span<const double> times, std::span<const double> values, Range time, int columns,
+                     double period) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const auto count = static_cast<std::size_t>(std::max(columns, 0));
-    Envelope envelope{std::vector<double>(count, none), std::vector<double>(count, none)};
+    Envelope envelope{std::vector<double>(count, none), std::vector<double>(count, none),
+                      std::vector<bool>(count, false)};
     if (!(time.span() > 0.0) || count == 0) return envelope;
-    const auto begin = std::ranges::lower_bound(times, time.low);
-    for (auto at = static_cast<std::size_t>(begin - times.begin()); at < times.size() && times[at] <= time.high; ++at) {
+    const auto first = static_cast<std::size_t>(std::ranges::lower_bound(times, time.low) - times.begin());
+    bool is_broken = false;
+    for (std::size_t at = first; at < times.size() && times[at] <= time.high; ++at) {
+        is_broken |= at > first && period > 0.0 && times[at] - times[at - 1] > 1.5 * period;
+        if (!std::isfinite(values[at])) {
+            is_broken = true;
+            continue;
+        }
         const double where = (times[at] - time.low) / time.span() * columns;
         const std::size_t column = std::min(static_cast<std::size_t>(where), count - 1);
         double &low = envelope.low[column], &high = envelope.high[column];
+        if (std::isnan(low)) envelope.begins[column] = is_broken;
+        is_broken = false;
         if (!(values[at] >= low)) low = values[at];
         if (!(values[at] <= high)) high = values[at];
     }

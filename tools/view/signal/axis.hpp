@@ -25,10 +25,13 @@ std::string tick_label(double value, double step);
 /// A range with a margin around all values; keeps the old range while it still fits well.
 Range fitted(Range shown, Range values);
 
-/// Minimum and maximum in each of `columns` equal parts of the time range; NaN for empty parts. Times must increase.
+/// Minimum and maximum in each of `columns` equal parts of the time range; NaN for parts without a finite value. Times
+/// must increase. With a period (s), times that lie more than 1.5 periods apart have a gap between them.
 struct Envelope {
     std::vector<double> low, high;
+    std::vector<bool> begins;  ///< a gap or a value that is not finite lies before the part's first finite value
 };
-Envelope envelope_of(std::span<const double> times, std::span<const double> values, Range time, int columns);
+Envelope envelope_of(std::span<const double> times, std::span<const double> values, Range time, int columns,
+                     double period = 0.0);
 
 }  // namespace tactus::view

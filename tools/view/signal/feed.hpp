@@ -23,7 +23,11 @@ struct Trace {
     std::vector<double> times;                 ///< logical, s
     std::vector<std::vector<double>> columns;  ///< by column, as long as `times`
     std::vector<std::string> names;            ///< of the columns
+    double period = 0.0;                       ///< s from one value to the next; 0: not known
 };
+
+/// Whether values are missing between that row and the one before: lost, or never recorded.
+bool follows_gap(const Trace& trace, std::size_t row);
 
 /// Drops values older than `before`; only occasionally, because it moves the remaining values.
 void forget(Trace& trace, double before);
@@ -74,8 +78,8 @@ private:
     double now_ = 0.0;
     std::set<std::string> watched_;
     std::map<std::string, Trace> traces_;
-    std::unordered_map<std::string, const ValueType*> types_;
-    std::int64_t listed_ = -1;  ///< version of the ports in `types_`
+    std::unordered_map<std::string, observe::Observer::Port> known_;
+    std::int64_t listed_ = -1;  ///< version of the ports in `known_`
 };
 
 /// Values of a take at a settable time: `latest` is the value at that time, and traces end there.

@@ -19,6 +19,11 @@ Feed::Latest as_columns(const std::optional<observe::Seen<T>>& seen, const Value
 
 }  // namespace
 
+bool follows_gap(const Trace& trace, std::size_t row) {
+    return row > 0 && row < trace.times.size() && trace.period > 0.0 &&
+           trace.times[row] - trace.times[row - 1] > 1.5 * trace.period;
+}
+
 void forget(Trace& trace, double before) {
     const auto first = std::ranges::lower_bound(trace.times, before) - trace.times.begin();
     if (first < static_cast<std::ptrdiff_t>(trace.times.size()) / 4) return;
@@ -53,18 +58,21 @@ void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std
     observer_->advance();
     if (listed_ != observer_->ports_version()) {
         listed_ = observer_->ports_version();
-        types_.clear();
-        for (const observe::Observer::Port& port : observer_->ports()) types_.emplace(port.name, port.type);
+        known_.clear();
+        for (const observe::Observer::Port& port : observer_->ports()) known_.emplace(port.name, port);
     }
     for (auto& [port, trace] : traces_) {
         observe::SeenValues values;
         if (!observer_->fetch(port, values)) continue;
         const std::size_t wide = values.per_value;
-        if (trace.columns.size() != wide) {
+        const auto known = known_.find(port);
+        const double period = known != known_.end() ? seconds(known->second.period) : trace.period;
+        // An edit may change the type or the rate.
+        if (trace.columns.size() != wide || trace.period != period) {
             trace = {};
             trace.columns.resize(wide);
-            if (const auto type = types_.find(port); type != types_.end())
-                trace.names = take::channels_of(*type->second);
+            trace.period = period;
+            if (known != known_.end()) trace.names = take::channels_of(*known->second.type);
         }
         for (std::size_t i = 0; i < values.when.size(); ++i) {
             trace.times.push_back(seconds(values.when[i]));
@@ -75,9 +83,9 @@ void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std
 }
 
 Feed::Latest LiveFeed::latest(const std::string& port) const {
-    const auto found = types_.find(port);
-    if (found == types_.end()) return {};
-    const ValueType& type = *found->second;
+    const auto found = known_.find(port);
+    if (found == known_.end()) return {};
+    const ValueType& type = *found->second.type;
     if (&type == &value::pose) return as_columns(observer_->latest<Pose>(port), type);
     if (&type == &value::twist) return as_columns(observer_->latest<Twist>(port), type);
     if (&type == &value::wrench) return as_columns(observer_->latest<Wrench>(port), type);

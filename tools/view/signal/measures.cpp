@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/signal/measures.hpp"
 
-#include "dsp/signal/spectrum/welch.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -41,6 +39,7 @@ std::optional<double> trigger_time(const Trace& trace, std::size_t column, const
     i = std::min(i + 1, trace.times.size());
     while (i-- > 1) {
         if (trace.times[i] < within.low) return std::nullopt;
+        if (follows_gap(trace, i)) continue;
         const double before = sign * (values[i - 1] - trigger.level), after = sign * (values[i] - trigger.level);
         if (!(before < 0.0 && after >= 0.0)) continue;
         const double time = trace.times[i - 1] + (trace.times[i] - trace.times[i - 1]) * (before / (before - after));
@@ -67,6 +66,18 @@ Level level_of(const Trace& trace, std::size_t column, Range time) {
     return level;
 }
 
+Trace magnitude_of(const Trace& trace) {
+    Trace magnitude{trace.times, std::vector<std::vector<double>>(1), {"magnitude"}, trace.period};
+    const std::size_t wide = std::min<std::size_t>(trace.columns.size(), 3);
+    magnitude.columns[0].reserve(trace.times.size());
+    for (std::size_t i = 0; i < trace.times.size(); ++i) {
+        double sum = 0.0;
+        for (std::size_t c = 0; c < wide; ++c) sum += trace.columns[c][i] * trace.columns[c][i];
+        magnitude.columns[0].push_back(std::sqrt(sum));
+    }
+    return magnitude;
+}
+
 Histogram histogram_of(const Trace& trace, std::size_t column, Range time, int parts) {
     Histogram histogram;
     const Level level = level_of(trace, column, time);
@@ -86,22 +97,74 @@ Histogram histogram_of(const Trace& trace, std::size_t column, Range time, int p
     return histogram;
 }
 
-std::vector<Point> pairs_of(const Trace& x, std::size_t x_column, const Trace& y, std::size_t y_column, Range time,
-                            std::size_t most) {
-    std::vector<Point> points;
-    if (x_column >= x.columns.size() || y_column >= y.columns.size() || most < 1) return points;
-    const std::size_t first = index_at(y, time.low);
+Flaws flaws_of(const Trace& trace, std::size_t column, Range time) {
+    Flaws flaws;
+    if (column >= trace.columns.size()) return flaws;
+    const std::size_t first = index_at(trace, time.low);
+    for (std::size_t i = first; i < trace.times.size() && trace.times[i] <= time.high; ++i) {
+        if (!std::isfinite(trace.columns[column][i])) ++flaws.not_finite;
+        if (!follows_gap(trace, i)) continue;
+        // A gap at the left edge is only partly within.
+        const double missing = trace.times[i - 1] < time.low
+                                   ? std::floor((trace.times[i] - time.low) / trace.period + 1e-6)
+                                   : std::round((trace.times[i] - trace.times[i - 1]) / trace.period) - 1.0;
+        flaws.missing += static_cast<std::size_t>(std::max(missing, 0.0));
+    }
+    return flaws;
+}
+
+Pairs pairs_of(const Trace& x, std::size_t x_column, const Trace& y, std::size_t y_column, Range time,
+               std::size_t most) {
+    Pairs pairs;
+    if (x_column >= x.columns.size() || y_column >= y.columns.size() || most < 1) return pairs;
+    std::size_t first = index_at(y, time.low);
     std::size_t past = first;
     while (past < y.times.size() && y.times[past] <= time.high) ++past;
-    const std::size_t step = std::max<std::size_t>(1, (past - first + most - 1) / most);
-    for (std::size_t i = first; i < past; i += step) {
+    pairs.is_cut = past - first > most;
+    if (pairs.is_cut) first = past - most;
+    const double longest = 1.5 * std::max(x.period, y.period);
+    bool is_broken = false;
+    for (std::size_t i = first; i < past; ++i) {
+        is_broken |= i > first && follows_gap(y, i);
         const auto after = std::ranges::upper_bound(x.times, y.times[i]);
         if (after == x.times.begin()) continue;
-        const Point p{x.columns[x_column][static_cast<std::size_t>(after - x.times.begin()) - 1],
-                      y.columns[y_column][i]};
-        if (std::isfinite(p.x) && std::isfinite(p.y)) points.push_back(p);
+        const auto held = static_cast<std::size_t>(after - x.times.begin()) - 1;
+        const Point p{x.columns[x_column][held], y.columns[y_column][i]};
+        const bool is_there = !(x.period > 0.0) || y.times[i] - x.times[held] <= longest;
+        if (!is_there || !std::isfinite(p.x) || !std::isfinite(p.y)) {
+            is_broken = true;
+            continue;
+        }
+        if (pairs.points.empty()) pairs.since = y.times[i];
+        else if (is_broken) pairs.begins.push_back(pairs.points.size());
+        is_broken = false;
+        pairs.points.push_back(p);
     }
-    return points;
+    return pairs;
+}
+
+signal::Spectrum spectrum_of(const Trace& trace, std::size_t column, double rate, Range time, double factor) {
+    constexpr std::size_t least = 32;
+    if (column >= trace.columns.size()) return {};
+    std::vector<std::vector<double>> pieces(1);
+    for (std::size_t i = index_at(trace, time.low); i < trace.times.size() && trace.times[i] <= time.high; ++i) {
+        const double value = factor * trace.columns[column][i];
+        if (!pieces.back().empty() && (follows_gap(trace, i) || !std::isfinite(value))) pieces.emplace_back();
+        if (std::isfinite(value)) pieces.back().push_back(value);
+    }
+    std::size_t longest = 0;
+    for (const auto& piece : pieces) longest = std::max(longest, piece.size());
+    if (longest < least) return {};
+    signal::WelchSettings settings;
+    settings.rate = rate;
+    settings.segment = signal::suggested_segment(rate, longest);
+    settings.overlap = settings.segment / 2;
+    signal::WelchStream<double> stream(settings);
+    for (const auto& piece : pieces) {
+        stream.push(piece);
+        stream.forget_waiting();
+    }
+    return stream.spectrum();
 }
 
 Waterfall waterfall_of(const Trace& trace, std::size_t column, double rate, Range time, int rows, int columns,
@@ -114,19 +177,16 @@ Waterfall waterfall_of(const Trace& trace, std::size_t column, double rate, Rang
     all.rows = std::clamp(static_cast<int>(time.span() * rate / 64.0), 0, rows);
     all.columns = columns;
     all.cells.assign(static_cast<std::size_t>(all.rows) * static_cast<std::size_t>(columns), lowest_db);
+    all.bins.assign(all.cells.size(), 0.0);
+    if (all.rows < 1) return all;
+    const auto per_row = static_cast<std::size_t>(std::round(time.span() * rate / all.rows));
+    all.hz.low = rate / static_cast<double>(signal::suggested_segment(rate, per_row));
     for (int row = 0; row < all.rows; ++row) {
-        const std::size_t from = index_at(trace, time.low + time.span() * row / all.rows),
-                          to = index_at(trace, time.low + time.span() * (row + 1) / all.rows);
-        if (to < from + 32) continue;  // the trace begins later, or has a gap
-        std::vector<double> record(trace.columns[column].begin() + static_cast<std::ptrdiff_t>(from),
-                                   trace.columns[column].begin() + static_cast<std::ptrdiff_t>(to));
-        for (double& x : record) x = std::isfinite(x) ? factor * x : 0.0;
-        signal::WelchSettings settings;
-        settings.rate = rate;
-        settings.segment = signal::suggested_segment(rate, record.size());
-        settings.overlap = settings.segment / 2;
-        const signal::Spectrum spectrum = signal::welch<double>(record, settings);
-        if (spectrum.power.size() < 2) continue;
+        const auto edge_of = [&](int k) { return time.low + time.span() * k / all.rows; };
+        // A value belongs to one row only.
+        const Range within{edge_of(row), row + 1 < all.rows ? std::nextafter(edge_of(row + 1), time.low) : time.high};
+        const signal::Spectrum spectrum = spectrum_of(trace, column, rate, within, factor);
+        if (spectrum.power.size() < 2) continue;  // the trace begins later, or has a gap
         const double last = static_cast<double>(spectrum.power.size() - 1);
         for (int c = 0; c < columns; ++c) {
             const auto edge = [&](int k) {
@@ -134,11 +194,13 @@ Waterfall waterfall_of(const Trace& trace, std::size_t column, double rate, Rang
             };
             double begin = std::ceil(edge(c)), end = std::ceil(edge(c + 1)) - 1.0;
             if (end < begin) begin = end = std::round(0.5 * (edge(c) + edge(c + 1)));
-            double power = 0.0;
-            for (double k = std::clamp(begin, 1.0, last); k <= std::clamp(end, 1.0, last); ++k)
-                power = std::max(power, spectrum.power[static_cast<std::size_t>(k)]);
-            all.cells[static_cast<std::size_t>(row * columns + c)] =
-                power > 0.0 ? std::max(10.0 * std::log10(power), lowest_db) : lowest_db;
+            double loudest = std::clamp(begin, 1.0, last);
+            const auto power = [&](double k) { return spectrum.power[static_cast<std::size_t>(k)]; };
+            for (double k = loudest; k <= std::clamp(end, 1.0, last); ++k)
+                if (power(k) > power(loudest)) loudest = k;
+            all.cells[all.index_of(row, c)] =
+                power(loudest) > 0.0 ? std::max(10.0 * std::log10(power(loudest)), lowest_db) : lowest_db;
+            all.bins[all.index_of(row, c)] = loudest * spectrum.df;
         }
     }
     return all;

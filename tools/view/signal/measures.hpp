@@ -2,6 +2,7 @@
 // What scopes measure on a trace: crossings of a level, levels in dB, histograms, pairs, spectra over time.
 #pragma once
 
+#include "dsp/signal/spectrum/welch.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/signal/axis.hpp"
 #include "tools/view/signal/feed.hpp"
@@ -32,6 +33,9 @@ struct Level {
 };
 Level level_of(const Trace& trace, std::size_t column, Range time);
 
+/// A trace of one column: the length of the first three columns.
+Trace magnitude_of(const Trace& trace);
+
 /// How many values lie in each of equal parts of their range. The largest value belongs to the last part.
 struct Histogram {
     Range values;
@@ -40,19 +44,38 @@ struct Histogram {
 };
 Histogram histogram_of(const Trace& trace, std::size_t column, Range time, int parts);
 
-/// The value of one column over that of another, at each time of `y`; that of `x` is its last one at that time. At most
-/// `most` points, evenly left out.
-std::vector<Point> pairs_of(const Trace& x, std::size_t x_column, const Trace& y, std::size_t y_column, Range time,
-                            std::size_t most);
+/// Values in a time range that are not finite, and those that are missing between others.
+struct Flaws {
+    std::size_t not_finite = 0, missing = 0;
+};
+Flaws flaws_of(const Trace& trace, std::size_t column, Range time);
+
+/// Values of one column over those of another, in the order of time.
+struct Pairs {
+    std::vector<Point> points;
+    std::vector<std::size_t> begins;  ///< points that are not joined to the one before: values are missing between
+    double since = 0.0;  ///< s, the time of the first point
+    bool is_cut = false;  ///< the range has older ones
+};
+/// At each time of `y`; the value of `x` is its last one at that time. The newest `most`: leaving some out between
+/// would show a curve that never was.
+Pairs pairs_of(const Trace& x, std::size_t x_column, const Trace& y, std::size_t y_column, Range time,
+               std::size_t most);
+
+/// Welch's spectrum of a column in a time range; no segment has a gap or a value that is not finite. No bins where
+/// fewer than 32 values stand together. `factor` scales the values first.
+signal::Spectrum spectrum_of(const Trace& trace, std::size_t column, double rate, Range time, double factor = 1.0);
 
 /// Power densities over time and frequency, dB; rows from the oldest time, columns from the lowest frequency, which
-/// rise by equal ratios. A cell holds the largest bin in it, or the nearest one.
+/// rise by equal ratios, from one bin on. A cell holds the largest bin in it, or the nearest one.
 struct Waterfall {
     Range time, hz;
     int rows = 0, columns = 0;
     std::vector<double> cells;
+    std::vector<double> bins;  ///< Hz, of the bin that a cell holds; 0: it holds none
 
-    double at(int row, int column) const { return cells[static_cast<std::size_t>(row * columns + column)]; }
+    double at(int row, int column) const { return cells[index_of(row, column)]; }
+    std::size_t index_of(int row, int column) const { return static_cast<std::size_t>(row * columns + column); }
 };
 /// Rows become fewer where one would have less than 64 samples. `factor` scales the values first.
 Waterfall waterfall_of(const Trace& trace, std::size_t column, double rate, Range time, int rows, int columns,

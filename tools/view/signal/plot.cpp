@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/signal/plot.hpp"
 
-#include "assets/file/whole_file.hpp"
 #include "assets/sound/record_reader.hpp"
-#include "dsp/core/error.hpp"
+#include "tools/view/signal/readings.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
@@ -26,7 +26,7 @@ std::size_t index_at(const Trace& trace, double time) {
 
 Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz,
                double shift_db) {
-    Curve curve{name, ink, {}, false, {}};
+    Curve curve{name, ink, {}};
     // When bins are closer than a pixel, the maximum in each of 600 equal frequency steps.
     constexpr double steps = 600.0;
     double last = -1.0;
@@ -35,11 +35,16 @@ Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::u
         if (f < hz.low || f > hz.high) continue;
         const double step = std::floor(steps * std::log(f / hz.low) / std::log(hz.high / hz.low));
         const double level = db(spectrum.power[k]) + shift_db;
-        if (step == last) curve.points.back().y = std::max(curve.points.back().y, level);
-        else curve.points.push_back({f, level});
+        // The frequency of the largest bin, not of the step: a tone is read where it is.
+        if (step != last) curve.points.push_back({f, level});
+        else if (level > curve.points.back().y) curve.points.back() = {f, level};
         last = step;
     }
     return curve;
+}
+
+std::string name_of(const Trace& trace, std::size_t column) {
+    return column < trace.names.size() ? trace.names[column] : "";
 }
 
 double power_between(const signal::Spectrum& spectrum, Range hz) {
@@ -60,6 +65,19 @@ display::Colour figure_colour(std::uint32_t ink) {
 }
 
 }  // namespace
+
+std::vector<std::span<const Point>> pieces_of(const Curve& curve) {
+    const std::span<const Point> all(curve.points);
+    std::vector<std::span<const Point>> pieces;
+    std::size_t from = 0;
+    for (const std::size_t begin : curve.begins) {
+        pieces.push_back(all.subspan(from, begin - from));
+        from = begin;
+    }
+    pieces.push_back(all.subspan(from));
+    std::erase_if(pieces, [](const auto& piece) { return piece.empty(); });
+    return pieces;
+}
 
 double Plot::across(double value) const {
     if (is_logarithmic) return std::log(std::max(value, 1e-12) / x.low) / std::log(x.high / x.low);
@@ -101,19 +119,29 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
     while (past < trace.times.size() && trace.times[past] <= time.high) ++past;
     const std::size_t count = past - first;
     for (std::size_t c = 0; c < shown; ++c) {
-        Curve curve{
-            c < trace.names.size() ? trace.names[c] : "", tone::curves[c % std::size(tone::curves)], {}, false, {}};
+        Curve curve{c < trace.names.size() ? trace.names[c] : "", tone::curves[c % std::size(tone::curves)], {}};
         const auto add = [&](double at, double value) {
             curve.points.push_back({at - origin, value});
             values = {std::min(values.low, value), std::max(values.high, value)};
         };
+        const auto begin_piece = [&] {
+            if (!curve.points.empty()) curve.begins.push_back(curve.points.size());
+        };
         if (count <= 2 * static_cast<std::size_t>(std::max(pixels, 1))) {
-            for (std::size_t i = first; i < past; ++i) add(trace.times[i], trace.columns[c][i] * display.factor);
+            bool is_broken = false;
+            for (std::size_t i = first; i < past; ++i) {
+                const double value = trace.columns[c][i] * display.factor;
+                is_broken |= follows_gap(trace, i) || !std::isfinite(value);
+                if (!std::isfinite(value)) continue;
+                if (std::exchange(is_broken, false)) begin_piece();
+                add(trace.times[i], value);
+            }
         } else {
-            const Envelope envelope = envelope_of(trace.times, trace.columns[c], time, pixels);
+            const Envelope envelope = envelope_of(trace.times, trace.columns[c], time, pixels, trace.period);
             for (int k = 0; k < pixels; ++k) {
                 const auto at = static_cast<std::size_t>(k);
                 if (std::isnan(envelope.low[at])) continue;
+                if (envelope.begins[at]) begin_piece();
                 const double middle = time.low + (k + 0.5) / pixels * span;
                 add(middle, envelope.low[at] * display.factor);
                 add(middle, envelope.high[at] * display.factor);
@@ -126,26 +154,17 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
     return plot;
 }
 
-Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
+Plot spectrum_plot(const Trace& trace, std::size_t column, const Display& display, double rate, double now, double span,
                    const signal::Spectrum& reference) {
     Plot plot;
     plot.is_logarithmic = true;
-    plot.x = {std::max(10.0, 2.0 / span), 0.5 * rate};
-    if (plot.x.high <= 2.0 * plot.x.low) plot.x = {0.05 * rate, 0.5 * rate};
     plot.x_unit = "Hz";
     plot.y_unit = plot.level_unit = density_unit(display);
-    const std::size_t first = index_at(trace, now - span);
-    signal::Spectrum spectrum;
-    if (!trace.columns.empty() && trace.times.size() > first + 64) {
-        std::vector<double> record(trace.columns[0].begin() + static_cast<std::ptrdiff_t>(first),
-                                   trace.columns[0].end());
-        for (double& x : record) x *= display.factor;
-        signal::WelchSettings settings;
-        settings.rate = rate;
-        settings.segment = signal::suggested_segment(rate, record.size());
-        settings.overlap = settings.segment / 2;
-        spectrum = signal::welch<double>(record, settings);
-    }
+    const signal::Spectrum spectrum = spectrum_of(trace, column, rate, {now - span, now}, display.factor);
+    // From the first bin on.
+    plot.x = {spectrum.power.size() > 1 ? spectrum.df : std::max(10.0, 2.0 / span), 0.5 * rate};
+    if (plot.x.high <= 2.0 * plot.x.low) plot.x.low = 0.05 * rate;
+    if (spectrum.power.size() < 2) plot.note = "too few values for a spectrum";
     if (!reference.power.empty()) {
         const Range both{plot.x.low, std::min(plot.x.high, reference.frequency(reference.power.size() - 1))};
         const double mine = power_between(spectrum, both), its = power_between(reference, both);
@@ -153,23 +172,27 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
         plot.curves.push_back(curve_of(reference, "reference, at the same power", colour(0x64748b), plot.x, shift));
         plot.curves.back().is_reference = true;
     }
-    plot.curves.push_back(curve_of(spectrum, trace.names.empty() ? "" : trace.names[0], tone::curves[0], plot.x, 0.0));
+    plot.curves.push_back(curve_of(spectrum, name_of(trace, column), tone::curves[0], plot.x, 0.0));
+    fit_levels(plot);
+    return plot;
+}
+
+void fit_levels(Plot& plot) {
     double largest = lowest_db;
     for (const Curve& curve : plot.curves)
         for (const Point& p : curve.points) largest = std::max(largest, p.y);
     if (largest <= lowest_db) largest = 0.0;
     const double top = 10.0 * std::ceil((largest + 3.0) / 10.0);
     plot.y = {top - 90.0, top};
-    return plot;
 }
 
-Plot histogram_plot(const Trace& trace, const Display& display, double now, double span) {
+Plot histogram_plot(const Trace& trace, std::size_t column, const Display& display, double now, double span) {
     constexpr int parts = 60;
     Plot plot;
     plot.x_unit = display.unit;
     plot.y_unit = "%";
-    Curve curve{trace.names.empty() ? "" : trace.names[0], tone::curves[0], {}, false, {}};
-    const Histogram histogram = histogram_of(trace, 0, {now - span, now}, parts);
+    Curve curve{name_of(trace, column), tone::curves[0], {}};
+    const Histogram histogram = histogram_of(trace, column, {now - span, now}, parts);
     double most = 0.0;
     for (std::size_t k = 0; k < histogram.counts.size(); ++k) {
         const double percent = 100.0 * static_cast<double>(histogram.counts[k]) / static_cast<double>(histogram.total);
@@ -192,9 +215,12 @@ Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, con
     Plot plot;
     plot.x_unit = x_display.unit;
     plot.y_unit = y_display.unit;
-    Curve curve{y_column < y.names.size() ? y.names[y_column] : "", tone::curves[0], {}, false, {}};
+    Curve curve{name_of(y, y_column), tone::curves[0], {}};
     Range across{1e300, -1e300}, up = across;
-    for (const Point& p : pairs_of(x, x_column, y, y_column, {now - span, now}, most)) {
+    Pairs pairs = pairs_of(x, x_column, y, y_column, {now - span, now}, most);
+    if (pairs.is_cut) plot.note = fmt::format("last {}", span_words(now - pairs.since));
+    curve.begins = std::move(pairs.begins);
+    for (const Point& p : pairs.points) {
         const Point at{p.x * x_display.factor, p.y * y_display.factor};
         curve.points.push_back(at);
         across = {std::min(across.low, at.x), std::max(across.high, at.x)};
@@ -208,15 +234,18 @@ Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, con
     return plot;
 }
 
-Plot waterfall_plot(const Trace& trace, const Display& display, double rate, double now, double span) {
+Plot waterfall_plot(const Trace& trace, std::size_t column, const Display& display, double rate, double now,
+                    double span) {
     Plot plot;
     plot.is_logarithmic = true;
-    plot.waterfall = waterfall_of(trace, 0, rate, {now - span, now}, 48, 160, display.factor);
+    plot.waterfall = waterfall_of(trace, column, rate, {now - span, now}, 48, 160, display.factor);
     plot.level_unit = density_unit(display);
     plot.x = plot.waterfall->hz;
     plot.x_unit = "Hz";
     plot.y = {now - span, now};
     plot.y_unit = "s";
+    if (std::ranges::none_of(plot.waterfall->bins, [](double hz) { return hz > 0.0; }))
+        plot.note = "too few values for a spectrum";
     return plot;
 }
 
@@ -291,9 +320,13 @@ display::Figure figure_of(const Plot& plot, double width, double height) {
                      std::move(palette));
     }
     for (const Curve& curve : plot.curves) {
-        std::vector<display::FigurePoint> line;
-        for (const Point& p : curve.points) line.push_back({x_of(p.x), y_of(p.y)});
-        figure.line(std::move(line), figure_colour(curve.ink), 1.2);
+        for (const std::span<const Point> piece : pieces_of(curve)) {
+            std::vector<display::FigurePoint> line;
+            for (const Point& p : piece) line.push_back({x_of(p.x), y_of(p.y)});
+            // A lone value is a dash.
+            if (line.size() == 1) line = {{x_of(piece[0].x) - 1.0, line[0].y}, {x_of(piece[0].x) + 1.0, line[0].y}};
+            figure.line(std::move(line), figure_colour(curve.ink), 1.2);
+        }
     }
     figure.unclip();
     double at = right;
@@ -302,20 +335,6 @@ display::Figure figure_of(const Plot& plot, double width, double height) {
         at -= 12.0 + 6.2 * static_cast<double>(curve->name.size());
     }
     return figure;
-}
-
-void write_csv(const Trace& trace, Range time, const std::vector<std::string>& units,
-               const std::filesystem::path& path) {
-    std::string text = "time s";
-    for (std::size_t c = 0; c < trace.names.size(); ++c)
-        text += "," + trace.names[c] + (c < units.size() && !units[c].empty() ? " " + units[c] : "");
-    text += "\n";
-    for (std::size_t i = index_at(trace, time.low); i < trace.times.size() && trace.times[i] <= time.high; ++i) {
-        text += fmt::format("{:.9g}", trace.times[i]);
-        for (const auto& column : trace.columns) text += fmt::format(",{:.9g}", column[i]);
-        text += "\n";
-    }
-    file::write_whole_file(path, text);
 }
 
 }  // namespace tactus::view

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,17 @@ struct Curve {
     std::string name;
     std::uint32_t ink = 0;  ///< as in theme.hpp
     std::vector<Point> points;
+    std::vector<std::size_t> begins = {};  ///< points that are not joined to the one before, ascending
     bool is_reference = false;
     std::optional<double> last = {};  ///< the latest value, where there is one
 };
 
+/// The parts of a curve that are drawn as one line.
+std::vector<std::span<const Point>> pieces_of(const Curve& curve);
+
 struct Plot {
     std::string title, x_unit, y_unit;
+    std::string note;        ///< what a person should know of it: "too few values"
     std::string level_unit;  ///< of spectra
     Range x, y;
     double origin = 0.0;  ///< s, the time at which `x` is 0; of waves
@@ -62,16 +68,20 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
 
 /// Power density of one column of the last `span` seconds, dB re (unit)²/Hz. `reference` (may be empty) is shifted to
 /// the same power over the frequencies that both have.
-Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
+Plot spectrum_plot(const Trace& trace, std::size_t column, const Display& display, double rate, double now, double span,
                    const signal::Spectrum& reference);
 
+/// The range of levels of a spectrum: 90 dB below the largest.
+void fit_levels(Plot& plot);
+
 /// Shares of the values of one column in equal parts of their range, over the last `span` seconds.
-Plot histogram_plot(const Trace& trace, const Display& display, double now, double span);
-/// One column over another; both of the last `span` seconds.
+Plot histogram_plot(const Trace& trace, std::size_t column, const Display& display, double now, double span);
+/// One column over another; both of the last `span` seconds, at most the newest 4000 values.
 Plot xy_plot(const Trace& x, std::size_t x_column, const Display& x_display, const Trace& y, std::size_t y_column,
              const Display& y_display, double now, double span);
 /// Spectra of the last `span` seconds, the latest at the top.
-Plot waterfall_plot(const Trace& trace, const Display& display, double rate, double now, double span);
+Plot waterfall_plot(const Trace& trace, std::size_t column, const Display& display, double rate, double now,
+                    double span);
 /// The colour of a level in a waterfall, of 90 dB below `top`: dark to bright.
 std::uint32_t waterfall_ink(double level_db, double top_db);
 /// The largest level of a waterfall, rounded up to 10 dB.
@@ -82,9 +92,5 @@ signal::Spectrum spectrum_of_file(const std::filesystem::path& path);
 
 /// A figure with white background, axes and names.
 display::Figure figure_of(const Plot& plot, double width = 720, double height = 320);
-/// Writes the rows of a trace in a time range as CSV, "time s,px m,…"; `units`: of its columns. Throws Error when the
-/// file cannot be written.
-void write_csv(const Trace& trace, Range time, const std::vector<std::string>& units,
-               const std::filesystem::path& path);
 
 }  // namespace tactus::view

@@ -20,7 +20,7 @@ std::optional<double> value_at(const Trace& trace, std::size_t column, double ti
     const auto i = static_cast<std::size_t>(after - trace.times.begin());
     const std::vector<double>& values = trace.columns[column];
     if (trace.times[i] == time) return values[i];
-    if (i == 0) return std::nullopt;
+    if (i == 0 || follows_gap(trace, i)) return std::nullopt;
     const double share = (time - trace.times[i - 1]) / (trace.times[i] - trace.times[i - 1]);
     return values[i - 1] + share * (values[i] - values[i - 1]);
 }
@@ -72,6 +72,14 @@ std::string level_words(const Level& level, const std::string& unit, const std::
                        decibels(level.peak()), decibels(level.rms), unit.empty() ? "" : " " + unit);
 }
 
+std::string flaw_words(const Flaws& flaws) {
+    const auto said = [](std::size_t count, const char* what) {
+        return count == 0 ? std::string() : fmt::format("{} value{} {}", count, count > 1 ? "s" : "", what);
+    };
+    const std::string lost = said(flaws.missing, "lost"), odd = said(flaws.not_finite, "not finite");
+    return lost + (lost.empty() || odd.empty() ? "" : ", ") + odd;
+}
+
 std::string wave_words(const Plot& plot, const DrawnTrace& drawn, std::span<const Point> at) {
     if (at.empty() || !drawn.trace) return {};
     const double first = plot.origin + at[0].x;
@@ -102,7 +110,8 @@ std::string waterfall_words(const Plot& plot, std::span<const Point> at) {
         };
         const int row = cell((p.y - all.time.low) / all.time.span(), all.rows),
                   column = cell(plot.across(p.x), all.columns);
-        return Point{p.x, all.at(row, column)};
+        const double hz = all.bins[all.index_of(row, column)];
+        return hz > 0.0 ? std::optional(Point{hz, all.at(row, column)}) : std::nullopt;
     });
 }
 

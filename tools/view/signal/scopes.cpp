@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/signal/scopes.hpp"
 
-#include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/signal/level_meter.hpp"
 #include "tools/view/signal/readings.hpp"
@@ -12,15 +11,29 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace tactus::view {
 
 void Scopes::add(const std::string& port, bool is_spectrum) {
+    const Scope::View view = is_spectrum ? Scope::View::spectrum : Scope::View::wave;
+    for (Scope& known : scopes_)
+        if (known.port == port && known.view == view) {
+            known.is_called = true;
+            return;
+        }
     Scope scope;
     scope.port = port;
-    if (is_spectrum) scope.view = Scope::View::spectrum;
+    scope.view = view;
     scopes_.push_back(std::move(scope));
+}
+
+double Scopes::longest_span() const {
+    double longest = 0.1;
+    // A trigger looks as far back as a live trace goes, and shows a little of what was before.
+    for (const Scope& scope : scopes_)
+        longest = std::max(longest, scope.trigger ? LiveFeed::kept_s + 0.1 * scope.span : scope.span);
+    return longest;
 }
 
 void Scopes::freeze(bool wanted) {
@@ -71,109 +84,6 @@ double Scopes::rate(const std::string& port) const {
     for (const Feed::Port& known : ports_)
         if (known.name == port) return known.rate;
     return 1000.0;
-}
-
-const Trace* Scopes::other(const Scope& scope, std::size_t index, const Feed& feed) const {
-    return index < scope.held_others.size() ? &scope.held_others[index] : feed.trace(scope.others[index]);
-}
-
-void Scopes::refresh_wave(Scope& scope, const Trace& trace, const Feed& feed, double now, int pixels) {
-    const Display shown = display(scope.port);
-    double origin = 0.0;
-    if (scope.trigger) {
-        // A tenth before the crossing, and all of the rest after it.
-        const Trigger raw{scope.trigger->level / shown.factor, scope.trigger->is_rising};
-        const auto at = trigger_time(trace, 0, raw, {now - LiveFeed::kept_s, now - 0.9 * scope.span});
-        if (at) now = (origin = *at) + 0.9 * scope.span;
-    }
-    scope.plot = time_plot(trace, shown, now, scope.span, pixels, origin);
-    Level level = level_of(trace, 0, {now - scope.span, now});
-    for (double* part : {&level.low, &level.high, &level.mean, &level.rms}) *part *= shown.factor;
-    const bool has_several = std::min(shown.columns, trace.columns.size()) > 1 && !trace.names.empty();
-    scope.reading = level_words(level, shown.unit, has_several ? trace.names[0] : "");
-    if (scope.trigger && origin == 0.0) scope.reading += ", no crossing of the trigger's level";
-    if (is_sound(scope.port) && level.count > 0) scope.meter = level;
-    for (std::size_t i = 0; i < scope.others.size(); ++i) {
-        const Trace* trace_of = other(scope, i, feed);
-        if (!trace_of) continue;
-        const Display over_it = display(scope.others[i]);
-        Plot over = time_plot(*trace_of, over_it, now, scope.span, pixels, origin);
-        for (Curve& curve : over.curves) {
-            curve.name = scope.others[i] + (curve.name.empty() ? "" : " " + curve.name);
-            if (over_it.unit != shown.unit) curve.name += over_it.unit.empty() ? " (no unit)" : " in " + over_it.unit;
-            curve.ink = tone::curves[scope.plot.curves.size() % std::size(tone::curves)];
-            scope.plot.curves.push_back(std::move(curve));
-        }
-        scope.plot.y = {std::min(scope.plot.y.low, over.y.low), std::max(scope.plot.y.high, over.y.high)};
-    }
-    scope.y = scope.plot.y = fitted(scope.y, scope.plot.y);
-}
-
-void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
-    const Trace* live = feed.trace(scope.port);
-    if (scope.is_frozen && !scope.held && live) {
-        scope.held = *live;
-        scope.held_at = live->times.empty() ? feed.now() : live->times.back();
-        scope.held_others.clear();
-        for (const std::string& port : scope.others) {
-            const Trace* trace = feed.trace(port);
-            scope.held_others.push_back(trace ? *trace : Trace{});
-        }
-    }
-    if (!scope.is_frozen) {
-        scope.held.reset();
-        scope.held_others.clear();
-    }
-    const Trace* trace = scope.held ? &*scope.held : live;
-    if (!trace) return;
-    const double now = scope.held ? scope.held_at : trace->times.empty() ? feed.now() : trace->times.back();
-    const Display shown = display(scope.port);
-    // All but waves are updated every 0.1 s, which looks immediate and saves time.
-    const bool is_due = std::abs(now - scope.computed_at) >= 0.1;
-    if (scope.view != Scope::View::wave && !is_due) return;
-    scope.computed_at = now;
-    scope.reading.clear();
-    scope.meter.reset();
-    switch (scope.view) {
-        case Scope::View::wave: refresh_wave(scope, *trace, feed, now, pixels); break;
-        case Scope::View::spectrum:
-            scope.plot = spectrum_plot(*trace, shown, rate(scope.port), now, scope.span, reference_);
-            break;
-        case Scope::View::waterfall:
-            scope.plot = waterfall_plot(*trace, shown, rate(scope.port), now, scope.span);
-            if (scope.plot.waterfall->rows > 0) {
-                const double top = top_of(*scope.plot.waterfall);
-                scope.reading = fmt::format("black {:.0f}, white {:.0f} {}", top - 90.0, top, scope.plot.level_unit);
-            }
-            break;
-        case Scope::View::histogram: scope.plot = histogram_plot(*trace, shown, now, scope.span); break;
-        case Scope::View::xy: {
-            // Alone: its second column over its first, as of a pose.
-            const Trace* up = scope.others.empty() ? nullptr : other(scope, 0, feed);
-            scope.plot =
-                up ? xy_plot(*trace, 0, shown, *up, 0, display(scope.others[0]), now, scope.span)
-                   : xy_plot(*trace, 0, shown, *trace, trace->columns.size() > 1 ? 1 : 0, shown, now, scope.span);
-            break;
-        }
-    }
-    scope.plot.title = scope.port;
-}
-
-void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::path& path) {
-    if (index >= scopes_.size()) throw Error(fmt::format("there are {} scopes", scopes_.size()));
-    Scope& scope = scopes_[index];
-    ports_ = feed.ports();
-    refresh(scope, feed, 700);
-    if (path.extension() == ".csv") {
-        const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
-        if (!trace || trace->times.empty()) throw Error(fmt::format("there are no values of {} yet", scope.port));
-        // Of a wave what is shown, also where a trigger holds it.
-        const double now = scope.held ? scope.held_at : trace->times.back();
-        const Range wave{scope.plot.origin + scope.plot.x.low, scope.plot.origin + scope.plot.x.high};
-        const bool is_wave = scope.view == Scope::View::wave;
-        write_csv(*trace, is_wave ? wave : Range{now - scope.span, now}, units(scope.port), path);
-    } else display::write_png(figure_of(scope.plot).image(), path.string());
-    bench_.tell(fmt::format("wrote {}", path.string()));
 }
 
 void Scopes::waterfall(const Scope& scope, const Painter& paint, const Box& inner) const {
@@ -233,15 +143,19 @@ void Scopes::body(Scope& scope, std::size_t index, const Feed& feed, const Fonts
     if (scope.trigger && scope.view == Scope::View::wave)
         paint.line({inner.left, y_of(scope.trigger->level)}, {inner.right, y_of(scope.trigger->level)}, tone::dim);
     std::vector<ImVec2> line;
-    for (const Curve& curve : plot.curves) {
-        line.clear();
-        for (const Point& p : curve.points) line.push_back(vec({x_of(p.x), y_of(p.y)}));
-        if (curve.is_reference)
-            for (const ImVec2& p : line)
-                paint.list()->AddLine(p, ImVec2(p.x, static_cast<float>(inner.bottom)), faded(curve.ink, 0.22), 1.5f);
-        paint.list()->AddPolyline(line.data(), static_cast<int>(line.size()), curve.ink, 0,
-                                  static_cast<float>(1.3 * s));
-    }
+    for (const Curve& curve : plot.curves)
+        for (const std::span<const Point> piece : pieces_of(curve)) {
+            line.clear();
+            for (const Point& p : piece) line.push_back(vec({x_of(p.x), y_of(p.y)}));
+            if (curve.is_reference)
+                for (const ImVec2& p : line)
+                    paint.list()->AddLine(p, ImVec2(p.x, static_cast<float>(inner.bottom)), faded(curve.ink, 0.22),
+                                          1.5f);
+            // A lone value would be a line without length.
+            if (line.size() == 1) paint.dot({x_of(piece[0].x), y_of(piece[0].y)}, 1.3 * s, curve.ink);
+            paint.list()->AddPolyline(line.data(), static_cast<int>(line.size()), curve.ink, 0,
+                                      static_cast<float>(1.3 * s));
+        }
     const bool hovered = ImGui::IsItemHovered();
     const Point mouse = point(ImGui::GetIO().MousePos);
     const Point pointed{plot.value_at((mouse.x - inner.left) / inner.width()),
@@ -273,6 +187,8 @@ void Scopes::body(Scope& scope, std::size_t index, const Feed& feed, const Fonts
     paint.text_left_of({inner.right - 4.0 * s, inner.top + 2.0 * s}, small, tone::chosen,
                        cursor_words(scope, feed, read));
     paint.text_left_of({inner.right - 4.0 * s, inner.bottom - 1.4 * small}, small, tone::dim, scope.reading);
+    paint.text({inner.left + 6.0 * s, inner.bottom - 1.4 * small}, small, tone::bad, scope.trouble);
+    if (ImGui::GetTime() < scope.called_until) paint.frame(all, tone::chosen, 4.0 * s, 2.0 * s);
 }
 
 void Scopes::draw(const Feed* feed, const Fonts& fonts) {
@@ -283,9 +199,10 @@ void Scopes::draw(const Feed* feed, const Fonts& fonts) {
         ports_ = feed->ports();
     }
     if (ImGui::Button("+ scope") && feed)
-        for (const Feed::Port& port : ports_) {
-            add(port.name);
-            break;
+        if (!ports_.empty()) {
+            Scope scope;
+            scope.port = ports_.front().name;
+            scopes_.push_back(std::move(scope));
         }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 6.0f * ImGui::GetFontSize());
@@ -308,8 +225,14 @@ void Scopes::draw(const Feed* feed, const Fonts& fonts) {
     std::size_t closed = scopes_.size();
     for (std::size_t i = 0; i < scopes_.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        bool closes = false;
+        bool closes = std::exchange(scopes_[i].wants_close, false);
         head(scopes_[i], i, *feed, closes);
+        if (std::exchange(scopes_[i].is_called, false)) {
+            ImGui::SetScrollHereY(0.0f);
+            scopes_[i].called_until = ImGui::GetTime() + 1.0;
+        }
+        if (const std::string ending = std::exchange(scopes_[i].wants_file, {}); !ending.empty())
+            save(i, *feed, ending);
         refresh(scopes_[i], *feed, std::max(50, static_cast<int>(ImGui::GetContentRegionAvail().x) - 60));
         body(scopes_[i], i, *feed, fonts, height);
         if (closes) closed = i;

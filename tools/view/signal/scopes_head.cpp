@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line above a scope: its signal, what is shown of it, files, options.
-#include "dsp/core/error.hpp"
 #include "tools/view/signal/scopes.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -9,23 +8,48 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
-/// In the folder of the run; without one in the current folder.
-std::filesystem::path Scopes::free_file(const std::string& port, const std::string& ending) const {
-    std::string name = port;
-    std::ranges::replace(name, '/', '-');  // of a sub-patch
-    std::filesystem::path path;
-    for (int i = 1; path.empty() || std::filesystem::exists(path); ++i)
-        path = bench_.status()->folder / fmt::format("{}-{}{}", name, i, ending);
-    return path;
+namespace {
+
+constexpr const char* views[] = {"wave", "spectrum", "waterfall", "histogram", "x-y"};
+
+float button_width(const char* label) { return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x; }
+
+}  // namespace
+
+bool Scopes::set_view(Scope& scope, Scope::View view) {
+    if (scope.view == view) return false;
+    scope.view = view;
+    scope.computed_at = -1.0;
+    scope.cursors.clear();
+    return true;
+}
+
+void Scopes::set_column(Scope& scope, std::size_t column, bool is_magnitude) {
+    scope.column = column;
+    scope.is_magnitude = is_magnitude;
+    scope.computed_at = -1.0;
+    scope.cursors.clear();
 }
 
 void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& closes) {
     const float unit = ImGui::GetFontSize();
     const auto mark = [index](const char* what) { mark_spot(fmt::format("scope {} {}", index, what)); };
-    ImGui::SetNextItemWidth(13.0f * unit);
+    // What does not fit into a narrow column is in the menu: closing and the names of signals never leave it.
+    const float gap = ImGui::GetStyle().ItemSpacing.x, kind = 5.5f * unit, span_width = 5.0f * unit;
+    const float freeze =
+        ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("freeze").x + gap;
+    const float files = button_width("CSV") + button_width("PNG") + 2.0f * gap;
+    float room =
+        ImGui::GetContentRegionAvail().x - kind - span_width - button_width("more") - button_width("×") - 4.0f * gap;
+    const bool has_files = room - files > 4.0f * unit;
+    if (has_files) room -= files;
+    const bool has_freeze = room - freeze > 8.0f * unit;
+    if (has_freeze) room -= freeze;
+    ImGui::SetNextItemWidth(std::clamp(room, 3.0f * unit, 13.0f * unit));
     if (ImGui::BeginCombo("##port", scope.port.c_str())) {
         ImGui::InputTextWithHint("##search", "search", &search_);
         for (const Feed::Port& port : ports_) {
@@ -39,73 +63,70 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
         ImGui::EndCombo();
     }
     ImGui::SameLine();
-    constexpr const char* views[] = {"wave", "spectrum", "waterfall", "histogram", "x-y"};
     const auto shown = static_cast<std::size_t>(scope.view);
-    if (ImGui::Button(views[shown], ImVec2(5.5f * unit, 0))) {
-        scope.view = static_cast<Scope::View>((shown + 1) % std::size(views));
-        scope.computed_at = -1.0;
-        scope.cursors.clear();
-    }
+    if (ImGui::Button(views[shown], ImVec2(kind, 0)))
+        set_view(scope, static_cast<Scope::View>((shown + 1) % std::size(views)));
     mark("kind");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("next: %s; right click: back", views[(shown + 1) % std::size(views)]);
-    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
-        scope.view = static_cast<Scope::View>((shown + std::size(views) - 1) % std::size(views));
-        scope.computed_at = -1.0;
-        scope.cursors.clear();
-    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right))
+        set_view(scope, static_cast<Scope::View>((shown + std::size(views) - 1) % std::size(views)));
     ImGui::SameLine();
-    options(scope, index);
+    options(scope, index, has_freeze, has_files);
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(5.0f * unit);
+    ImGui::SetNextItemWidth(span_width);
     auto span = static_cast<float>(scope.span);
     if (ImGui::DragFloat("##span", &span, 0.02f, 0.005f, static_cast<float>(LiveFeed::kept_s), "%.3g s",
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
         scope.span = static_cast<double>(span);
         scope.computed_at = -1.0;
     }
+    if (has_freeze) {
+        ImGui::SameLine();
+        ImGui::Checkbox("freeze", &scope.is_frozen);
+        mark("freeze");
+    }
+    if (has_files) {
+        ImGui::SameLine();
+        const bool wants_csv = ImGui::SmallButton("CSV");
+        mark("CSV");
+        if (wants_csv) save(index, feed, ".csv");
+        ImGui::SameLine();
+        const bool wants_png = ImGui::SmallButton("PNG");
+        mark("PNG");
+        if (wants_png) save(index, feed, ".png");
+    }
     ImGui::SameLine();
-    ImGui::Checkbox("freeze", &scope.is_frozen);
-    mark("freeze");
-    const auto save_as = [&](const char* ending) {
-        try {
-            write(index, feed, free_file(scope.port, ending));
-        } catch (const Error& error) {
-            bench_.tell(error.what(), true);
-        }
-    };
-    ImGui::SameLine();
-    const bool wants_csv = ImGui::SmallButton("CSV");
-    mark("CSV");
-    if (wants_csv) save_as(".csv");
-    ImGui::SameLine();
-    const bool wants_png = ImGui::SmallButton("PNG");
-    mark("PNG");
-    if (wants_png) save_as(".png");
-    ImGui::SameLine();
-    closes = ImGui::SmallButton("×");
+    closes |= ImGui::SmallButton("×");
     mark("close");
 }
 
-/// A menu: signals over this one, and the trigger.
-void Scopes::options(Scope& scope, std::size_t index) {
+/// A menu: what the line has no room for, signals over this one, the column that is measured, and the trigger.
+void Scopes::options(Scope& scope, std::size_t index, bool has_freeze, bool has_files) {
     if (ImGui::SmallButton("more")) ImGui::OpenPopup("options");
     mark_spot(fmt::format("scope {} options", index));
     if (!ImGui::BeginPopup("options")) return;
+    if (!has_freeze) ImGui::MenuItem("Freeze", nullptr, &scope.is_frozen);
+    if (!has_files)
+        for (const auto& [label, ending] : {std::pair("Save as CSV", ".csv"), std::pair("Save as PNG", ".png")})
+            if (ImGui::MenuItem(label)) scope.wants_file = ending;
     if (ImGui::BeginMenu("Draw another signal over it")) {
         for (const Feed::Port& port : ports_)
-            if (ImGui::MenuItem(port.name.c_str())) {
-                scope.others.push_back(port.name);
-                scope.computed_at = -1.0;
-            }
+            if (ImGui::MenuItem(port.name.c_str())) add_overlay(scope, port.name);
         ImGui::EndMenu();
     }
     for (std::size_t i = 0; i < scope.others.size(); ++i)
         if (ImGui::MenuItem(fmt::format("Remove {}", scope.others[i]).c_str())) {
-            scope.others.erase(scope.others.begin() + static_cast<std::ptrdiff_t>(i));
-            scope.held_others.clear();
-            scope.held.reset();
+            remove_overlay(scope, i);
             break;
         }
+    if (const std::size_t columns = display(scope.port).columns; columns == 3 && ImGui::BeginMenu("Measure")) {
+        constexpr const char* names[] = {"x", "y", "z"};
+        for (std::size_t c = 0; c < columns; ++c)
+            if (ImGui::MenuItem(names[c], nullptr, !scope.is_magnitude && scope.column == c))
+                set_column(scope, c, false);
+        if (ImGui::MenuItem("magnitude", nullptr, scope.is_magnitude)) set_column(scope, 0, true);
+        ImGui::EndMenu();
+    }
     ImGui::Separator();
     if (ImGui::MenuItem("No trigger", nullptr, !scope.trigger)) scope.trigger.reset();
     for (const bool is_rising : {true, false}) {
@@ -121,6 +142,41 @@ void Scopes::options(Scope& scope, std::size_t index) {
             scope.trigger->level = static_cast<double>(level);
     }
     ImGui::EndPopup();
+}
+
+void Scopes::add_commands(std::vector<Command>& all) {
+    for (const Feed::Port& port : ports_)
+        all.push_back({"scope", fmt::format("Show {} in a scope", port.name), "", "signal wave curve",
+                       [this, name = port.name] { add(name); }});
+    for (std::size_t i = 0; i < scopes_.size(); ++i) {
+        const auto on_scope = [&](const std::string& what, const std::string& about, auto&& change) {
+            all.push_back({"scope", fmt::format("Scope {}: {}", i + 1, what), "", scopes_[i].port + " " + about,
+                           [this, i, change] {
+                               if (i < scopes_.size()) change(scopes_[i]);
+                           }});
+        };
+        for (std::size_t view = 0; view < std::size(views); ++view)
+            on_scope(views[view], "view show",
+                     [view](Scope& scope) { set_view(scope, static_cast<Scope::View>(view)); });
+        on_scope(scopes_[i].is_frozen ? "go on" : "freeze", "hold stand",
+                 [](Scope& scope) { scope.is_frozen = !scope.is_frozen; });
+        on_scope("CSV", "save export table", [](Scope& scope) { scope.wants_file = ".csv"; });
+        on_scope("PNG", "save export picture", [](Scope& scope) { scope.wants_file = ".png"; });
+        on_scope("close", "remove", [](Scope& scope) { scope.wants_close = true; });
+        on_scope("no trigger", "", [](Scope& scope) { scope.trigger.reset(); });
+        for (const bool is_rising : {true, false})
+            on_scope(is_rising ? "trigger where it rises" : "trigger where it falls", "level middle",
+                     [is_rising](Scope& scope) {
+                         // In the middle of what is shown, where a wave crosses.
+                         scope.trigger = Trigger{0.5 * (scope.y.low + scope.y.high), is_rising};
+                     });
+        if (display(scopes_[i].port).columns == 3)
+            for (const auto& [name, column] :
+                 {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2), std::pair("magnitude", -1)})
+                on_scope(fmt::format("measure {}", name), "column level trigger", [column = column](Scope& scope) {
+                    set_column(scope, static_cast<std::size_t>(std::max(column, 0)), column < 0);
+                });
+    }
 }
 
 }  // namespace tactus::view

@@ -71,6 +71,7 @@ void TakeFeed::read(const std::string& port, double begin, double end, Trace& in
             into.names = take::channels_of(*type_named(info->type));
         }
         if (into.columns.size() != wide) continue;
+        into.period = std::max(into.period, period);
         reader.seek(first);
         for (std::int64_t tick = first; static_cast<double>(tick) * period <= end + 1e-12; ++tick) {
             const double* frame = reader.frame(tick);
