@@ -8,6 +8,7 @@
 #include "graph/edit/patch_edit.hpp"
 #include "graph/edit/patch_editor.hpp"
 #include "tools/session/run_choice.hpp"
+#include "tools/view/files/kept_edits.hpp"
 #include "tools/view/patch/patch_picture.hpp"
 #include "tools/view/patch/unfinished.hpp"
 #include "tools/view/viewed_run.hpp"
@@ -87,13 +88,15 @@ public:
     void want_edits() { dropped_version_ = -1; }
     /// Called at the end: keeps them in a file and prints the path on standard error.
     void keep_edits() noexcept;
-    /// Finds edits kept by earlier windows on this patch.
+    /// Finds edits kept by earlier windows on this patch; for a new one, on patches that never were saved here.
     void find_kept_edits();
     /// A file of kept edits that can be restored or discarded.
     std::optional<std::filesystem::path> offer() const;
     /// Restores them as an edit; their file is removed when the patch is saved.
     bool restore_edits();
     void discard_offer();
+    /// A later window offers it again.
+    void postpone_offer();
     /// For a moving slider: changes the run but not the text.
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
@@ -189,8 +192,6 @@ private:
     void take_over_file();
     void keep_beside(const std::string& text);
     void look_at_file();
-    void drop_restored();
-    std::filesystem::path keep_text() const;
     bool has_same_parts();
 
     RunChoice choice_;
@@ -213,7 +214,7 @@ private:
     int runs_ = 0;
     bool has_take_ = false;  // the run was recorded at least in part
     std::vector<std::filesystem::path> offers_;
-    std::filesystem::path restored_;  // file of restored edits, removed when the patch is saved
+    KeptEdits kept_;
     std::int64_t dropped_version_ = -1;
     std::chrono::steady_clock::time_point looked_{};
     using WrittenAt = std::map<std::filesystem::path, std::filesystem::file_time_type>;
