@@ -46,8 +46,16 @@ std::string Workbench::title() const {
     return written_.title.empty() ? editor_->file().stem().string() : written_.title;
 }
 
+RunChoice Workbench::choice() const {
+    RunChoice choice = choice_;
+    choice.patch = editor_->file().string();
+    choice.record.clear();
+    return choice;
+}
+
 void Workbench::tell(std::string text, bool is_problem) {
     messages_.push_back({std::move(text), is_problem});
+    ++told_;
     if (messages_.size() > most_messages) messages_.pop_front();
 }
 

@@ -49,7 +49,11 @@ public:
     /// Increases when plan and picture change.
     std::int64_t plan_version() const { return plan_version_; }
     std::string title() const;
+    /// What opens this patch anew, as it is changed from outside now; without a recording.
+    RunChoice choice() const;
     const std::deque<Message>& messages() const { return messages_; }
+    /// How many messages there have been; `messages` holds the latest.
+    std::int64_t told() const { return told_; }
     void tell(std::string text, bool is_problem = false);
 
     // Edits. False: refused; the reason is in `messages`, and the text is not changed.
@@ -73,9 +77,9 @@ public:
     bool redo();
     /// Refused for a patch of the library; then sets `wants_name`.
     bool save();
-    /// Saves as a new file and continues with it. The file must not exist. A relative name refers to the working
-    /// folder.
-    bool save_as(const std::string& name);
+    /// Saves as another file and continues with it. A relative name refers to the working folder.
+    enum class Existing { refuse, replace };
+    bool save_as(const std::string& name, Existing existing = Existing::refuse);
     /// A proposed name for a copy in the working folder.
     std::filesystem::path free_file() const;
     bool wants_name = false;
@@ -203,6 +207,7 @@ private:
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
+    std::int64_t told_ = 0;
     patch::Patch written_;
     Unfinished unfinished_;
     patch::PatchWindow window_;

@@ -4,6 +4,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "graph/edit/patch_arrange.hpp"
+#include "graph/edit/patch_paths.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
@@ -194,6 +195,8 @@ bool Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
 
 namespace {
 
+fs::path folder_of(const fs::path& patch) { return fs::absolute(patch).parent_path(); }
+
 std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
     std::string name = file.stem().stem().string();
     for (char& c : name)
@@ -216,7 +219,8 @@ bool Workbench::use_file(const std::string& node, const std::string& param, cons
     return edit(
         [&](std::string_view text) {
             std::string changed(text);
-            if (known == written_.assets.end()) changed = edit::with_asset(changed, name, path.string());
+            if (known == written_.assets.end())
+                changed = edit::with_asset(changed, name, edit::path_from(folder_of(editor_->file()), path));
             return edit::with_setting(changed, node, param, name);
         },
         fmt::format("{}.{} = {}, which is {}", node, param, name, path.string()));
@@ -226,8 +230,11 @@ bool Workbench::replace_asset(const std::string& asset, const fs::path& file) {
     const std::string path = fs::absolute(file).lexically_normal().string();
     // What the command line said of it does not hold any more.
     std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
-    return edit([&](std::string_view text) { return edit::with_asset(text, asset, path); },
-                fmt::format("{} is now {}", asset, path));
+    return edit(
+        [&](std::string_view text) {
+            return edit::with_asset(text, asset, edit::path_from(folder_of(editor_->file()), path));
+        },
+        fmt::format("{} is now {}", asset, path));
 }
 
 bool Workbench::take_file(const fs::path& file, const std::string& selected) {

@@ -87,17 +87,26 @@ fs::path Workbench::free_file() const {
     return file;
 }
 
-bool Workbench::save_as(const std::string& name) {
+bool Workbench::save_as(const std::string& name, Existing existing) {
     try {
         if (name.empty()) throw Error("a file needs a name");
         fs::path file = fs::absolute(name);
         if (file.extension() != ".toml") file += ".toml";
         if (session::is_of_library(file))
             throw Error(fmt::format("{}: this file belongs to the library; choose another", file.string()));
-        if (fs::exists(fs::symlink_status(file)))
+        if (fs::exists(fs::symlink_status(file)) && existing == Existing::refuse)
             throw Error(fmt::format("{}: the file exists already; choose another name", file.string()));
-        const fs::path folder = fs::absolute(editor_->file()).parent_path();
-        editor_->save_as(file, [&](std::string_view text) { return edit::with_absolute_paths(text, folder); });
+        // A link stays one.
+        if (fs::exists(file)) file = fs::canonical(file);
+        if (fs::is_directory(file))
+            throw Error(fmt::format("{}: this is a folder; choose another name", file.string()));
+        const fs::path from = fs::absolute(editor_->file()), folder = from.parent_path(), to = file.parent_path();
+        const bool is_of_library = session::is_of_library(from);
+        editor_->save_as(file, [&](std::string_view text) {
+            return is_of_library ? edit::with_absolute_paths(text, folder) : edit::with_paths_moved(text, folder, to);
+        });
+        if (run_) run_->move_to(file);
+        written_at_.clear();
         wants_name = false;
         tell(fmt::format("saved {}", file.string()));
         kept_.remove();

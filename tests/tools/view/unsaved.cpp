@@ -107,8 +107,7 @@ TEST_CASE("edits kept while a window works go when they are saved or undone and 
     CHECK_FALSE(second.offer());
     while (bench.undo()) {
     }
-    bench.tend();
-    CHECK_FALSE(fs::exists(kept));
+    CHECK(tend_until(bench, [&] { return !fs::exists(kept); }));
     REQUIRE(bench.redo());
     REQUIRE(tend_until(bench, is_kept));
     REQUIRE(bench.save());
