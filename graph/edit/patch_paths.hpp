@@ -8,8 +8,8 @@
 
 namespace tactus::edit {
 
-/// The text for another folder, both absolute: what lies below `to` is named from there, all else by absolute paths. In the
-/// same folder nothing changes. All other bytes stay.
+/// The text for another folder, both absolute: what lies below `to` is named from there, all else by absolute paths.
+/// In the same folder nothing changes. All other bytes stay.
 std::string with_paths_moved(std::string_view text, const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// A file as a patch in `folder` names it: by a relative path when it lies below, else by its absolute one.

@@ -15,8 +15,8 @@ class FileDialog {
 public:
     using Done = std::function<void(const std::filesystem::path&)>;
 
-    /// `done` gets the file; where it calls `refuse`, the dialog stays open. `replace`, of a file to save that exists and
-    /// that the person agreed to replace; without it such a file is as any other.
+    /// `done` gets the file; where it calls `refuse`, the dialog stays open. `replace`, of a file to save that exists
+    /// and that the person agreed to replace; without it such a file is as any other.
     void open(const std::string& title, FileChooser chooser, Done done, Done replace = nullptr);
     void draw(const Fonts& fonts);
     bool is_open() const { return chooser_.has_value(); }

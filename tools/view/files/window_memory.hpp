@@ -32,7 +32,8 @@ public:
     std::filesystem::path scan_of(const std::filesystem::path& plan) const;
     void keep_scan(const std::filesystem::path& plan, const std::filesystem::path& scan);
 
-    /// Where a person has put the borders between the panels of a patch, as `text_of_borders` writes them; empty: nowhere.
+    /// Where a person has put the borders between the panels of a patch, as `text_of_borders` writes them; empty:
+    /// nowhere.
     std::string borders_of(const std::filesystem::path& patch) const;
     void keep_borders(const std::filesystem::path& patch, const std::string& borders);
 
