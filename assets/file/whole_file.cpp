@@ -7,6 +7,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -95,6 +97,10 @@ void write_beside(const std::filesystem::path& path, std::string_view bytes, Dis
     };
     std::FILE* file = std::fopen(part.c_str(), "wb");
     if (!file) fail(errno);
+    // Who may read and write the file that is replaced may do so with the new one.
+    struct stat old{};
+    if (::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode))
+        std::ignore = ::fchmod(::fileno(file), old.st_mode & 07777);
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0 &&
                          (disk == Disk::whenever || ::fsync(::fileno(file)) == 0);
     const int write_code = errno;

@@ -5,11 +5,15 @@
 #include "graph/patch/sub_patch.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <ranges>
 
 namespace tactus::edit {
 
-std::string with_absolute_paths(std::string_view text, const std::filesystem::path& folder) {
+namespace {
+
+std::string with_paths(std::string_view text, const std::filesystem::path& folder,
+                       const std::function<std::string(const std::filesystem::path&)>& name_of) {
     std::string moved(text);
     TomlSpans spans = toml_spans(text);
     std::ranges::sort(spans.entries, {}, [](const TomlEntry& entry) { return entry.value.begin; });
@@ -27,9 +31,27 @@ std::string with_absolute_paths(std::string_view text, const std::filesystem::pa
         }
         if (said.empty() || std::filesystem::path(said).is_absolute()) continue;
         moved.replace(entry.value.begin, entry.value.end - entry.value.begin,
-                      toml_quoted(prefix + (folder / said).lexically_normal().string()));
+                      toml_quoted(prefix + name_of((folder / said).lexically_normal())));
     }
     return moved;
+}
+
+}  // namespace
+
+std::string with_absolute_paths(std::string_view text, const std::filesystem::path& folder) {
+    return with_paths(text, folder, [](const std::filesystem::path& file) { return file.string(); });
+}
+
+std::string with_paths_moved(std::string_view text, const std::filesystem::path& from,
+                             const std::filesystem::path& to) {
+    if ((from / "").lexically_normal() == (to / "").lexically_normal()) return std::string(text);
+    return with_paths(text, from, [&](const std::filesystem::path& file) { return path_from(to, file); });
+}
+
+std::string path_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    const std::filesystem::path near = file.lexically_normal().lexically_relative(folder.lexically_normal());
+    if (near.empty() || near == "." || *near.begin() == "..") return file.lexically_normal().string();
+    return near.string();
 }
 
 }  // namespace tactus::edit

@@ -64,6 +64,12 @@ void LiveControl::take_over_file() {
         });
 }
 
+void LiveControl::move_to(const std::filesystem::path& file) {
+    file_ = file;
+    watch_.move_to(file);
+    watch_.follow(patch::part_files(engine_.plan().patch));
+}
+
 void LiveControl::edit(std::string text) {
     edit_to(
         [this, text = std::move(text)](patch::Problems& problems) { return patch::read_patch(text, file_, problems); });

@@ -26,6 +26,8 @@ public:
 
     /// Also called from there: edits the run to this text, as if it had been saved.
     void edit(std::string text);
+    /// The patch was saved as another file, which is watched from now on; its relative paths start there.
+    void move_to(const std::filesystem::path& file);
     /// Presses the button `node` by incrementing its parameter 'press'. Returns when it takes effect. Throws Error.
     Flicks press_button(const std::string& node);
     /// Handler of a saved file, in place of the default.

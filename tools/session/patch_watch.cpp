@@ -27,6 +27,12 @@ void PatchWatch::watch(const std::filesystem::path& file) {
     if (number >= 0) files_.push_back({number, file.filename()});
 }
 
+void PatchWatch::move_to(const std::filesystem::path& file) {
+    files_.clear();
+    touched_.reset();
+    watch(file);
+}
+
 void PatchWatch::follow(const std::vector<std::filesystem::path>& files) {
     if (!is_working()) return;
     files_.resize(1);

@@ -20,6 +20,8 @@ public:
     PatchWatch& operator=(const PatchWatch&) = delete;
 
     bool is_working() const { return !files_.empty(); }
+    /// Watches another patch file instead.
+    void move_to(const std::filesystem::path& file);
     /// Replaces the list of additional files, the sub-patches.
     void follow(const std::vector<std::filesystem::path>& files);
     /// True once per save: a file was closed or renamed and then not changed for 100 ms. Does not block.

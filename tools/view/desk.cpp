@@ -4,6 +4,7 @@
 #include "tools/view/frame/whole_window.hpp"
 #include "tools/view/run_bar.hpp"
 #include "tools/view/scene/hand_offer.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
 
@@ -84,15 +85,20 @@ void Desk::show_messages(double height) {
         ImGui::TextWrapped("%s", all[i].text.c_str());
         ImGui::PopStyleColor();
     }
-    static std::size_t seen = 0;
-    if (seen != all.size()) ImGui::SetScrollHereY(1.0f);
-    seen = all.size();
+    // The list holds the latest only: its length says nothing about what is new.
+    if (std::exchange(told_seen_, bench_.told()) != bench_.told()) ImGui::SetScrollHereY(1.0f);
     ImGui::EndChild();
 }
 
 void Desk::shortcuts() {
-    if (ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
-    run_pressed(commands_);
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
+    const bool is_typing = ImGui::GetIO().WantTextInput;
+    if (!start_page_.is_open) return run_pressed(commands_, is_typing);
+    // The page hides the patch, which no key may change then.
+    std::vector<Command> some;
+    for (const Command& command : commands_)
+        if (command.menu == "File" || command.menu == "Help") some.push_back(command);
+    run_pressed(some, is_typing);
 }
 
 void Desk::ask_farewell() {
@@ -100,17 +106,21 @@ void Desk::ask_farewell() {
         ImGui::OpenPopup("The patch is still running");
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     if (!ImGui::BeginPopupModal("The patch is still running", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::Text("The window is closing. Continue the run?");
+    if (farewell_is_of_window) ImGui::Text("The window is closing. Continue the run?");
+    else ImGui::Text("%s is still running, and ends when another one opens.", bench_.title().c_str());
     const auto choose = [&](const char* label, Farewell what) {
         if (!ImGui::Button(label)) return;
         farewell = what;
         ImGui::CloseCurrentPopup();
     };
+    mark_spot("farewell");
     choose("End it", Farewell::ends);
     ImGui::SameLine();
-    choose("Continue the run", Farewell::goes_on);
-    ImGui::SameLine();
-    choose("Keep the window (Esc)", Farewell::none);
+    if (farewell_is_of_window) {
+        choose("Continue the run", Farewell::goes_on);
+        ImGui::SameLine();
+    }
+    choose(farewell_is_of_window ? "Keep the window (Esc)" : "Cancel (Esc)", Farewell::none);
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
         farewell = Farewell::none;
         ImGui::CloseCurrentPopup();
@@ -148,10 +158,13 @@ void Desk::draw() {
         draw_column(c, height);
         ImGui::EndChild();
         if (is_last) break;
-        if (const double by = splitter(fmt::format("behind column {}", c), true, height); by != 0.0)
+        if (const double by = splitter(fmt::format("behind column {}", c), true, height); by != 0.0) {
             move_border(columns_, c, by / std::max(width, 1.0));
+            moves_border_ = true;
+        }
     }
     ImGui::PopStyleVar();
+    keep_borders();
     if (!shows(columns_, Panel::slices)) slices_.rest();
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);

@@ -58,13 +58,20 @@ public:
     Layout layout = Layout::patch;
     /// Changes the layout, and remembers it for this patch.
     void use_layout(Layout wanted);
+    /// The plan that this patch was opened for; empty: none.
+    std::filesystem::path plan_file;
+    /// What a person has opened: what the window remembers and is named after.
+    std::filesystem::path opened_file() const { return plan_file.empty() ? bench_.editor().file() : plan_file; }
+    void show_title();
     DeskWishes wishes;
-    StartPage& start_page() { return start_page_; }
+    /// Lays the start page over what is open, which stays as it is until something is chosen.
+    void open_start_page();
     /// A file dropped on the window.
     void take_dropped(const std::filesystem::path& file);
 
-    /// Dialog when the window closes: end or continue the run?
+    /// Dialog when the window closes or another patch opens: end or continue the run?
     enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
+    bool farewell_is_of_window = true;  ///< else another patch opens, and the run cannot go on
     /// Dialogs for unsaved edits: before closing, and when the window opens.
     Questions questions;
 
@@ -112,7 +119,8 @@ private:
     void go_to_largest_force();
     void draw_start();
     void draw_dialogs();
-    void take_wishes();
+    void draw_problem();
+    void keep_borders();
 
     Window& window_;
     Workbench& bench_;
@@ -140,6 +148,10 @@ private:
     bool asks_value_ = false;
     std::vector<LayoutColumn> columns_;
     std::vector<std::vector<LayoutColumn>> moved_;  ///< columns of other layouts and panels, for when they return
+    std::vector<std::vector<LayoutColumn>> placed_;  ///< those whose borders a person has moved, the latest last
+    bool knows_borders_ = false, moves_border_ = false;
+    std::int64_t start_told_ = 0;  ///< messages when the start page opened
+    std::int64_t told_seen_ = 0;
 };
 
 }  // namespace tactus::view

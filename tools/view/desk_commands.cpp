@@ -24,11 +24,7 @@ void Desk::add_file_commands(std::vector<Command>& all) {
     all.push_back({"File", "New patch", "Ctrl+N", "empty canvas begin", [this] { wishes.new_patch = true; }});
     all.push_back({"File", "Open...", "Ctrl+O", "patch take plan file", [this] { ask_open(); }});
     all.push_back({"File", "Start page", "", "examples recent home", [this] { wishes.start_page = true; }});
-    all.push_back({"File", "Save", "Ctrl+S", "write file",
-                   [this] {
-                       if (bench_.is_untitled()) ask_save_as();
-                       else bench_.save();
-                   },
+    all.push_back({"File", "Save", "Ctrl+S", "write file", [this] { bench_.save(); },
                    [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled()); }, nullptr, true});
     all.push_back(
         {"File", "Save as...", "Ctrl+Shift+S", "write copy another name", [this] { ask_save_as(); }, is_patch});
@@ -213,7 +209,7 @@ std::vector<Command> Desk::all_commands() {
 
 void Desk::use_layout(Layout wanted) {
     layout = wanted;
-    memory_.keep_layout(bench_.editor().file(), wanted);
+    memory_.keep_layout(opened_file(), wanted);
 }
 
 void Desk::ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done) {
@@ -224,7 +220,8 @@ void Desk::ask_open() {
     std::error_code ignored;
     const fs::path file = bench_.editor().file();
     const bool is_own = !file.empty() && !session::is_of_library(file);
-    FileChooser chooser(FileChooser::For::open, is_own ? file.parent_path() : fs::current_path(ignored),
+    FileChooser chooser(FileChooser::For::open,
+                        is_own ? fs::absolute(file, ignored).parent_path() : fs::current_path(ignored),
                         {".toml", ".plan.json"});
     ask_file("Open a patch, a take or a plan", std::move(chooser),
              [this](const fs::path& path) { wishes.open = path; });
@@ -234,13 +231,27 @@ void Desk::ask_save_as() {
     std::error_code ignored;
     const fs::path file = bench_.editor().file();
     const bool is_own = !bench_.is_untitled() && !session::is_of_library(file);
-    FileChooser chooser(FileChooser::For::save, is_own ? file.parent_path() : fs::current_path(ignored), {".toml"});
+    FileChooser chooser(FileChooser::For::save,
+                        is_own ? fs::absolute(file, ignored).parent_path() : fs::current_path(ignored), {".toml"});
     chooser.name = bench_.is_untitled() ? "" : bench_.free_file().filename().string();
-    ask_file("Save the patch as", std::move(chooser), [this](const fs::path& path) {
-        if (!bench_.save_as(path.string())) return;
-        memory_.opened(path);
-        window_.set_title(fmt::format("{} - Tactus", bench_.title()));
-    });
+    using Existing = Workbench::Existing;
+    const auto save = [this](const fs::path& path, Existing existing) {
+        if (!bench_.save_as(path.string(), existing)) return dialog_.refuse(bench_.messages().back().text);
+        questions.named(true);
+        plan_file.clear();
+        memory_.opened(opened_file());
+        memory_.keep_layout(opened_file(), layout);
+        show_title();
+    };
+    dialog_.open(
+        "Save the patch as", std::move(chooser), [save](const fs::path& path) { save(path, Existing::refuse); },
+        [save](const fs::path& path) { save(path, Existing::replace); });
+}
+
+void Desk::show_title() {
+    window_.set_title(plan_file.empty()
+                          ? fmt::format("{} - Tactus", bench_.title())
+                          : fmt::format("{} - {} - Tactus", plan_file.filename().string(), bench_.title()));
 }
 
 void Desk::ask_scan() {
@@ -364,31 +375,56 @@ void Desk::ask_import() {
              [this](const fs::path& path) { import_scan(path, patch_.selected, std::nullopt); });
 }
 
+void Desk::open_start_page() {
+    start_page_.open();
+    start_told_ = bench_.told();
+}
+
+/// The page has no list of messages: only what went wrong since it opened.
+void Desk::draw_problem() {
+    const auto& all = bench_.messages();
+    const bool is_there = bench_.told() > start_told_ && !all.empty() && all.back().is_problem;
+    const float wide = ImGui::GetContentRegionAvail().x;
+    const char* const text = is_there ? all.back().text.c_str() : "";
+    const float high =
+        is_there ? ImGui::CalcTextSize(text, nullptr, false, wide).y + ImGui::GetStyle().ItemSpacing.y : 0.0f;
+    ImGui::BeginChild("start", ImVec2(0.0f, is_there ? -high : 0.0f));
+    start_page_.draw(fonts_);
+    ImGui::EndChild();
+    if (!is_there) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, tone::bad);
+    ImGui::TextWrapped("%s", text);
+    ImGui::PopStyleColor();
+    mark_spot("problem");
+}
+
 void Desk::draw_start() {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    start_page_.draw(fonts_);
+    draw_problem();
     ImGui::PopStyleVar();
     scene_.rest();
     if (std::exchange(start_page_.wants_new, false)) wishes.new_patch = true;
     if (std::exchange(start_page_.wants_dialog, false)) ask_open();
     if (const auto path = std::exchange(start_page_.chosen, std::nullopt)) wishes.open = *path;
-    const bool leaves =
-        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && !dialog_.is_open() && !list_.is_open();
-    if (leaves) start_page_.is_open = false;
+    const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup) || dialog_.is_open() || list_.is_open();
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && !has_popup) start_page_.is_open = false;
+    ask_farewell();
     draw_dialogs();
-    if (!dialog_.is_open()) questions.draw();
+    if (farewell != Farewell::asks && !dialog_.is_open()) questions.draw();
+    if (std::exchange(questions.has_restored, false)) start_page_.is_open = false;
     ImGui::End();
     ImGui::PopFont();
 }
 
 void Desk::draw_dialogs() {
-    // A patch without a place needs one.
-    if (bench_.wants_name && bench_.is_untitled() && !dialog_.is_open()) {
+    // A patch without a place of its own needs one.
+    if (bench_.wants_name && !dialog_.is_open()) {
         bench_.wants_name = false;
         ask_save_as();
     }
     dialog_.draw(fonts_);
     import_.draw(fonts_);
+    if (!dialog_.is_open()) questions.named(false);
     list_.draw(commands_, fonts_);
     draw_value();
 }

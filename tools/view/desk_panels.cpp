@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panels of the window in their columns.
 #include "tools/view/desk.hpp"
+#include "tools/view/frame/layout_text.hpp"
 #include "tools/view/spots.hpp"
 
 #include <fmt/format.h>
@@ -80,6 +81,7 @@ PanelRoom Desk::room_of(Panel panel) {
 void Desk::arrange(double width) {
     std::vector<LayoutColumn> wanted =
         columns_of(layout, width / fonts_.scale, [this](Panel panel) { return room_of(panel); });
+    if (!std::exchange(knows_borders_, true)) moved_ = placed_ = borders_of_text(memory_.borders_of(opened_file()));
     if (!has_same_panels(wanted, columns_)) {
         if (!columns_.empty()) {
             std::erase_if(moved_, [&](const auto& known) { return has_same_panels(known, columns_); });
@@ -91,6 +93,17 @@ void Desk::arrange(double width) {
     for (std::size_t c = 0; c < columns_.size(); ++c)
         for (std::size_t p = 0; p < columns_[c].panels.size(); ++p)
             columns_[c].panels[p].is_line = wanted[c].panels[p].is_line;
+}
+
+/// When the mouse lets a border go.
+void Desk::keep_borders() {
+    constexpr std::size_t most = 8;
+    if (!moves_border_ || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+    moves_border_ = false;
+    std::erase_if(placed_, [&](const auto& known) { return has_same_panels(known, columns_); });
+    placed_.push_back(columns_);
+    if (placed_.size() > most) placed_.erase(placed_.begin());
+    memory_.keep_borders(opened_file(), text_of_borders(placed_));
 }
 
 void Desk::draw_column(std::size_t index, double height) {
@@ -109,8 +122,10 @@ void Desk::draw_column(std::size_t index, double height) {
         draw_panel(place.panel, is_last ? 0.0 : place.is_line ? line : place.share * shared);
         scene_.hand().beat();
         if (is_last) break;
-        if (const double by = splitter(fmt::format("behind panel {}", p), false, 0.0); by != 0.0)
+        if (const double by = splitter(fmt::format("behind panel {}", p), false, 0.0); by != 0.0) {
             move_border(column, p, by / std::max(height, 1.0));
+            moves_border_ = true;
+        }
     }
 }
 

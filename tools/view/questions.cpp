@@ -5,8 +5,6 @@
 
 #include <imgui.h>
 
-#include <algorithm>
-
 namespace tactus::view {
 
 namespace {
@@ -31,21 +29,19 @@ bool answer(const char* label, const char* spot, bool has_escape = false) {
 }  // namespace
 
 void Questions::draw() {
-    if (bench_.wants_name) return ask_name();
     if (leaving == Leaving::asks) return ask_leaving();
-    if (bench_.offer()) offer_edits();
+    if (leaving == Leaving::none && bench_.offer()) offer_edits();
+}
+
+void Questions::named(bool is_saved) {
+    if (leaving == Leaving::saves) leaving = is_saved ? Leaving::leaves : Leaving::none;
 }
 
 void Questions::ask_leaving() {
     if (!begin_question("Unsaved edits")) return;
     ImGui::Text("%s has unsaved edits.", bench_.editor().file().filename().c_str());
-    if (answer("Save", "save edits")) {
-        if (bench_.save()) leaving = Leaving::leaves;
-        else {
-            leaving = Leaving::none;
-            leaves_when_saved_ = bench_.wants_name;
-        }
-    }
+    if (answer("Save", "save edits"))
+        leaving = bench_.save() ? Leaving::leaves : bench_.wants_name ? Leaving::saves : Leaving::none;
     if (answer("Don't save", "drop edits")) {
         bench_.drop_edits();
         leaving = Leaving::leaves;
@@ -54,37 +50,13 @@ void Questions::ask_leaving() {
     ImGui::EndPopup();
 }
 
-void Questions::ask_name() {
-    if (name_[0] == '\0') {
-        const std::string free = bench_.free_file().string();
-        std::copy_n(free.c_str(), std::min(free.size(), name_.size() - 1), name_.begin());
-    }
-    if (!begin_question("Save as")) return;
-    ImGui::Text("Patches of the library cannot be changed. Save the patch as:");
-    ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##file", name_.data(), name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-    mark_spot("file name");
-    if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
-    if (answer("Save", "save as") || entered) {
-        if (!bench_.save_as(name_.data())) problem_ = bench_.messages().back().text;
-        else if (leaves_when_saved_) leaving = Leaving::leaves;
-    }
-    if (answer("Cancel (Esc)", "cancel saving", true)) bench_.wants_name = false;
-    if (!bench_.wants_name) {
-        leaves_when_saved_ = false;
-        name_.fill('\0');
-        problem_.clear();
-    }
-    ImGui::EndPopup();
-}
-
 void Questions::offer_edits() {
     if (!begin_question("Unsaved edits of an earlier window")) return;
     ImGui::Text("An earlier window on this patch closed with unsaved edits:\n%s", bench_.offer()->c_str());
-    if (answer("Restore", "restore edits")) bench_.restore_edits();
     // The next file opens another dialog.
+    if (answer("Restore", "restore edits")) has_restored = bench_.restore_edits() || has_restored;
     else if (answer("Discard", "discard edits")) bench_.discard_offer();
+    else if (answer("Later (Esc)", "later edits", true)) bench_.postpone_offer();
     ImGui::EndPopup();
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dialogs about unsaved edits: when the window closes, when it opens, and for a file name.
+// Dialogs about unsaved edits: when a patch is left, and when it is opened.
 #pragma once
 
 #include "tools/view/workbench.hpp"
-
-#include <array>
-#include <string>
 
 namespace tactus::view {
 
@@ -15,19 +12,18 @@ public:
 
     /// Draws the dialogs on top of everything.
     void draw();
+    /// The dialog for a file name is closed: who leaves when the patch is saved, leaves or stays.
+    void named(bool is_saved);
 
-    /// Dialog when the window closes: save, do not save, or keep it open?
-    enum class Leaving { none, asks, leaves } leaving = Leaving::none;
+    /// Dialog before a patch is left: save, do not save, or stay? `saves`: waits for a file name.
+    enum class Leaving { none, asks, saves, leaves } leaving = Leaving::none;
+    bool has_restored = false;  ///< edits, since the owner looked
 
 private:
     void ask_leaving();
-    void ask_name();
     void offer_edits();
 
     Workbench& bench_;
-    std::array<char, 1024> name_{};
-    std::string problem_;  // problem of the last entered name
-    bool leaves_when_saved_ = false;
 };
 
 }  // namespace tactus::view

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <functional>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -52,11 +54,15 @@ public:
         : view_(view),
           interrupted_(interrupted),
           window_("Tactus", view.width, view.height, view.scale),
+          layout_(view.layout),
           scan_(view.scan) {
         ++haptic::window_hand().windows;
         if (!view.script.empty()) {
             script_.emplace(view.script);
-            script_->open = [this](const std::string& what) { wanted_.open = what; };
+            script_->open = [this](const std::string& what) {
+                wanted_.open = what;
+                is_wanted_by_script_ = true;
+            };
         }
     }
 
@@ -67,37 +73,55 @@ public:
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
-    void open_patch(const RunChoice& choice) {
-        close();
-        choice_ = choice;
+    /// `plan`: that the patch is opened for. What is open stays until the new one is read. Throws Error.
+    void open_patch(const RunChoice& choice, const fs::path& plan = {}) {
+        RunChoice next = choice;
         // An earlier run in this window may have left results in the folder.
-        choice_.is_further = std::exchange(has_opened_, true);
-        bench_ = std::make_unique<Workbench>(choice_);
+        next.is_further = has_opened_;
+        auto bench = std::make_unique<Workbench>(next);
+        close();
+        has_opened_ = true;
+        choice_ = std::move(next);
+        plan_ = plan;
+        bench_ = std::move(bench);
         bench_->find_kept_edits();
-        memory_.opened(bench_->editor().file());
+        memory_.opened(plan.empty() ? bench_->editor().file() : plan);
         set_up();
     }
 
     void open_untitled() {
+        RunChoice next = choice_;
+        next.is_further = has_opened_;
+        auto bench = Workbench::untitled(next);
         close();
-        choice_.is_further = std::exchange(has_opened_, true);
-        bench_ = Workbench::untitled(choice_);
+        has_opened_ = true;
+        plan_.clear();
+        bench_ = std::move(bench);
+        bench_->find_kept_edits();
         set_up();
     }
     void open_start_page() {
         open_untitled();
-        desk_->start_page().open();
+        desk_->open_start_page();
     }
 
     void open_take(const fs::path& folder) {
-        close();
-        take_ = std::make_unique<TakeBench>(folder);
+        auto take = std::make_unique<TakeBench>(folder);
         RunChoice choice;
         choice.patch = (folder / "patch-0.toml").string();
-        choice.overrides = take_->take().about.overrides;
-        choice.seed = take_->take().about.seed;
-        bench_ = std::make_unique<Workbench>(choice);
-        bench_->has_patch_behind = !choice_.patch.empty();
+        choice.overrides = take->take().about.overrides;
+        choice.seed = take->take().about.seed;
+        auto bench = std::make_unique<Workbench>(choice);
+        if (bench_ && !take_) {
+            // The patch as it is called and as it was changed by now.
+            behind_.reset();
+            if (!bench_->is_untitled()) behind_ = Behind{bench_->choice(), plan_};
+        }
+        close();
+        plan_.clear();
+        take_ = std::move(take);
+        bench_ = std::move(bench);
+        bench_->has_patch_behind = behind_.has_value();
         memory_.opened(folder);
         set_up();
     }
@@ -125,8 +149,12 @@ public:
             for (const std::string& file : window_.take_dropped()) desk_->take_dropped(file);
             if (desk_->wishes.any()) wish(std::exchange(desk_->wishes, {}));
             if (wanted_.any()) open_wanted();
-            if (bench_->wants_take) open_take(fs::path(bench_->take()));
-            else if (bench_->wants_patch) open_patch(choice_);
+            if (std::exchange(bench_->wants_take, false)) attempt([&] { open_take(fs::path(bench_->take())); });
+            if (std::exchange(bench_->wants_patch, false) && behind_)
+                attempt([&] {
+                    const Behind behind = *behind_;
+                    open_patch(behind.choice, behind.plan);
+                });
             if (view_.meter) view_.meter->add(desk_->scene().pictures());
             if (const std::optional<bool> goes_on = farewell()) return *goes_on;
             std::this_thread::sleep_until(begin + picture_time);
@@ -148,9 +176,12 @@ private:
 
     void set_up() {
         desk_ = std::make_unique<Desk>(window_, *bench_, take_.get(), memory_);
-        window_.set_title(fmt::format("{} - Tactus", bench_->title()));
-        auto layout = layout_of_name(view_.layout);
-        if (!layout) layout = memory_.layout_of(bench_->editor().file());
+        desk_->plan_file = plan_;
+        desk_->show_title();
+        std::optional<Layout> layout;
+        // Given for what is opened first; others have their own.
+        if (!bench_->is_untitled()) layout = layout_of_name(std::exchange(layout_, {}));
+        if (!layout) layout = memory_.layout_of(desk_->opened_file());
         if (!layout) layout = layout_of_name(bench_->window().layout);
         desk_->layout = layout.value_or(Layout::patch);
         desk_->scene().use(view_.sight);
@@ -159,33 +190,43 @@ private:
         desk_->scopes().set_reference(view_.reference);
     }
 
-    /// Asks first when edits would be left behind.
+    /// Asks first when edits or a run would be left behind.
     void wish(DeskWishes wishes) {
-        if (!take_ && bench_->has_unsaved_edits()) {
-            asked_ = std::move(wishes);
-            desk_->questions.leaving = Questions::Leaving::asks;
-        } else wanted_ = std::move(wishes);
+        if (wishes.start_page) return desk_->open_start_page();
+        asked_ = std::move(wishes);
+        using Leaving = Questions::Leaving;
+        const bool asks = !take_ && bench_->has_unsaved_edits();
+        desk_->questions.leaving = asks ? Leaving::asks : Leaving::leaves;
+    }
+
+    /// Opens something; where that fails, what was open stays.
+    void attempt(const std::function<void()>& open) {
+        try {
+            open();
+        } catch (const std::exception& error) {
+            // A script says where it fails; a person reads it in the window.
+            if (std::exchange(is_wanted_by_script_, false)) throw;
+            if (!desk_) open_start_page();
+            bench_->tell(error.what(), true);
+        }
     }
 
     void open_wanted() {
         const DeskWishes wanted = std::exchange(wanted_, {});
-        try {
+        attempt([&] {
             if (bench_ && !bench_->editor().file().empty()) scan_.clear();
-            if (wanted.start_page) return open_start_page();
             if (wanted.new_patch) return open_untitled();
+            // Throws also where a folder cannot be searched.
             if (fs::exists(wanted.open / "take.json")) return open_take(wanted.open);
             RunChoice choice = choice_;
-            choice.patch = wanted.open.string();
             choice.overrides = {};
-            if (kind_of_file(wanted.open) == FileKind::plan) choice = run_of_plan(choice, wanted.open);
             choice.record.clear();
+            if (kind_of_file(wanted.open) == FileKind::plan)
+                return open_patch(run_of_plan(choice, wanted.open), wanted.open);
+            choice.patch = wanted.open.string();
             open_patch(choice);
-        } catch (const Error& error) {
-            // A script says where it fails; a person reads it in the window.
-            if (script_) throw;
-            if (!bench_) open_start_page();
-            bench_->tell(error.what(), true);
-        }
+        });
+        is_wanted_by_script_ = false;
     }
 
     /// True when the run continues after the window closes.
@@ -197,10 +238,16 @@ private:
         if (script_ && script_->wants_to_close()) return view_.keep_running;
         using Leaving = Questions::Leaving;
         Questions& questions = desk_->questions;
-        if (questions.leaving == Leaving::none) asked_ = {};
-        if (questions.leaving == Leaving::leaves && asked_.any()) {
+        if (questions.leaving == Leaving::none && desk_->farewell == Farewell::none) asked_ = {};
+        if (asked_.any() && (questions.leaving == Leaving::leaves || desk_->farewell == Farewell::ends)) {
             questions.leaving = Leaving::none;
-            wanted_ = std::exchange(asked_, {});
+            if (runs && desk_->farewell != Farewell::ends) {
+                desk_->farewell_is_of_window = false;
+                desk_->farewell = Farewell::asks;
+            } else {
+                desk_->farewell = Farewell::none;
+                wanted_ = std::exchange(asked_, {});
+            }
         } else if (questions.leaving == Leaving::leaves) window_.close();
         else if (window_.wants_to_close() && !take_ && bench_->has_unsaved_edits()) {
             window_.keep_open();
@@ -211,6 +258,8 @@ private:
             if (!runs) return false;
             if (view_.keep_running) return true;
             window_.keep_open();
+            asked_ = {};
+            desk_->farewell_is_of_window = true;
             desk_->farewell = Farewell::asks;
         }
         if (desk_->farewell == Farewell::goes_on) return true;
@@ -218,14 +267,24 @@ private:
         return std::nullopt;
     }
 
+    /// The patch to which a take leads back.
+    struct Behind {
+        RunChoice choice;
+        fs::path plan;
+    };
+
     const ViewChoice& view_;
     const std::atomic<bool>& interrupted_;
     Window window_;
     RunChoice choice_;
+    std::string layout_;
+    fs::path plan_;  ///< that the patch was opened for
+    std::optional<Behind> behind_;
     std::optional<Script> script_;
     std::unique_ptr<TakeBench> take_;
     std::unique_ptr<Workbench> bench_;
     std::unique_ptr<Desk> desk_;
+    bool is_wanted_by_script_ = false;
     DeskWishes wanted_, asked_;  ///< asked: waits for what becomes of unsaved edits
     WindowMemory memory_;
     fs::path scan_;  ///< given for what is opened first; another case has another one
@@ -289,7 +348,7 @@ int view_file(const FileViewChoice& choice, const std::atomic<bool>& interrupted
     Viewer viewer(choice.view, interrupted);
     if (choice.file.empty()) viewer.open_start_page();
     else if (fs::is_directory(choice.file)) viewer.open_take(choice.file);
-    else viewer.open_patch(patch);
+    else viewer.open_patch(patch, is_plan ? choice.file : fs::path());
     viewer.show();
     return done;
 }

@@ -159,6 +159,12 @@ void ViewedRun::edit(const std::string& text) {
     });
 }
 
+void ViewedRun::move_to(const std::filesystem::path& file) {
+    ask([file](RunSession& session) {
+        if (session.control()) session.control()->move_to(file);
+    });
+}
+
 void ViewedRun::pause(bool wanted) {
     ask([wanted](RunSession& session) { session.engine().pause(wanted); });
 }

@@ -71,6 +71,8 @@ public:
     std::int64_t requests() const;
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
+    /// The patch was saved as another file, which is watched from now on.
+    void move_to(const std::filesystem::path& file);
     void pause(bool wanted);
     /// Lets forces return that stay off until a person asks for them; `node`: HandForces::node.
     void recover(const std::string& node);

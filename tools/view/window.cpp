@@ -100,9 +100,13 @@ void Window::listen() {
         queue(w, {Kind::button, 0.0, 0.0, button, action == GLFW_PRESS});
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) { queue(w, {Kind::wheel, x, y, 0, false}); });
-    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int) {
         // Dear ImGui repeats keys by itself.
-        if (key >= 0 && action != GLFW_REPEAT) queue(w, {Kind::key, 0.0, 0.0, key, action == GLFW_PRESS});
+        if (key < 0 || action == GLFW_REPEAT) return;
+        const char* const name = KeyLetters::is_printable(key) ? glfwGetKeyName(key, scancode) : nullptr;
+        KeyLetters& letters = static_cast<Listener*>(glfwGetWindowUserPointer(w))->letters;
+        const bool is_down = action == GLFW_PRESS;
+        queue(w, {Kind::key, 0.0, 0.0, letters.code(key, scancode, name, is_down), is_down});
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned letter) {
         queue(w, {Kind::letter, 0.0, 0.0, static_cast<int>(letter), false});

@@ -4,6 +4,7 @@
 
 #include "devices/display/offscreen.hpp"
 #include "tools/view/frame/damage.hpp"
+#include "tools/view/frame/key_letters.hpp"
 #include "tools/view/input_queue.hpp"
 
 #include <cstdint>
@@ -77,6 +78,7 @@ private:
     GLFWwindow* window_ = nullptr;
     struct Listener {
         InputQueue input;
+        KeyLetters letters;
         std::vector<std::string> dropped;
         bool was_left = false;  // at once, not after the events that wait
         bool is_uncovered = false;  // another window lay over it

@@ -43,28 +43,20 @@ Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
     last_take_ = choice.record;
 }
 
-std::unique_ptr<Workbench> Workbench::untitled(RunChoice choice) {
-    std::error_code ignored;
-    fs::path file = fs::current_path(ignored) / "untitled.toml";
-    for (int i = 2; fs::exists(file, ignored); ++i) file.replace_filename(fmt::format("untitled-{}.toml", i));
-    choice.patch = file.string();
-    choice.text = "";
-    choice.overrides = {};
-    choice.record.clear();
-    return std::make_unique<Workbench>(choice);
-}
-
-bool Workbench::is_untitled() const {
-    std::error_code ignored;
-    return !fs::exists(editor_->file(), ignored);
-}
-
 std::string Workbench::title() const {
     return written_.title.empty() ? editor_->file().stem().string() : written_.title;
 }
 
+RunChoice Workbench::choice() const {
+    RunChoice choice = choice_;
+    choice.patch = editor_->file().string();
+    choice.record.clear();
+    return choice;
+}
+
 void Workbench::tell(std::string text, bool is_problem) {
     messages_.push_back({std::move(text), is_problem});
+    ++told_;
     if (messages_.size() > most_messages) messages_.pop_front();
 }
 
@@ -360,6 +352,8 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 
 void Workbench::tend() {
     if (const auto wanted = std::exchange(wanted_hand_, std::nullopt)) begin_with_hand(*wanted);
+    if (std::string problem = kept_.tend(*editor_, has_unsaved_edits()); !problem.empty())
+        tell(fmt::format("unsaved edits cannot be kept for a later window: {}", problem), true);
     if (!run_) return look_at_file();
     for (std::string& text : run_->messages()) tell(std::move(text));
     if (run_->file_was_saved()) take_over_file();

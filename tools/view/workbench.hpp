@@ -8,6 +8,7 @@
 #include "graph/edit/patch_edit.hpp"
 #include "graph/edit/patch_editor.hpp"
 #include "tools/session/run_choice.hpp"
+#include "tools/view/files/kept_edits.hpp"
 #include "tools/view/patch/patch_picture.hpp"
 #include "tools/view/patch/unfinished.hpp"
 #include "tools/view/viewed_run.hpp"
@@ -54,7 +55,11 @@ public:
     /// Increases when plan and picture change.
     std::int64_t plan_version() const { return plan_version_; }
     std::string title() const;
+    /// What opens this patch anew, as it is changed from outside now; without a recording.
+    RunChoice choice() const;
     const std::deque<Message>& messages() const { return messages_; }
+    /// How many messages there have been; `messages` holds the latest.
+    std::int64_t told() const { return told_; }
     void tell(std::string text, bool is_problem = false);
 
     // Edits. False: refused; the reason is in `messages`, and the text is not changed.
@@ -78,9 +83,9 @@ public:
     bool redo();
     /// Refused for a patch of the library; then sets `wants_name`.
     bool save();
-    /// Saves as a new file and continues with it. The file must not exist. A relative name refers to the working
-    /// folder.
-    bool save_as(const std::string& name);
+    /// Saves as another file and continues with it. A relative name refers to the working folder.
+    enum class Existing { refuse, replace };
+    bool save_as(const std::string& name, Existing existing = Existing::refuse);
     /// A proposed name for a copy in the working folder.
     std::filesystem::path free_file() const;
     bool wants_name = false;
@@ -93,13 +98,15 @@ public:
     void want_edits() { dropped_version_ = -1; }
     /// Called at the end: keeps them in a file and prints the path on standard error.
     void keep_edits() noexcept;
-    /// Finds edits kept by earlier windows on this patch.
+    /// Finds edits kept by earlier windows on this patch; for a new one, on patches that never were saved here.
     void find_kept_edits();
     /// A file of kept edits that can be restored or discarded.
     std::optional<std::filesystem::path> offer() const;
     /// Restores them as an edit; their file is removed when the patch is saved.
     bool restore_edits();
     void discard_offer();
+    /// A later window offers it again.
+    void postpone_offer();
     /// For a moving slider: changes the run but not the text.
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
@@ -214,8 +221,6 @@ private:
     void take_over_file();
     void keep_beside(const std::string& text);
     void look_at_file();
-    void drop_restored();
-    std::filesystem::path keep_text() const;
     bool has_same_parts();
 
     RunChoice choice_;
@@ -227,6 +232,7 @@ private:
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
+    std::int64_t told_ = 0;
     patch::Patch written_;
     Unfinished unfinished_;
     patch::PatchWindow window_;
@@ -240,7 +246,7 @@ private:
     int runs_ = 0;
     bool has_take_ = false;  // the run was recorded at least in part
     std::vector<std::filesystem::path> offers_;
-    std::filesystem::path restored_;  // file of restored edits, removed when the patch is saved
+    KeptEdits kept_;
     std::int64_t dropped_version_ = -1;
     std::chrono::steady_clock::time_point looked_{};
     using WrittenAt = std::map<std::filesystem::path, std::filesystem::file_time_type>;

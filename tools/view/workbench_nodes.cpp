@@ -4,6 +4,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "graph/edit/patch_arrange.hpp"
+#include "graph/edit/patch_paths.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
@@ -36,6 +37,8 @@ bool carries_signal(const std::string& type) {
 
 std::string count_of(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
 
+fs::path folder_of(const fs::path& patch) { return fs::absolute(patch).parent_path(); }
+
 std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
     std::string name = file.stem().stem().string();
     // A letter of several bytes becomes one mark.
@@ -51,17 +54,17 @@ std::string asset_name_of(const fs::path& file, const patch::Patch& patch) {
 
 /// A file as an entry of a patch's [assets].
 struct NamedAsset {
-    std::string name, path;
+    std::string name, path, written;  ///< written: as the patch names it, relative where it lies below the patch
     bool is_new = false;  ///< the patch does not name the file yet
 };
 
-NamedAsset asset_for(const fs::path& file, const patch::Patch& patch) {
+NamedAsset asset_for(const fs::path& file, const patch::Patch& patch, const fs::path& folder) {
     const fs::path path = fs::absolute(file).lexically_normal();
     const auto known = std::ranges::find_if(patch.assets, [&](const patch::PatchAsset& asset) {
         return fs::absolute(asset.path).lexically_normal() == path;
     });
-    if (known != patch.assets.end()) return {known->name, path.string(), false};
-    return {asset_name_of(path, patch), path.string(), true};
+    if (known != patch.assets.end()) return {known->name, path.string(), {}, false};
+    return {asset_name_of(path, patch), path.string(), edit::path_from(folder, path), true};
 }
 
 }  // namespace
@@ -98,14 +101,14 @@ std::string Workbench::add_node(const std::string& type, const std::string& lane
     const std::string name = free_name(type);
     const bool is_group = std::ranges::find(written_.groups, lane, &patch::PatchGroup::name) != written_.groups.end();
     edit::NewNode node{name, type, is_group ? "" : lane, is_group ? lane : "", {}, {}};
-    const NamedAsset asset = file ? asset_for(file->path, written_) : NamedAsset{};
+    const NamedAsset asset = file ? asset_for(file->path, written_, folder_of(editor_->file())) : NamedAsset{};
     if (file) node.settings.emplace_back(file->param, asset.name);
     const bool is_of_hand = known->role == NodeRole::hand_source || known->role == NodeRole::hand_sink;
     const bool needs_device = is_of_hand && written_.devices.empty();
     const bool made = edit(
         [&](std::string_view text) {
             std::string changed(text);
-            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.path);
+            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.written);
             changed = edit::with_node(changed, node);
             if (needs_device) changed = edit::with_device(changed, "simulated", "simulated");
             if (place) changed = edit::with_places(changed, {{name, *place}});
@@ -224,11 +227,11 @@ bool Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
 }
 
 bool Workbench::use_file(const std::string& node, const std::string& param, const fs::path& file) {
-    const NamedAsset asset = asset_for(file, written_);
+    const NamedAsset asset = asset_for(file, written_, folder_of(editor_->file()));
     return edit(
         [&](std::string_view text) {
             std::string changed(text);
-            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.path);
+            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.written);
             return edit::with_setting(changed, node, param, asset.name);
         },
         fmt::format("{}.{} = {}, which is {}", node, param, asset.name, asset.path));
@@ -239,8 +242,11 @@ bool Workbench::replace_asset(const std::string& asset, const fs::path& file) {
     // What the command line said of it does not hold any more.
     const std::vector<std::string> before = choice_.overrides.assets;
     std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
-    const bool is_made = edit([&](std::string_view text) { return edit::with_asset(text, asset, path); },
-                              fmt::format("{} is now {}", asset, path));
+    const bool is_made = edit(
+        [&](std::string_view text) {
+            return edit::with_asset(text, asset, edit::path_from(folder_of(editor_->file()), path));
+        },
+        fmt::format("{} is now {}", asset, path));
     if (!is_made) choice_.overrides.assets = before;
     return is_made;
 }

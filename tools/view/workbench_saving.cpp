@@ -14,10 +14,38 @@
 #include <chrono>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 namespace tactus::view {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Where a new patch would be: in the working folder.
+fs::path untitled_file(int number) {
+    std::error_code ignored;
+    const fs::path folder = fs::current_path(ignored);
+    return folder / (number == 1 ? std::string("untitled.toml") : fmt::format("untitled-{}.toml", number));
+}
+
+}  // namespace
+
+std::unique_ptr<Workbench> Workbench::untitled(RunChoice choice) {
+    int number = 1;
+    std::error_code ignored;
+    while (fs::exists(untitled_file(number), ignored)) ++number;
+    choice.patch = untitled_file(number).string();
+    choice.text = "";
+    choice.overrides = {};
+    choice.record.clear();
+    return std::make_unique<Workbench>(choice);
+}
+
+bool Workbench::is_untitled() const {
+    std::error_code ignored;
+    return !fs::exists(editor_->file(), ignored);
+}
 
 bool Workbench::save() {
     try {
@@ -42,7 +70,7 @@ bool Workbench::save() {
         }
         editor_->save();
         tell(fmt::format("saved {}", editor_->file().string()));
-        drop_restored();
+        kept_.remove();
         return true;
     } catch (const Error& error) {
         tell(error.what(), true);
@@ -59,20 +87,29 @@ fs::path Workbench::free_file() const {
     return file;
 }
 
-bool Workbench::save_as(const std::string& name) {
+bool Workbench::save_as(const std::string& name, Existing existing) {
     try {
         if (name.empty()) throw Error("a file needs a name");
         fs::path file = fs::absolute(name);
         if (file.extension() != ".toml") file += ".toml";
         if (session::is_of_library(file))
             throw Error(fmt::format("{}: this file belongs to the library; choose another", file.string()));
-        if (fs::exists(fs::symlink_status(file)))
+        if (fs::exists(fs::symlink_status(file)) && existing == Existing::refuse)
             throw Error(fmt::format("{}: the file exists already; choose another name", file.string()));
-        const fs::path folder = fs::absolute(editor_->file()).parent_path();
-        editor_->save_as(file, [&](std::string_view text) { return edit::with_absolute_paths(text, folder); });
+        // A link stays one.
+        if (fs::exists(file)) file = fs::canonical(file);
+        if (fs::is_directory(file))
+            throw Error(fmt::format("{}: this is a folder; choose another name", file.string()));
+        const fs::path from = fs::absolute(editor_->file()), folder = from.parent_path(), to = file.parent_path();
+        const bool is_of_library = session::is_of_library(from);
+        editor_->save_as(file, [&](std::string_view text) {
+            return is_of_library ? edit::with_absolute_paths(text, folder) : edit::with_paths_moved(text, folder, to);
+        });
+        if (run_) run_->move_to(file);
+        written_at_.clear();
         wants_name = false;
         tell(fmt::format("saved {}", file.string()));
-        drop_restored();
+        kept_.remove();
         // The same patch in another folder: nothing to apply to the run.
         if (const auto problem = check(editor_->text())) tell(*problem, true);
         adopt();
@@ -88,29 +125,13 @@ bool Workbench::has_unsaved_edits() const { return !editor_->is_saved() && edito
 
 void Workbench::drop_edits() {
     dropped_version_ = editor_->version();
-    drop_restored();
-}
-
-void Workbench::drop_restored() {
-    std::error_code ignored;
-    if (!restored_.empty()) fs::remove(std::exchange(restored_, {}), ignored);
-}
-
-fs::path Workbench::keep_text() const {
-    // The restored edits are in the saved text, or were undone.
-    if (!restored_.empty()) try {
-            file::write_durable_file(restored_, editor_->text());
-            return restored_;
-        } catch (const Error&) {
-            // Kept under another name, and the original is not touched.
-        }
-    return keep_unsaved(editor_->file(), editor_->text());
+    kept_.remove();
 }
 
 void Workbench::keep_edits() noexcept {
     if (!has_unsaved_edits()) return;
     try {
-        const fs::path kept = keep_text();
+        const fs::path kept = kept_.keep(*editor_);
         dropped_version_ = editor_->version();
         fmt::print(stderr, "tactus: unsaved edits of {} are kept in {}; the next window offers to restore them\n",
                    editor_->file().string(), kept.string());
@@ -120,7 +141,17 @@ void Workbench::keep_edits() noexcept {
 }
 
 void Workbench::find_kept_edits() {
-    for (const fs::path& file : find_unsaved(editor_->file())) try {
+    std::vector<fs::path> all = find_unsaved(editor_->file());
+    // An earlier new patch may have had another number.
+    constexpr int most_untitled = 9;
+    for (int i = 1; is_untitled() && i <= most_untitled; ++i) {
+        const fs::path other = untitled_file(i);
+        std::error_code ignored;
+        if (other == editor_->file() || fs::exists(other, ignored)) continue;
+        for (fs::path& file : find_unsaved(other)) all.push_back(std::move(file));
+    }
+    for (const fs::path& file : all) try {
+            if (is_in_use(file)) continue;
             // Saved in the meantime by another program.
             if (file::read_whole_file(file) == editor_->text()) fs::remove(file);
             else offers_.push_back(file);
@@ -141,7 +172,7 @@ bool Workbench::restore_edits() {
         std::string text = file::read_whole_file(file);
         offers_.pop_back();
         // Edits restored earlier keep their file.
-        restored_ = file;
+        kept_.continue_with(file);
         editor_->replace(std::move(text));
         tell(fmt::format("the edits of {} are restored; undo reverts them", file.string()));
         adopt_text();
@@ -159,6 +190,10 @@ void Workbench::discard_offer() {
     fs::remove(offers_.back(), failure);
     if (failure) tell(fmt::format("{}: cannot be removed: {}", offers_.back().string(), failure.message()), true);
     offers_.pop_back();
+}
+
+void Workbench::postpone_offer() {
+    if (!offers_.empty()) offers_.pop_back();
 }
 
 /// A run watches the file; without one it is looked at twice a second.

@@ -5,6 +5,7 @@
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
+#include <filesystem>
 #include <string>
 
 using namespace tactus;
@@ -48,4 +49,16 @@ TEST_CASE("a folder and a file that is not there are told") {
     CHECK_THROWS_WITH(file::add_file(hash, folder / "."), Catch::Matchers::ContainsSubstring("this is a folder"));
     CHECK_THROWS_WITH(file::write_whole_file(folder / "none" / "a", "x"),
                       Catch::Matchers::ContainsSubstring("cannot be written"));
+}
+
+TEST_CASE("a file that is replaced keeps its permissions") {
+    namespace fs = std::filesystem;
+    TemporaryFolder folder;
+    const fs::path file = folder / "mine.toml";
+    file::write_whole_file(file, "old");
+    const fs::perms mine = fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_write;
+    fs::permissions(file, mine);
+    file::write_durable_file(file, "new");
+    CHECK(file::read_whole_file(file) == "new");
+    CHECK(fs::status(file).permissions() == mine);
 }

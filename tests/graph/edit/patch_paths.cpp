@@ -38,6 +38,17 @@ type = "sine"
           "assets = { a = \"/l/x\", b = \"/l/y\" }\n");
 }
 
+TEST_CASE("a patch that moves names what lies below its new folder from there and changes nothing in its old one") {
+    const std::string text = "[assets]\na = \"../bones/a.vdb#left\"\nb = \"c.csv\"\nfar = \"/home/me/far.csv\"\n";
+    CHECK(edit::with_paths_moved(text, "/home/me/patches", "/home/me/patches/") == text);
+    CHECK(edit::with_paths_moved(text, "/home/me/patches", "/home/me") ==
+          "[assets]\na = \"bones/a.vdb#left\"\nb = \"patches/c.csv\"\nfar = \"/home/me/far.csv\"\n");
+    CHECK(edit::with_paths_moved(text, "/home/me/patches", "/srv") ==
+          "[assets]\na = \"/home/me/bones/a.vdb#left\"\nb = \"/home/me/patches/c.csv\"\nfar = \"/home/me/far.csv\"\n");
+    CHECK(edit::path_from("/home/me", "/home/me/../me/x.wav") == "x.wav");
+    CHECK(edit::path_from("/home/me", "/home/meadow/x.wav") == "/home/meadow/x.wav");
+}
+
 TEST_CASE("a patch saved as another file keeps its history there, and the first file its bytes") {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("tactus_save_as_" + std::to_string(::getpid()));

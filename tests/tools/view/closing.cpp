@@ -98,7 +98,7 @@ TEST_CASE("a patch of the library that is saved in the window gets a name, and t
     const fs::path patches = library_folder() / "patches";
     const std::string before = slurp(patches / "touch-sphere.toml");
     folder.write("script",
-                 "set hand_out.max_force \"8 N\"\n! save\nframes 3\nscreenshot name.png\npress \"save as\"\nframes "
+                 "set hand_out.max_force \"8 N\"\n! save\nframes 3\nscreenshot name.png\npress \"accept file\"\nframes "
                  "3\nset hand_out.max_force \"7 N\"\nsave\ncheck\nclose\n");
     const Outcome done =
         on(display, folder, "run touch-sphere --view --audio file --overwrite --out out --view-script script");

@@ -10,6 +10,7 @@
 #include "tools/view/workbench.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 using namespace tactus;
 using namespace tactus::view;
@@ -81,7 +82,7 @@ TEST_CASE("a folder of slices is chosen as it is shown, by its name, or by a sli
     CHECK(chooser.problem == "that is no folder");
 }
 
-TEST_CASE("a file to save gets its ending, and never replaces another") {
+TEST_CASE("a file to save gets its ending, and replaces another only when a person is asked") {
     const Folder folder;
     folder.write("old.toml", "x");
     FileChooser save(FileChooser::For::save, folder.path, {".toml"});
@@ -89,12 +90,41 @@ TEST_CASE("a file to save gets its ending, and never replaces another") {
     CHECK(save.accept() == save.folder() / "new.toml");
     save.name = "old";
     CHECK_FALSE(save.accept());
-    CHECK(save.problem.find("is there already") != std::string::npos);
+    CHECK(save.replaced == save.folder() / "old.toml");
+    CHECK(save.problem.empty());
+    std::filesystem::create_directories(folder.path / "folder.toml");
+    save.name = "folder";
+    CHECK_FALSE(save.accept());
+    CHECK_FALSE(save.replaced);
+    CHECK(save.problem.find("is no file") != std::string::npos);
     save.name = "no/such/place";
     CHECK_FALSE(save.accept());
     CHECK(save.problem.find("there is no folder") != std::string::npos);
     save.name = (folder.path / "by path.toml").string();
     CHECK(save.accept() == folder.path / "by path.toml");
+}
+
+TEST_CASE("a list of files shows hidden ones when asked and the newest first and makes folders") {
+    const Folder folder;
+    namespace fs = std::filesystem;
+    for (const char* file : {"a.toml", "b.toml", ".hidden.toml"}) folder.write(file, "text");
+    const auto now = fs::last_write_time(folder.path / "a.toml");
+    fs::last_write_time(folder.path / "b.toml", now + std::chrono::hours(1));
+    fs::last_write_time(folder.path / ".hidden.toml", now - std::chrono::hours(1));
+    FileChooser chooser(FileChooser::For::open, folder.path, {".toml"});
+    CHECK(names(chooser.entries()) == std::vector<std::string>{"a.toml", "b.toml"});
+    CHECK(chooser.entries()[0].size == 4);
+    chooser.sort_by(FileChooser::Order::newest);
+    chooser.show_hidden(true);
+    CHECK(names(chooser.entries()) == std::vector<std::string>{"b.toml", "a.toml", ".hidden.toml"});
+    CHECK_FALSE(chooser.make_folder("a.toml"));
+    CHECK(chooser.problem.find("is there already") != std::string::npos);
+    CHECK_FALSE(chooser.make_folder(""));
+    CHECK_FALSE(chooser.make_folder("no/such/place"));
+    REQUIRE(chooser.make_folder("new one"));
+    CHECK(chooser.folder().filename() == "new one");
+    chooser.go_up();
+    CHECK(chooser.entries().front().name == "new one");
 }
 
 TEST_CASE("the start page lists examples with titles, files that still are there, takes and plans") {
@@ -155,6 +185,59 @@ TEST_CASE("the window remembers files and layouts, and survives a damaged memory
     WindowMemory lost("/proc/nowhere/window.json");
     lost.opened("/tmp/x");
     CHECK(lost.recent().size() == 1);
+}
+
+TEST_CASE("two windows with one memory forget nothing of each other") {
+    const Folder folder;
+    const auto file = folder.path / "window.json";
+    WindowMemory one(file), other(file);
+    one.opened(folder.path / "a");
+    one.keep_layout(folder.path / "a", Layout::plan);
+    other.opened(folder.path / "b");
+    other.keep_borders(folder.path / "b", "0.5 patch 1 | 0.5 scene 1\n");
+    const WindowMemory next(file);
+    CHECK(next.recent().size() == 2);
+    CHECK(next.layout_of(folder.path / "a") == Layout::plan);
+    CHECK(next.borders_of(folder.path / "b") == "0.5 patch 1 | 0.5 scene 1\n");
+    CHECK(next.borders_of(folder.path / "a").empty());
+}
+
+TEST_CASE("a file in the patch's folder is named from there and one elsewhere by its whole path") {
+    const Folder folder, elsewhere;
+    session::RunChoice choice;
+    choice.patch = folder
+                       .write("p.toml",
+                              "wires = [\"go.out -> drum.trigger\"]\n[nodes.go]\ntype = \"clock\"\nrate = \"48 kHz\"\n"
+                              "[nodes.drum]\ntype = \"player\"\nrate = \"48 kHz\"\n")
+                       .string();
+    Workbench bench(choice);
+    std::filesystem::create_directories(folder.path / "sounds");
+    REQUIRE(bench.take_file(folder.write("sounds/knock.wav", "x"), ""));
+    CHECK(bench.editor().text().find("knock = \"sounds/knock.wav\"") != std::string::npos);
+    const auto far = elsewhere.write("far.wav", "x");
+    REQUIRE(bench.take_file(far, "drum"));
+    CHECK(bench.editor().text().find("\"" + far.string() + "\"") != std::string::npos);
+    REQUIRE(bench.undo());
+    // In the same folder all paths stay as they are.
+    const std::string text = bench.editor().text();
+    REQUIRE(bench.save_as((folder.path / "q.toml").string()));
+    CHECK(slurp(folder.path / "q.toml") == text);
+    // A file that is there is replaced only when that is wanted.
+    CHECK_FALSE(bench.save_as((folder.path / "p.toml").string()));
+    REQUIRE(bench.save_as((folder.path / "p.toml").string(), Workbench::Existing::replace));
+    CHECK(slurp(folder.path / "p.toml") == text);
+    CHECK(bench.choice().patch == (folder.path / "p.toml").string());
+}
+
+TEST_CASE("messages are counted beyond those that are kept") {
+    const Folder folder;
+    session::RunChoice choice;
+    choice.patch = folder.write("voice.toml", tactus::test::voice).string();
+    Workbench bench(choice);
+    const auto before = bench.told();
+    for (int i = 0; i < 300; ++i) bench.tell("more");
+    CHECK(bench.messages().size() == 200);
+    CHECK(bench.told() == before + 300);
 }
 
 TEST_CASE("a file that is dropped goes to the node that takes it, as one edit") {

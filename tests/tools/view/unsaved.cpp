@@ -7,8 +7,14 @@
 #include "tools/session/load_plan.hpp"
 #include "tools/view/workbench.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <memory>
+#include <thread>
 
 using namespace tactus;
 using namespace tactus::view;
@@ -51,7 +57,91 @@ std::string leave_edit(const RunChoice& choice, const std::string& frequency) {
     return bench.editor().text();
 }
 
+/// What a window does between pictures, until something holds or it takes too long.
+template <class Holds>
+bool tend_until(Workbench& bench, Holds holds) {
+    for (int i = 0; i < 1000 && !holds(); ++i) {
+        bench.tend();
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return holds();
+}
+
 }  // namespace
+
+TEST_CASE("a window that is killed has kept its edits shortly before") {
+    const Folder folder;
+    const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
+    const pid_t process = ::fork();
+    REQUIRE(process >= 0);
+    if (process == 0) {
+        Workbench bench(choice_of(patch));
+        bench.set("tone", "frequency", "220 Hz");
+        tend_until(bench, [&] { return fs::exists(kept) && fs::file_size(kept) > 0; });
+        ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    CHECK(WIFSIGNALED(status));
+    CHECK(slurp(kept).find("220 Hz") != std::string::npos);
+    Workbench next(choice_of(patch));
+    next.find_kept_edits();
+    CHECK(next.offer() == kept);
+}
+
+TEST_CASE("edits kept while a window works go when they are saved or undone and are no offer to a second window") {
+    const Folder folder;
+    const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
+    Workbench bench(choice_of(patch));
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    bench.tend();
+    CHECK_FALSE(fs::exists(kept));
+    const auto is_kept = [&] { return fs::exists(kept) && slurp(kept) == bench.editor().text(); };
+    REQUIRE(tend_until(bench, is_kept));
+    REQUIRE(bench.set("tone", "frequency", "330 Hz"));
+    REQUIRE(tend_until(bench, is_kept));
+    bench.tend();
+    CHECK(find_unsaved(patch).size() == 1);
+    Workbench second(choice_of(patch));
+    second.find_kept_edits();
+    CHECK_FALSE(second.offer());
+    while (bench.undo()) {
+    }
+    CHECK(tend_until(bench, [&] { return !fs::exists(kept); }));
+    REQUIRE(bench.redo());
+    REQUIRE(tend_until(bench, is_kept));
+    REQUIRE(bench.save());
+    CHECK_FALSE(fs::exists(kept));
+    bench.tend();
+    CHECK(find_unsaved(patch).empty());
+}
+
+TEST_CASE("edits of a patch that never was saved are offered to the next new patch") {
+    const Folder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path);
+    {
+        folder.write("untitled.toml", voice);
+        const auto bench = Workbench::untitled({});
+        CHECK(bench->editor().file().filename() == "untitled-2.toml");
+        REQUIRE_FALSE(bench->add_node("sine", "48 kHz").empty());
+        bench->keep_edits();
+    }
+    fs::remove("untitled.toml");
+    const auto bench = Workbench::untitled({});
+    CHECK(bench->editor().file().filename() == "untitled.toml");
+    bench->find_kept_edits();
+    CHECK(bench->offer() == folder.path / "untitled-2.unsaved.toml");
+    // Later is not never.
+    bench->postpone_offer();
+    CHECK_FALSE(bench->offer());
+    bench->find_kept_edits();
+    REQUIRE(bench->restore_edits());
+    CHECK(bench->editor().text().find("sine") != std::string::npos);
+    REQUIRE(bench->save_as("mine"));
+    CHECK_FALSE(fs::exists("untitled-2.unsaved.toml"));
+    fs::current_path(before);
+}
 
 TEST_CASE("edits that are not saved are kept beside the patch, offered to the next window, and restored as an edit") {
     const Folder folder;

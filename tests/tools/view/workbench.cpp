@@ -228,6 +228,34 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
     }
 }
 
+TEST_CASE("a run follows its patch to another file: what is saved there counts and new sub-patches are found there",
+          "[live]") {
+    const Folder folder, elsewhere;
+    Workbench bench(choice_in(folder));
+    bench.run();
+    const auto status = [&] {
+        bench.tend();
+        return bench.status();
+    };
+    REQUIRE(come_about([&] { return status()->time > 0.1; }));
+    REQUIRE(bench.save_as((elsewhere.path / "moved.toml").string()));
+    REQUIRE(bench.make_sub_patch({"loud"}, "part"));
+    CHECK(std::filesystem::exists(elsewhere.path / "part.toml"));
+    REQUIRE(come_about([&] { return status()->edits == 1; }));
+    REQUIRE(bench.save());
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    bench.tend();
+    const std::string text = bench.editor().text();
+    // Another program saves the new file.
+    elsewhere.write("moved.toml", text + "\n# saved elsewhere\n");
+    REQUIRE(come_about([&] {
+        bench.tend();
+        return bench.editor().text().ends_with("# saved elsewhere\n");
+    }));
+    bench.stop();
+    REQUIRE(come_about([&] { return bench.running()->is_over(); }));
+}
+
 TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands",
           "[live]") {
     const Folder folder;

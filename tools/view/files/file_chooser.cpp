@@ -38,24 +38,53 @@ bool FileChooser::go_to(const fs::path& folder) {
     std::error_code ignored;
     for (const fs::directory_iterator end; !failure && next != end; next.increment(failure)) {
         const std::string file = next->path().filename().string();
-        if (file.starts_with('.')) continue;
+        if (file.starts_with('.') && !shows_hidden_) continue;
+        const fs::file_time_type when = next->last_write_time(ignored);
         if (next->is_directory(ignored)) {
-            found.push_back({file, true, fs::exists(next->path() / "take.json", ignored)});
+            found.push_back({file, true, fs::exists(next->path() / "take.json", ignored), 0, when});
             continue;
         }
         const bool suits = endings_.empty() || std::ranges::any_of(endings_, [&](const std::string& ending) {
                                return lower(file).ends_with(ending);
                            });
-        if (suits && next->is_regular_file(ignored)) found.push_back({file, false, false});
+        if (suits && next->is_regular_file(ignored))
+            found.push_back({file, false, false, next->file_size(ignored), when});
     }
-    std::ranges::sort(found, [](const Entry& a, const Entry& b) {
-        if (a.is_folder != b.is_folder) return a.is_folder;
-        return std::pair(lower(a.name), a.name) < std::pair(lower(b.name), b.name);
-    });
     folder_ = wanted;
     all_ = std::move(found);
+    sort();
     problem.clear();
+    replaced.reset();
     return true;
+}
+
+void FileChooser::sort() {
+    std::ranges::sort(all_, [this](const Entry& a, const Entry& b) {
+        if (a.is_folder != b.is_folder) return a.is_folder;
+        if (order_ == Order::newest && a.when != b.when) return a.when > b.when;
+        return std::pair(lower(a.name), a.name) < std::pair(lower(b.name), b.name);
+    });
+}
+
+void FileChooser::sort_by(Order order) {
+    order_ = order;
+    sort();
+}
+
+void FileChooser::show_hidden(bool wanted) {
+    shows_hidden_ = wanted;
+    refresh();
+}
+
+bool FileChooser::make_folder(const std::string& folder) {
+    std::error_code failure;
+    const fs::path made = folder_ / folder;
+    if (folder.empty()) problem = "type a name for the folder";
+    else if (fs::exists(fs::symlink_status(made, failure))) problem = fmt::format("'{}' is there already", folder);
+    else if (!fs::create_directory(made, failure))
+        problem = fmt::format("'{}' cannot be made: {}", folder, failure.message());
+    else return go_to(made);
+    return false;
 }
 
 void FileChooser::go_up() {
@@ -90,6 +119,7 @@ fs::path FileChooser::meant() const {
 
 std::optional<fs::path> FileChooser::accept() {
     problem.clear();
+    replaced.reset();
     if (name.empty()) {
         problem = "type or choose a name";
         return std::nullopt;
@@ -110,11 +140,13 @@ std::optional<fs::path> FileChooser::accept() {
         return std::nullopt;
     }
     if (!endings_.empty() && lower(file.extension().string()) != endings_.front()) file += endings_.front();
-    if (fs::exists(fs::symlink_status(file, ignored)))
-        problem = fmt::format("'{}' is there already; choose another name", file.filename().string());
+    const fs::file_type there = fs::status(file, ignored).type();
+    if (there == fs::file_type::regular) replaced = file;
+    else if (fs::exists(fs::symlink_status(file, ignored)))
+        problem = fmt::format("'{}' is no file; choose another name", file.filename().string());
     else if (!fs::is_directory(file.parent_path(), ignored))
         problem = fmt::format("there is no folder '{}'", file.parent_path().string());
-    if (!problem.empty()) return std::nullopt;
+    if (replaced || !problem.empty()) return std::nullopt;
     return file;
 }
 

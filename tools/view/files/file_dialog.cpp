@@ -9,7 +9,9 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <utility>
 
 namespace tactus::view {
@@ -20,18 +22,106 @@ namespace {
 
 bool pressed(ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
 
+std::string size_words(std::uintmax_t bytes) {
+    const auto size = static_cast<double>(bytes);
+    if (size < 1e3) return fmt::format("{:.0f} B", size);
+    if (size < 1e6) return fmt::format("{:.1f} kB", size * 1e-3);
+    if (size < 1e9) return fmt::format("{:.1f} MB", size * 1e-6);
+    return fmt::format("{:.1f} GB", size * 1e-9);
+}
+
+std::string date_words(fs::file_time_type when) {
+    const auto system = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(when));
+    const std::time_t time = std::chrono::system_clock::to_time_t(system);
+    std::tm local{};
+    if (!::localtime_r(&time, &local)) return "";
+    return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday,
+                       local.tm_hour, local.tm_min);
+}
+
 }  // namespace
 
-void FileDialog::open(const std::string& title, FileChooser chooser, Done done) {
+void FileDialog::open(const std::string& title, FileChooser chooser, Done done, Done replace) {
+    ++opened_;
+    makes_folder_ = false;
     title_ = title;
     chooser_ = std::move(chooser);
     done_ = std::move(done);
+    replace_ = std::move(replace);
     wants_open_ = true;
     was_opened_ = false;
 }
 
 void FileDialog::refuse(const std::string& why) {
+    was_refused_ = true;
     if (chooser_) chooser_->problem = why;
+}
+
+/// What is done may open this dialog anew.
+void FileDialog::finish(const Done& done, const fs::path& file) {
+    const int opened = opened_;
+    was_refused_ = false;
+    const Done call = done;
+    call(file);
+    if (opened == opened_ && !was_refused_) chooser_.reset();
+}
+
+void FileDialog::tools() {
+    if (ImGui::Button("new folder")) {
+        makes_folder_ = !makes_folder_;
+        new_folder_.clear();
+    }
+    mark_spot("new folder");
+    ImGui::SameLine();
+    bool hidden = chooser_->shows_hidden();
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool is_toggled = io.KeyCtrl && ImGui::IsKeyPressed('H', false);
+    if (ImGui::Checkbox("hidden files", &hidden)) chooser_->show_hidden(hidden);
+    else if (is_toggled) chooser_->show_hidden(!chooser_->shows_hidden());
+    mark_spot("hidden files");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("also those that begin with a dot (Ctrl+H)");
+    ImGui::SameLine();
+    bool by_date = chooser_->order() == FileChooser::Order::newest;
+    if (ImGui::Checkbox("newest first", &by_date))
+        chooser_->sort_by(by_date ? FileChooser::Order::newest : FileChooser::Order::name);
+    mark_spot("newest first");
+    if (!makes_folder_) return;
+    ImGui::SetNextItemWidth(-1.0f);
+    if (new_folder_.empty() && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputTextWithHint("##folder", "name of the new folder, then Enter", &new_folder_,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    mark_spot("folder name");
+    if (entered && chooser_->make_folder(new_folder_)) {
+        makes_folder_ = false;
+        wants_focus_ = true;
+    }
+}
+
+void FileDialog::ask_to_replace() {
+    constexpr const char* title = "Replace the file?";
+    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    const fs::path file = *chooser_->replaced;
+    ImGui::Text("Replace %s?", file.filename().c_str());
+    ImGui::TextDisabled("It was saved at %s.",
+                        [&] {
+                            std::error_code ignored;
+                            return date_words(fs::last_write_time(file, ignored));
+                        }()
+                            .c_str());
+    const bool agreed = ImGui::Button("Replace");
+    mark_spot("replace file");
+    ImGui::SameLine();
+    const bool cancelled = ImGui::Button("Cancel (Esc)") || pressed(ImGuiKey_Escape);
+    mark_spot("keep file");
+    if (agreed || cancelled) {
+        ImGui::CloseCurrentPopup();
+        chooser_->replaced.reset();
+        wants_focus_ = true;
+    }
+    ImGui::EndPopup();
+    if (agreed) finish(replace_ ? replace_ : done_, file);
 }
 
 void FileDialog::places() {
@@ -76,15 +166,19 @@ void FileDialog::files() {
             ImGui::SameLine();
             ImGui::TextDisabled("take");
         }
+        // On a narrow window the name needs the room.
+        const std::string note =
+            entry.is_folder ? date_words(entry.when) : size_words(entry.size) + "   " + date_words(entry.when);
+        const float room = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(note.c_str()).x;
+        if (room > ImGui::CalcTextSize(shown.c_str()).x + 4.0f * ImGui::GetFontSize()) {
+            ImGui::SameLine(room);
+            ImGui::TextDisabled("%s", note.c_str());
+        }
     }
     if (!wanted) return;
     chooser_->name = *wanted;
     if (!is_double) return;
-    if (const auto file = chooser_->accept()) {
-        const Done done = done_;
-        chooser_.reset();
-        done(*file);
-    }
+    if (const auto file = chooser_->accept()) finish(done_, *file);
 }
 
 bool FileDialog::name() {
@@ -131,6 +225,9 @@ void FileDialog::draw(const Fonts& fonts) {
         ImGui::EndPopup();
     };
     if (!chooser_) return leave();
+    // Esc leaves the innermost.
+    const bool is_inner = makes_folder_ || chooser_->replaced.has_value();
+    if (makes_folder_ && pressed(ImGuiKey_Escape)) makes_folder_ = false;
     if (ImGui::SmallButton("up")) chooser_->go_up();
     mark_spot("folder up");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("the folder above (Alt+Up)");
@@ -138,6 +235,7 @@ void FileDialog::draw(const Fonts& fonts) {
         chooser_->go_to(chooser_->folder().parent_path());
     ImGui::SameLine();
     ImGui::TextUnformatted(chooser_->folder().c_str());
+    tools();
     const float below = 2.0f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
     ImGui::BeginChild("places", ImVec2(11.0f * ImGui::GetFontSize(), -below));
     places();
@@ -155,7 +253,8 @@ void FileDialog::draw(const Fonts& fonts) {
     const bool accepted = ImGui::Button("   OK   ");
     mark_spot("accept file");
     ImGui::SameLine();
-    const bool cancelled = ImGui::Button("Cancel") || pressed(ImGuiKey_Escape);
+    const bool is_asking = chooser_->replaced.has_value();
+    const bool cancelled = ImGui::Button("Cancel") || (!is_inner && pressed(ImGuiKey_Escape));
     mark_spot("cancel file");
     bool is_folder = false;
     if (chooser_->takes_folders) {
@@ -168,16 +267,13 @@ void FileDialog::draw(const Fonts& fonts) {
         chooser_.reset();
         return leave();
     }
-    if (entered || accepted || is_folder) {
-        if (const auto file = is_folder ? chooser_->accept_folder() : chooser_->accept()) {
-            const Done done = done_;
-            chooser_.reset();
-            leave();
-            return done(*file);
-        }
+    if (is_asking) ask_to_replace();
+    else if (entered || accepted || is_folder) {
+        if (const auto file = is_folder ? chooser_->accept_folder() : chooser_->accept()) finish(done_, *file);
         // Who types goes on typing.
-        wants_focus_ = true;
+        wants_focus_ = chooser_ && !chooser_->replaced;
     }
+    if (!chooser_) return leave();
     ImGui::EndPopup();
 }
 

@@ -30,69 +30,92 @@ fs::path WindowMemory::place() {
     return {};
 }
 
-WindowMemory::WindowMemory(fs::path file) : file_(std::move(file)) {
-    std::error_code ignored;
-    if (file_.empty() || !fs::is_regular_file(file_, ignored)) return;
+WindowMemory::WindowMemory(fs::path file) : file_(std::move(file)) { read(); }
+
+/// What is damaged is as if it were not there; it is no patch.
+void WindowMemory::read() noexcept {
     try {
+        std::error_code ignored;
+        if (file_.empty() || !fs::is_regular_file(file_, ignored)) return;
         const Json root = Json::parse(file::read_whole_file(file_));
+        Known known;
         if (const Json* recent = root.find("recent"))
             for (const Json& item : *recent)
-                if (recent_.size() < most_recent) recent_.push_back(item.as_text());
+                if (known.recent.size() < most_recent) known.recent.push_back(item.as_text());
         if (const Json* layouts = root.find("layouts"))
             for (const auto& [path, name] : layouts->items())
-                if (const auto layout = layout_of_name(name.as_text()); layout && layouts_.size() < most_layouts)
-                    layouts_[path] = *layout;
+                if (const auto layout = layout_of_name(name.as_text()); layout && known.layouts.size() < most_layouts)
+                    known.layouts[path] = *layout;
         if (const Json* scans = root.find("scans"))
             for (const auto& [plan, scan] : scans->items())
-                if (scans_.size() < most_scans) scans_[plan] = scan.as_text();
+                if (known.scans.size() < most_scans) known.scans[plan] = scan.as_text();
+        if (const Json* borders = root.find("borders"))
+            for (const auto& [path, text] : borders->items())
+                if (known.borders.size() < most_layouts) known.borders[path] = text.as_text();
+        known_ = std::move(known);
     } catch (const std::exception&) {
-        // What is damaged is forgotten; it is no patch.
-        recent_.clear();
-        layouts_.clear();
-        scans_.clear();
+        // The memory of this window stays.
     }
 }
 
 void WindowMemory::opened(const fs::path& what) {
     const std::string path = name_of_file(what);
-    std::erase(recent_, path);
-    recent_.insert(recent_.begin(), path);
-    if (recent_.size() > most_recent) recent_.resize(most_recent);
+    // Another window may have written since.
+    read();
+    std::erase(known_.recent, path);
+    known_.recent.insert(known_.recent.begin(), path);
+    if (known_.recent.size() > most_recent) known_.recent.resize(most_recent);
     save();
 }
 
 std::optional<Layout> WindowMemory::layout_of(const fs::path& patch) const {
-    const auto found = layouts_.find(name_of_file(patch));
-    if (found == layouts_.end()) return std::nullopt;
+    const auto found = known_.layouts.find(name_of_file(patch));
+    if (found == known_.layouts.end()) return std::nullopt;
     return found->second;
 }
 
 void WindowMemory::keep_layout(const fs::path& patch, Layout layout) {
-    if (layouts_.size() >= most_layouts) layouts_.clear();
-    layouts_[name_of_file(patch)] = layout;
+    read();
+    if (known_.layouts.size() >= most_layouts) known_.layouts.clear();
+    known_.layouts[name_of_file(patch)] = layout;
     save();
 }
 
 fs::path WindowMemory::scan_of(const fs::path& plan) const {
-    const auto found = scans_.find(name_of_file(plan));
-    return found == scans_.end() ? fs::path() : fs::path(found->second);
+    const auto found = known_.scans.find(name_of_file(plan));
+    return found == known_.scans.end() ? fs::path() : fs::path(found->second);
 }
 
 void WindowMemory::keep_scan(const fs::path& plan, const fs::path& scan) {
-    if (scans_.size() >= most_scans) scans_.clear();
-    scans_[name_of_file(plan)] = name_of_file(scan);
+    read();
+    if (known_.scans.size() >= most_scans) known_.scans.clear();
+    known_.scans[name_of_file(plan)] = name_of_file(scan);
+    save();
+}
+
+std::string WindowMemory::borders_of(const fs::path& patch) const {
+    const auto found = known_.borders.find(name_of_file(patch));
+    return found == known_.borders.end() ? std::string() : found->second;
+}
+
+void WindowMemory::keep_borders(const fs::path& patch, const std::string& borders) {
+    read();
+    if (known_.borders.size() >= most_layouts) known_.borders.clear();
+    known_.borders[name_of_file(patch)] = borders;
     save();
 }
 
 void WindowMemory::save() const noexcept {
     if (file_.empty()) return;
     try {
-        Json root = Json::object(), layouts = Json::object(), scans = Json::object();
-        for (const auto& [path, layout] : layouts_) layouts[path] = std::string(name_of(layout));
-        root["recent"] = Json(recent_);
-        for (const auto& [plan, scan] : scans_) scans[plan] = scan;
+        Json root = Json::object(), layouts = Json::object(), scans = Json::object(), borders = Json::object();
+        for (const auto& [path, layout] : known_.layouts) layouts[path] = std::string(name_of(layout));
+        root["recent"] = Json(known_.recent);
+        for (const auto& [plan, scan] : known_.scans) scans[plan] = scan;
         root["layouts"] = layouts;
         root["scans"] = scans;
+        for (const auto& [path, text] : known_.borders) borders[path] = text;
+        root["borders"] = borders;
         fs::create_directories(file_.parent_path());
         file::write_durable_file(file_, root.dump(2) + "\n");
     } catch (const std::exception&) {

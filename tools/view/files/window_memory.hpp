@@ -22,7 +22,7 @@ public:
     static std::filesystem::path place();
 
     /// Patches and takes, those opened last first; at most 20. Some may be gone.
-    const std::vector<std::string>& recent() const { return recent_; }
+    const std::vector<std::string>& recent() const { return known_.recent; }
     void opened(const std::filesystem::path& what);
 
     std::optional<Layout> layout_of(const std::filesystem::path& patch) const;
@@ -32,13 +32,23 @@ public:
     std::filesystem::path scan_of(const std::filesystem::path& plan) const;
     void keep_scan(const std::filesystem::path& plan, const std::filesystem::path& scan);
 
+    /// Where a person has put the borders between the panels of a patch, as `text_of_borders` writes them; empty:
+    /// nowhere.
+    std::string borders_of(const std::filesystem::path& patch) const;
+    void keep_borders(const std::filesystem::path& patch, const std::string& borders);
+
 private:
+    void read() noexcept;
     void save() const noexcept;
 
+    struct Known {
+        std::vector<std::string> recent;
+        std::map<std::string, Layout> layouts;
+        std::map<std::string, std::string> scans;  ///< by plan
+        std::map<std::string, std::string> borders;
+    };
     std::filesystem::path file_;
-    std::vector<std::string> recent_;
-    std::map<std::string, Layout> layouts_;
-    std::map<std::string, std::string> scans_;  ///< by plan
+    Known known_;
 };
 
 }  // namespace tactus::view

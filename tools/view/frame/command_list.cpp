@@ -112,11 +112,12 @@ void draw_menus(const std::vector<Command>& commands, double room, bool wants_al
     ImGui::SameLine();
 }
 
-void run_pressed(const std::vector<Command>& commands) {
+void run_pressed(const std::vector<Command>& commands, bool is_typing) {
     const ImGuiIO& io = ImGui::GetIO();
     for (const Command& command : commands) {
         if (command.keys.empty()) continue;
         const Chord chord = chord_of(command.keys);
+        if (is_typing && !passes_text_field(chord)) continue;
         const int key = key_of(chord.key);
         if (key < 0 || chord.ctrl != io.KeyCtrl || chord.shift != io.KeyShift || chord.alt != io.KeyAlt) continue;
         if (!ImGui::IsKeyPressed(key, false) || !command.is_possible()) continue;

@@ -14,8 +14,9 @@ namespace tactus::view {
 /// menu that has all of them, for the keyboard.
 void draw_menus(const std::vector<Command>& commands, double room, bool wants_all);
 
-/// Runs the command whose keys are pressed in this frame.
-void run_pressed(const std::vector<Command>& commands);
+/// Runs the command whose keys are pressed in this frame. `is_typing`: a text field has the keys that mean something
+/// in it.
+void run_pressed(const std::vector<Command>& commands, bool is_typing);
 
 class CommandList {
 public:

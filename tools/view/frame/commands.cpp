@@ -24,6 +24,15 @@ Chord chord_of(std::string_view keys) {
     return chord;
 }
 
+bool passes_text_field(const Chord& chord) {
+    if (chord.alt) return false;
+    const std::string& key = chord.key;
+    if (key.size() > 1 && key[0] == 'F' && key[1] >= '0' && key[1] <= '9') return true;
+    // A field itself uses Ctrl with A, C, V, X, Y and Z.
+    constexpr std::string_view letters = "SONPQ";
+    return chord.ctrl && key.size() == 1 && letters.find(key[0]) != std::string_view::npos;
+}
+
 std::vector<const Command*> find_commands(const std::vector<Command>& all, std::string_view words) {
     std::vector<std::pair<double, const Command*>> found;
     for (const Command& command : all) {

@@ -31,6 +31,9 @@ struct Chord {
 /// Of "Ctrl+Shift+S".
 Chord chord_of(std::string_view keys);
 
+/// A chord that means nothing in a text field, so that it works also while one types: Ctrl+S, F5.
+bool passes_text_field(const Chord& chord);
+
 /// Those that suit some words, best first; those that are not possible now come last.
 std::vector<const Command*> find_commands(const std::vector<Command>& all, std::string_view words);
 
