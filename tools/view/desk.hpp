@@ -97,6 +97,9 @@ private:
     void ask_open();
     void ask_save_as();
     void ask_scan();
+    void ask_part();
+    /// The picture of the patch is on the screen: keys of the patch mean it.
+    bool sees_patch() const { return !start_page_.is_open && shows(columns_, Panel::patch); }
     void ask_value(const std::string& node, const std::string& param, const std::string& value);
     void draw_value();
     void go_to_largest_force();

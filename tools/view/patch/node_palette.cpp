@@ -33,17 +33,9 @@ void NodePalette::open(Point at, Point world, const std::string& from, const Val
 
 std::string NodePalette::add(const NodeType& type) {
     const std::string lane = lane_.empty() ? bench_.lane_for(type.name) : lane_;
-    const auto& lanes = bench_.picture().lanes;
-    const auto shown = std::ranges::find(lanes, lane, &PictureLane::name);
-    constexpr double lane_gap = 14.0;
-    const PatchPicture& picture = bench_.picture();
-    const double below = picture.lanes.empty() ? 0.0 : picture.bounds.bottom + lane_gap;
-    const double top = shown == lanes.end() ? below : shown->top;
-    const std::string name =
-        bench_.add_node(type.name, lane, patch::PatchPlace{world_.x, std::max(world_.y - top, lane_head_height)});
-    if (name.empty() || from_.empty()) return name;
-    if (const PicturePort* input = input_for(type, type_)) bench_.connect(from_, name + "." + input->name);
-    return name;
+    const PicturePort* input = from_.empty() ? nullptr : input_for(type, type_);
+    return bench_.add_node(type.name, lane, place_for(bench_.picture(), lane, world_), from_,
+                           input ? input->name : std::string());
 }
 
 void NodePalette::preview(const NodeType& type) const {
