@@ -167,10 +167,10 @@ std::string with_pasted(std::string_view text, std::string_view copy, const std:
     Editing editing(text);
     // A name that means something else here becomes a new one.
     const auto path_of = [&](const patch::PatchAsset& asset) { return (folder / asset.path).lexically_normal(); };
-    const auto groups = names_here(patch.groups, here.groups,
-                                   [](const patch::PatchGroup& a, const patch::PatchGroup& b) {
-                                       return a.rate == b.rate && a.latency == b.latency && a.backlog == b.backlog;
-                                   });
+    const auto groups =
+        names_here(patch.groups, here.groups, [](const patch::PatchGroup& a, const patch::PatchGroup& b) {
+            return a.rate == b.rate && a.latency == b.latency && a.backlog == b.backlog;
+        });
     const auto assets =
         names_here(patch.assets, here.assets, [&](const patch::PatchAsset& a, const patch::PatchAsset& b) {
             return folder.empty() || path_of(a) == path_of(b);

@@ -4,8 +4,8 @@
 #include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/view/patch/part_ports.hpp"
-#include "tools/view/patch/wire_choices.hpp"
+#include "tools/view/ports/part_ports.hpp"
+#include "tools/view/ports/wire_choices.hpp"
 #include "tools/view/workbench.hpp"
 
 #include <fmt/format.h>

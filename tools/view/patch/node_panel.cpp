@@ -4,8 +4,8 @@
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/view/frame/elide.hpp"
-#include "tools/view/patch/part_ports.hpp"
 #include "tools/view/patch/type_search.hpp"
+#include "tools/view/ports/part_ports.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 

@@ -3,7 +3,7 @@
 #include "tools/view/patch/patch_panel.hpp"
 
 #include "graph/patch/sub_patch.hpp"
-#include "tools/view/patch/wire_choices.hpp"
+#include "tools/view/ports/wire_choices.hpp"
 
 #include <fmt/format.h>
 

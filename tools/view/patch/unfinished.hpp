@@ -4,8 +4,8 @@
 #pragma once
 
 #include "graph/compile/plan.hpp"
-#include "tools/view/patch/part_ports.hpp"
 #include "tools/view/patch/patch_picture.hpp"
+#include "tools/view/ports/part_ports.hpp"
 
 #include <map>
 #include <string>

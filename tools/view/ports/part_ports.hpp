@@ -4,7 +4,7 @@
 
 #include "graph/patch/patch.hpp"
 #include "tools/view/patch/parameters.hpp"
-#include "tools/view/patch/type_ports.hpp"
+#include "tools/view/ports/type_ports.hpp"
 
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/patch/type_ports.hpp"
+#include "tools/view/ports/type_ports.hpp"
 
 #include "graph/compile/plan.hpp"
 #include "nodes/catalogue.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/patch/part_ports.hpp"
+#include "tools/view/ports/part_ports.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"

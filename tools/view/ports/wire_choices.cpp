@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/patch/wire_choices.hpp"
+#include "tools/view/ports/wire_choices.hpp"
 
-#include "tools/view/patch/type_ports.hpp"
+#include "tools/view/ports/type_ports.hpp"
 
 #include <algorithm>
 #include <map>
