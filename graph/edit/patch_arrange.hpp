@@ -43,8 +43,8 @@ std::string without_nodes(std::string_view text, std::span<const std::string> na
 /// paths of assets start at `folder`.
 std::string copied(std::string_view text, std::span<const std::string> names, const std::filesystem::path& folder);
 /// Adds what `copied` gave, or any patch's nodes. `names`: what each is called here. Places move by `by`. A group of
-/// another rate, or an asset of another file, with a name of this patch gets a new name; relative paths of this patch
-/// start at `folder` (empty: an asset with a name of this patch is taken for the same).
+/// another rate, latency or backlog, or an asset of another file, with a name of this patch gets a new name; relative
+/// paths of this patch start at `folder` (empty: an asset with a name of this patch is taken for the same).
 std::string with_pasted(std::string_view text, std::string_view copy, const std::map<std::string, std::string>& names,
                         patch::PatchPlace by, const std::filesystem::path& folder = {});
 

@@ -36,6 +36,13 @@ WireText text_of(const patch::PatchWire& wire) {
 
 bool is_asset(const patch::PatchWire& wire) { return wire.from_port.empty(); }
 
+void put_group(Editing& editing, const patch::PatchGroup& group, const std::string& name) {
+    const Editing::Path owner{"groups", name};
+    editing.put(owner, "rate", toml_quoted(group.rate));
+    if (!group.latency.empty()) editing.put(owner, "latency", toml_quoted(group.latency));
+    if (group.backlog >= 0) editing.put(owner, "backlog", std::to_string(group.backlog));
+}
+
 /// Groups and assets that nodes name, for a text that has the nodes.
 std::string with_surroundings(std::string text, const patch::Patch& patch, const std::set<std::string>& nodes,
                               const fs::path& folder) {
@@ -50,10 +57,7 @@ std::string with_surroundings(std::string text, const patch::Patch& patch, const
         if (is_asset(wire) && nodes.contains(wire.to_node)) names.insert(wire.from_node);
     for (const patch::PatchGroup& group : patch.groups) {
         if (!groups.contains(group.name)) continue;
-        const Editing::Path owner{"groups", group.name};
-        editing.put(owner, "rate", toml_quoted(group.rate));
-        if (!group.latency.empty()) editing.put(owner, "latency", toml_quoted(group.latency));
-        if (group.backlog >= 0) editing.put(owner, "backlog", std::to_string(group.backlog));
+        put_group(editing, group, group.name);
     }
     for (const patch::PatchAsset& asset : patch.assets)
         if (names.contains(asset.name))
@@ -164,15 +168,16 @@ std::string with_pasted(std::string_view text, std::string_view copy, const std:
     // A name that means something else here becomes a new one.
     const auto path_of = [&](const patch::PatchAsset& asset) { return (folder / asset.path).lexically_normal(); };
     const auto groups =
-        names_here(patch.groups, here.groups,
-                   [](const patch::PatchGroup& a, const patch::PatchGroup& b) { return a.rate == b.rate; });
+        names_here(patch.groups, here.groups, [](const patch::PatchGroup& a, const patch::PatchGroup& b) {
+            return a.rate == b.rate && a.latency == b.latency && a.backlog == b.backlog;
+        });
     const auto assets =
         names_here(patch.assets, here.assets, [&](const patch::PatchAsset& a, const patch::PatchAsset& b) {
             return folder.empty() || path_of(a) == path_of(b);
         });
     for (const patch::PatchGroup& group : patch.groups)
         if (std::ranges::find(here.groups, groups.at(group.name), &patch::PatchGroup::name) == here.groups.end())
-            editing.put({"groups", groups.at(group.name)}, "rate", toml_quoted(group.rate));
+            put_group(editing, group, groups.at(group.name));
     for (const patch::PatchAsset& asset : patch.assets)
         if (std::ranges::find(here.assets, assets.at(asset.name), &patch::PatchAsset::name) == here.assets.end())
             editing.put({"assets"}, assets.at(asset.name), toml_quoted(asset.path.string()));

@@ -188,6 +188,13 @@ std::string with_node_named(std::string_view text, std::string_view from, std::s
     return editing.result();
 }
 
+std::string with_lane(std::string_view text, std::string_view node, std::string_view lane, bool is_group) {
+    refuse_within(node);
+    Editing editing(text);
+    editing.move_to_lane(node, lane, is_group);
+    return editing.result();
+}
+
 std::string with_wire(std::string_view text, const WireText& wire, InputTakes takes) {
     refuse_within(wire.from);
     refuse_within(wire.to);

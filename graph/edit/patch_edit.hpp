@@ -34,6 +34,8 @@ std::string with_node(std::string_view text, const NewNode& node);
 /// Removes a node and every wire that begins or ends there.
 std::string without_node(std::string_view text, std::string_view name);
 std::string with_node_named(std::string_view text, std::string_view from, std::string_view to);
+/// Moves a node to a group of the patch, or to a rate such as "1 kHz".
+std::string with_lane(std::string_view text, std::string_view node, std::string_view lane, bool is_group);
 /// How many wires an input takes: events come from any number of outputs.
 enum class InputTakes { one_wire, many_wires };
 /// Adds a wire; it replaces one that feeds the same input, or one of the same two ends where the input takes many.

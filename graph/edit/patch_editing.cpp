@@ -136,6 +136,22 @@ void Editing::remove_node(std::string_view name) {
     if (!has(path)) throw Error(fmt::format("no node '{}'", name));
     drop(path);
     for (const char* table : {"places", "colours"}) drop({"window", table, std::string(name)});
+    close_part(name);
+}
+
+/// Takes a node off the list of open sub-patches.
+void Editing::close_part(std::string_view name) {
+    const TomlEntry* open = spans_.find({"window", "open"});
+    if (!open || !open->value.of(text_).starts_with('[')) return;
+    const std::vector<TomlElement> all = toml_elements(text_, open->value);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (toml_unquoted(all[i].value.of(text_)) != name) continue;
+        const std::size_t own_end = std::max(all[i].value.end, all[i].comma.end);
+        if (i + 1 < all.size()) replace({all[i].value.begin, all[i + 1].value.begin}, "");
+        else if (i > 0) replace({all[i - 1].value.end, own_end}, "");
+        else replace({all[i].value.begin, own_end}, "");
+        return close_part(name);
+    }
 }
 
 void Editing::rename(std::string_view from, std::string_view to) {
@@ -152,9 +168,32 @@ void Editing::rename(std::string_view from, std::string_view to) {
         if (const TextSpan* key = entry.key(2);
             key && entry.path.size() == 3 && entry.path[0] == "window" && entry.path[2] == from)
             places.push_back(*key);
+    // The list of open sub-patches has names in quotes.
+    if (const TomlEntry* open = spans_.find({"window", "open"}); open && open->value.of(text_).starts_with('['))
+        for (const TomlElement& element : toml_elements(text_, open->value))
+            if (toml_unquoted(element.value.of(text_)) == from)
+                places.push_back({element.value.begin + 1, element.value.end - 1});
     std::ranges::sort(places, std::greater{}, &TextSpan::begin);
     for (const TextSpan& place : places) text_.replace(place.begin, place.end - place.begin, to);
     spans_ = toml_spans(text_);
+}
+
+void Editing::move_to_lane(std::string_view node, std::string_view lane, bool is_group) {
+    const Path path{"nodes", std::string(node)};
+    if (!has(path)) throw Error(fmt::format("no node '{}'", node));
+    const std::string key = is_group ? "group" : "rate", other = is_group ? "rate" : "group";
+    Path known = path, former = path;
+    known.push_back(key);
+    former.push_back(other);
+    if (spans_.find(known)) drop(former);
+    else if (const TomlEntry* entry = spans_.find(former)) {
+        // What stands in columns stays in them.
+        TextSpan span = entry->keys.back();
+        const bool has_room = std::string_view(text_).substr(span.end).starts_with("  ");
+        if (is_group && has_room) ++span.end;
+        replace(span, is_group ? "group" : has_room || text_[span.end] == ' ' ? "rate " : "rate");
+    }
+    set(path, key, lane);
 }
 
 void Editing::replace(const TextSpan& span, std::string_view by) {

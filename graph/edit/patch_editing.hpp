@@ -36,6 +36,9 @@ public:
 
     void rename(std::string_view from, std::string_view to);
 
+    /// Gives a node another group or rate, where the one that it has is written.
+    void move_to_lane(std::string_view node, std::string_view lane, bool is_group);
+
     std::string_view text() const { return text_; }
     const TomlSpans& spans() const { return spans_; }
 
@@ -56,6 +59,8 @@ private:
     void remove(const TomlEntry& entry);
 
     bool remove_one(const Path& path);
+
+    void close_part(std::string_view name);
 
     std::string text_;
     TomlSpans spans_;

@@ -114,6 +114,9 @@ private:
     /// The node under the pointer, where the patch is seen; else the chosen one.
     std::string node_for_drop() const;
     std::optional<Point> place_of_drop() const;
+    void ask_part();
+    /// The picture of the patch is on the screen: keys of the patch mean it.
+    bool sees_patch() const { return !start_page_.is_open && shows(columns_, Panel::patch); }
     void ask_value(const std::string& node, const std::string& param, const std::string& value);
     void draw_value();
     void go_to_largest_force();

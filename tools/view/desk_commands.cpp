@@ -37,24 +37,27 @@ void Desk::add_file_commands(std::vector<Command>& all) {
 }
 
 void Desk::add_edit_commands(std::vector<Command>& all) {
-    const auto may = [this] { return take_ == nullptr; };
-    const auto has_chosen = [this] { return take_ == nullptr && !patch_.chosen.empty(); };
-    const auto has_several = [this] { return take_ == nullptr && patch_.chosen.size() > 1; };
+    const auto may = [this] { return take_ == nullptr && sees_patch(); };
+    const auto has_chosen = [may, this] { return may() && !patch_.chosen.empty(); };
+    const auto has_any = [may, this] { return may() && patch_.has_chosen(); };
+    const auto has_several = [may, this] { return may() && patch_.chosen.size() > 1; };
     using Align = PatchPanel::Align;
     all.push_back({"Edit", "Undo", "Ctrl+Z", "back revert", [this] { bench_.undo(); },
-                   [this] { return bench_.editor().can_undo(); }});
-    all.push_back(
-        {"Edit", "Redo", "Ctrl+Y", "again", [this] { bench_.redo(); }, [this] { return bench_.editor().can_redo(); }});
-    all.push_back({"", "Redo", "Ctrl+Shift+Z", "again", [this] { bench_.redo(); },
-                   [this] { return bench_.editor().can_redo(); }});
+                   [this] { return !start_page_.is_open && bench_.editor().can_undo(); }});
+    const auto can_redo = [this] { return !start_page_.is_open && bench_.editor().can_redo(); };
+    all.push_back({"Edit", "Redo", "Ctrl+Y", "again", [this] { bench_.redo(); }, can_redo});
+    all.push_back({"", "Redo", "Ctrl+Shift+Z", "again", [this] { bench_.redo(); }, can_redo});
     all.push_back({"Edit", "Cut", "Ctrl+X", "nodes", [this] { patch_.cut(); }, has_chosen, nullptr, true});
     all.push_back({"Edit", "Copy", "Ctrl+C", "nodes", [this] { patch_.copy(); }, has_chosen});
     all.push_back({"Edit", "Paste", "Ctrl+V", "nodes", [this] { patch_.paste(); }, may});
     all.push_back({"Edit", "Duplicate", "Ctrl+D", "nodes copy", [this] { patch_.duplicate(); }, has_chosen});
-    all.push_back({"Edit", "Remove", "Del", "delete nodes erase", [this] { patch_.remove_chosen(); }, has_chosen});
-    all.push_back({"Edit", "Choose all", "Ctrl+A", "select nodes everything", [this] { patch_.choose_all(); }});
+    all.push_back({"Edit", "Remove", "Del", "delete nodes erase", [this] { patch_.remove_chosen(); }, has_any});
+    all.push_back({"Edit", "Choose all", "Ctrl+A", "select nodes everything", [this] { patch_.choose_all(); },
+                   [this] { return sees_patch(); }});
     all.push_back(
         {"Edit", "Add a node...", "Tab", "new insert create", [this] { patch_.open_palette(); }, may, nullptr, true});
+    all.push_back({"Edit", "Add a sub-patch from a file...", "", "patch node part nest open", [this] { ask_part(); },
+                   [this] { return take_ == nullptr && !start_page_.is_open; }});
     all.push_back({"Edit", "Add a comment", "", "note text box", [this] { patch_.add_comment(); }, may});
     all.push_back({"Edit", "Make a sub-patch of the chosen nodes...", "Ctrl+G", "group part nest",
                    [this] { patch_.make_sub_patch(); }, has_chosen});
@@ -66,7 +69,7 @@ void Desk::add_edit_commands(std::vector<Command>& all) {
         {"", "Align as a column", "", "arrange distribute", [this] { patch_.align(Align::rows); }, has_several});
     constexpr double step = 20.0;
     const auto move = [&](const char* keys, const char* name, Point by) {
-        all.push_back({"", name, keys, "nodes nudge", [this, by] { patch_.nudge(by); }, has_chosen});
+        all.push_back({"", name, keys, "nodes nudge", [this, by] { patch_.nudge(by); }, has_any});
     };
     move("Ctrl+Left", "Move the nodes left", {-step, 0.0});
     move("Ctrl+Right", "Move the nodes right", {step, 0.0});
@@ -166,30 +169,7 @@ std::vector<Command> Desk::all_commands() {
                            if (const std::string made = bench_.add_node(name, bench_.lane_for(name)); !made.empty())
                                patch_.selected = made;
                        }});
-    // Wires into the inputs that lack one, from every output that suits.
-    constexpr std::size_t most_wires = 4000;
-    std::size_t wires = 0;
-    for (const PictureNode& to : picture.nodes)
-        for (const PicturePort& input : to.inputs)
-            for (const PictureNode& from : picture.nodes)
-                for (const PicturePort& output : from.outputs) {
-                    if (input.is_connected || &from == &to || (input.type && output.type && input.type != output.type))
-                        continue;
-                    if (++wires > most_wires) continue;
-                    const std::string a = from.name + "." + output.name, b = to.name + "." + input.name;
-                    all.push_back({"wire", fmt::format("Wire {} to {}", a, b), "", "connect",
-                                   [this, a, b] { bench_.connect(a, b); }});
-                }
-    for (const PictureNode& to : picture.nodes)
-        if (const TypePorts* ports = ports_of_type(to.type))
-            for (const auto& [param, unit] : ports->params)
-                for (const PictureNode& from : picture.nodes)
-                    for (const PicturePort& output : from.outputs) {
-                        if (&from == &to || output.type != &value::number || ++wires > most_wires) continue;
-                        const std::string a = from.name + "." + output.name, b = to.name + "." + param;
-                        all.push_back({"wire", fmt::format("Wire {} to {}", a, b), "", "drive parameter",
-                                       [this, a, b] { bench_.connect(a, b); }});
-                    }
+    patch_.add_commands(all, sees_patch());
     if (!bench_.written().devices.empty())
         all.push_back({"set", "Set a device setting...", "", "DEVICE.SETTING VALUE, as simulated.start_z 60 mm",
                        [this] { ask_value("DEVICE.SETTING VALUE", "", ""); }});
@@ -252,6 +232,13 @@ void Desk::show_title() {
     window_.set_title(plan_file.empty()
                           ? fmt::format("{} - Tactus", bench_.title())
                           : fmt::format("{} - {} - Tactus", plan_file.filename().string(), bench_.title()));
+}
+
+void Desk::ask_part() {
+    FileChooser chooser(FileChooser::For::open, fs::absolute(bench_.editor().file()).parent_path(), {".toml"});
+    ask_file("Add a patch as a node", std::move(chooser), [this](const fs::path& path) {
+        if (const std::string made = bench_.add_part(path, ""); !made.empty()) patch_.selected = made;
+    });
 }
 
 void Desk::ask_scan() {

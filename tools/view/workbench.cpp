@@ -151,14 +151,29 @@ bool Workbench::edit(const edit::PatchEditor::Edit& how, std::string done) {
     return true;
 }
 
+namespace {
+
+/// Where a parameter is written: nodes within a sub-patch have theirs by what that offers.
+std::pair<std::string, std::string> owner_of(const Workbench& bench, const std::string& node,
+                                             const std::string& param) {
+    const std::string offered = node.find(patch::within_node) == std::string::npos ? "" : bench.offered_as(node, param);
+    const std::size_t dot = offered.find('.');
+    if (dot == std::string::npos) return {node, param};
+    return {offered.substr(0, dot), offered.substr(dot + 1)};
+}
+
+}  // namespace
+
 bool Workbench::set(const std::string& node, const std::string& param, const std::string& value) {
-    return edit([&](std::string_view text) { return edit::with_setting(text, node, param, value); },
-                fmt::format("{}.{} = {}", node, param, value));
+    const auto [owner, name] = owner_of(*this, node, param);
+    return edit([&](std::string_view text) { return edit::with_setting(text, owner, name, value); },
+                fmt::format("{}.{} = {}", owner, name, value));
 }
 
 bool Workbench::reset(const std::string& node, const std::string& param) {
-    return edit([&](std::string_view text) { return edit::without_setting(text, node, param); },
-                fmt::format("{}.{} has its default", node, param));
+    const auto [owner, name] = owner_of(*this, node, param);
+    return edit([&](std::string_view text) { return edit::without_setting(text, owner, name); },
+                fmt::format("{}.{} has its default", owner, name));
 }
 
 bool Workbench::cut_at(const Vec3& site) {
@@ -204,42 +219,6 @@ bool Workbench::rename(const std::string& from, const std::string& to) {
                 fmt::format("{} is now {}", from, to));
 }
 
-bool Workbench::connect(const std::string& from, const std::string& to, const std::string& mode) {
-    return edit([&](std::string_view text) { return edit::with_wire(text, {from, to, mode}, taken_by(to)); },
-                fmt::format("{} -> {}{}{}", from, to, mode.empty() ? "" : " as ", mode));
-}
-
-bool Workbench::disconnect(const std::string& to, const std::string& from) {
-    const std::string one = taken_by(to) == edit::InputTakes::many_wires ? from : "";
-    return edit([&](std::string_view text) { return edit::without_wire(text, to, one); },
-                one.empty() ? fmt::format("no wire to {}", to) : fmt::format("no wire from {} to {}", one, to));
-}
-
-edit::InputTakes Workbench::taken_by(const std::string& to) const {
-    if (!plan_) return edit::InputTakes::one_wire;
-    for (const compile::PlanNode& node : plan_->nodes)
-        for (const compile::PlanInput& input : node.inputs)
-            if (input.port->kind == InputKind::events && node.name + "." + input.name == to)
-                return edit::InputTakes::many_wires;
-    return edit::InputTakes::one_wire;
-}
-
-bool Workbench::reconnect(const std::string& from, const std::string& old_to, const std::string& to) {
-    const std::string one = taken_by(old_to) == edit::InputTakes::many_wires ? from : "";
-    const auto led = [&](std::string_view text, const std::string& mode) {
-        return edit::with_wire(edit::without_wire(text, old_to, one), {from, to, mode}, taken_by(to));
-    };
-    // How it is delivered stays, where the new input takes that.
-    std::string mode;
-    for (const patch::PatchWire& wire : written_.wires)
-        if (wire.mode_given && wire.from_node + "." + wire.from_port == from &&
-            wire.to_node + "." + wire.to_port == old_to)
-            mode = edit::mode_text(wire);
-    if (!mode.empty() && !judge(led(editor_->text(), mode)).problem.empty()) mode.clear();
-    return edit([&](std::string_view text) { return led(text, mode); },
-                fmt::format("{} -> {} in place of {}", from, to, old_to));
-}
-
 bool Workbench::undo() {
     if (!editor_->can_undo()) return false;
     editor_->undo();
@@ -265,16 +244,6 @@ void Workbench::check_saved() {
 
 void Workbench::turn(const std::string& node, const std::string& param, const std::string& value) {
     if (run_) run_->set(node, param, value);
-}
-
-std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
-    try {
-        const Judged judged = judge(edit::with_wire(editor_->text(), {from, to, {}}, taken_by(to)));
-        if (judged.problem.empty()) return std::nullopt;
-        return judged.problem;
-    } catch (const Error& error) {
-        return error.what();
-    }
 }
 
 void Workbench::run() {

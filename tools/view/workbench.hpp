@@ -63,6 +63,7 @@ public:
     void tell(std::string text, bool is_problem = false);
 
     // Edits. False: refused; the reason is in `messages`, and the text is not changed.
+    /// Of a node within a sub-patch: sets the parameter that the sub-patch offers for it.
     bool set(const std::string& node, const std::string& param, const std::string& value);
     bool reset(const std::string& node, const std::string& param);
     bool add(const edit::NewNode& node);
@@ -72,8 +73,10 @@ public:
     bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
     /// Removes the wire to that input; of several the one from `from`, or the first when none is given.
     bool disconnect(const std::string& to, const std::string& from = {});
-    /// Takes a wire off one input and leads it to another, as one edit.
+    /// Takes a wire off one input and leads it to another, as one edit. How it is delivered stays where that is possible.
     bool reconnect(const std::string& from, const std::string& old_to, const std::string& to);
+    /// The same at its source: the wire to `to` comes from another output.
+    bool reconnect_source(const std::string& old_from, const std::string& from, const std::string& to);
     /// Moves the saw's site to a point of the bone (scene, m), along the surface's normal, as one edit. Refused for a
     /// patch without a bone to saw.
     bool cut_at(const Vec3& site);
@@ -111,22 +114,42 @@ public:
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
     /// Adds a node of a type to a lane: a group of the patch, or a rate. It may lack wires; what does not run yet. The
-    /// first node of a hand adds a simulated device. Returns its name; empty: refused.
+    /// first node of a hand adds a simulated device. `from`: an output that feeds its input `input`; where that is
+    /// refused, the node has no wire. Returns its name; empty: refused.
     std::string add_node(const std::string& type, const std::string& lane,
-                         std::optional<patch::PatchPlace> place = std::nullopt,
-                         const std::optional<NodeFile>& file = std::nullopt);
+                         std::optional<patch::PatchPlace> place = std::nullopt, const std::string& from = {},
+                         const std::string& input = {}, const std::optional<NodeFile>& file = std::nullopt);
+    /// Adds a patch file as a node. `lane`: for those of its nodes that have the rate of the outer patch. Returns its
+    /// name; empty: refused.
+    std::string add_part(const std::filesystem::path& file, const std::string& lane,
+                         std::optional<patch::PatchPlace> place = std::nullopt);
     const std::string& last_added() const { return last_added_; }
     /// The lane that suits a type best: of what it was used with, or a usual rate.
     std::string lane_for(const std::string& type) const;
+    /// A lane where a node was put, or that of `lane_for` where it cannot run there: signals need the rate of sound.
+    std::string lane_for(const std::string& type, const std::string& wanted) const;
+    /// Moves nodes to a group of the patch or to a rate, with places there, as one edit.
+    bool move_to_lane(const std::vector<std::string>& nodes, const std::string& lane,
+                      const std::map<std::string, patch::PatchPlace>& places = {});
+    /// The node stands in the text with a rate or group of its own: not within a sub-patch, and no sub-patch whose nodes
+    /// have their own.
+    bool has_lane(const std::string& node) const;
+    /// The ports of a node of the patch, or of one within a sub-patch; null: not known.
+    const TypePorts* ports_of(const std::string& node) const;
+    /// The parameter of a sub-patch, "part.level", that stands for one of a node within it; empty: none does.
+    std::string offered_as(const std::string& node, const std::string& param) const;
     /// A free node name for the type.
     std::string free_name(const std::string& type) const;
 
     // Several nodes, as one edit each.
-    bool remove(const std::vector<std::string>& nodes);
-    bool place(const std::map<std::string, patch::PatchPlace>& places);
+    bool remove(const std::vector<std::string>& nodes, const std::vector<std::string>& comments = {});
+    bool place(const std::map<std::string, patch::PatchPlace>& places,
+               const std::vector<patch::PatchComment>& comments = {});
     bool place_automatically(const std::vector<std::string>& nodes);
     bool colour(const std::vector<std::string>& nodes, const std::string& name);
-    std::string copy(const std::vector<std::string>& nodes) const;
+    /// `places`: of nodes that have none in the text.
+    std::string copy(const std::vector<std::string>& nodes,
+                     const std::map<std::string, patch::PatchPlace>& places = {}) const;
     /// Adds what `copy` gave. Returns the names that the nodes have here; none: refused.
     std::vector<std::string> paste(const std::string& copied, patch::PatchPlace by);
     /// Moves nodes into a file beside the patch, and puts a node of that patch in their place.
@@ -136,8 +159,8 @@ public:
     // Comments.
     bool comment(const patch::PatchComment& comment);
     bool remove_comment(const std::string& name);
-    /// Adds one with a free name.
-    bool add_comment(patch::PatchPlace place, const std::string& text);
+    /// Adds one with a free name, and returns that; empty: refused.
+    std::string add_comment(patch::PatchPlace place, const std::string& text);
 
     // Files and devices.
     /// Names a file as an asset, and lets a parameter of a node use it.
@@ -203,6 +226,10 @@ public:
 private:
     bool edit(const edit::PatchEditor::Edit& how, std::string done);
     edit::InputTakes taken_by(const std::string& to) const;
+    struct Ends {
+        std::string from, to;
+    };
+    bool lead(const Ends& before, const Ends& now, const std::string& done);
     /// What a text means.
     struct Judged {
         patch::Patch written;

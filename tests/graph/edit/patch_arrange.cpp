@@ -79,6 +79,50 @@ TEST_CASE("a node that goes, or has another name, takes its place along") {
     CHECK(patch::window_of(without_node(placed, "ball")).places.contains("out"));
 }
 
+TEST_CASE("an open sub-patch stays open under another name and leaves the list when it goes") {
+    std::string text = with_open_parts(ball, std::vector<std::string>{"hand", "ball", "out"});
+    text = with_node_named(text, "ball", "sphere");
+    CHECK(patch::window_of(text).open == std::vector<std::string>{"hand", "sphere", "out"});
+    text = without_node(text, "sphere");
+    CHECK(patch::window_of(text).open == std::vector<std::string>{"hand", "out"});
+    text = without_node(text, "out");
+    CHECK(patch::window_of(text).open == std::vector<std::string>{"hand"});
+    text = without_node(text, "hand");
+    CHECK(patch::window_of(text).open.empty());
+}
+
+TEST_CASE("a node changes its lane where its rate or group is written") {
+    const std::string fast = with_lane(ball, "ball", "1 kHz", false);
+    CHECK(has(fast, "[nodes.ball]\ntype      = \"sphere_contact\"\nrate      = \"1 kHz\"\nstiffness"));
+    CHECK(with_lane(fast, "ball", "slow", true) == ball);
+    CHECK(read(fast).nodes[1].group.empty());
+    const std::string slow = with_lane(fast, "hand", "slow", true);
+    CHECK(has(slow, "[nodes.hand]\ntype = \"device_input\"\ngroup = \"slow\"\n"));
+    CHECK(read(with_lane(slow, "hand", "2 kHz", false)).nodes[0].rate == "2 kHz");
+    CHECK(read(with_lane(ball, "hand", "2 kHz", false)).nodes[0].rate == "2 kHz");
+    CHECK_THROWS_AS(with_lane(ball, "nobody", "1 kHz", false), Error);
+    CHECK_THROWS_AS(with_lane(ball, "part:ball", "1 kHz", false), Error);
+}
+
+TEST_CASE("a pasted group brings its latency and backlog and is another group where one of them differs") {
+    const std::string late = "[groups.slow]\nrate = \"60 Hz\"\nlatency = \"250 ms\"\nbacklog = 3\n"
+                             "[nodes.a]\ntype = \"constant\"\ngroup = \"slow\"\n";
+    const std::string copy = copied(late, std::vector<std::string>{"a"}, "/tmp");
+    const auto group_of = [](const patch::Patch& patch, const std::string& name) {
+        const auto found = std::ranges::find(patch.groups, name, &patch::PatchGroup::name);
+        return found == patch.groups.end() ? patch::PatchGroup{} : *found;
+    };
+    const patch::Patch alone =
+        read(with_pasted("[nodes.b]\ntype = \"constant\"\nrate = \"60 Hz\"\n", copy, {{"a", "a"}}, {0.0, 0.0}));
+    CHECK(group_of(alone, "slow").latency == "250 ms");
+    CHECK(group_of(alone, "slow").backlog == 3);
+    const patch::Patch beside = read(with_pasted(ball, copy, {{"a", "a"}}, {0.0, 0.0}));
+    CHECK(group_of(beside, "slow").latency.empty());
+    CHECK(group_of(beside, "slow_2").latency == "250 ms");
+    CHECK(beside.nodes.back().group == "slow_2");
+    CHECK(read(with_pasted(late, copy, {{"a", "a_2"}}, {0.0, 0.0})).groups.size() == 1);
+}
+
 TEST_CASE("what a window keeps is checked where it stands") {
     const auto problem = [](const std::string& more) {
         patch::Problems problems;

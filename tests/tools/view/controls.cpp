@@ -175,3 +175,34 @@ TEST_CASE("a name that is typed belongs to its node when another one is pressed 
     CHECK(after.find("[nodes.loud]") != std::string::npos);
     CHECK(slurp(folder.path / "before.toml") == tactus::test::voice);
 }
+
+TEST_CASE("keys of the patch change it only where it is seen", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("script", R"(frames 3
+select tone
+frames 3
+layout train
+frames 3
+key delete
+key ctrl+a
+key delete
+key ctrl+v
+key tab
+text train.toml
+layout patch
+frames 3
+text patch.toml
+key ctrl+a
+key delete
+text empty.toml
+close
+)");
+    const Outcome done = on(display, folder, "view voice.toml --view-script script");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(slurp(folder.path / "train.toml") == voice);
+    CHECK(slurp(folder.path / "patch.toml") == voice);
+    CHECK(slurp(folder.path / "empty.toml").find("[nodes") == std::string::npos);
+}

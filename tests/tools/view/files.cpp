@@ -212,10 +212,10 @@ TEST_CASE("a file in the patch's folder is named from there and one elsewhere by
                        .string();
     Workbench bench(choice);
     std::filesystem::create_directories(folder.path / "sounds");
-    REQUIRE(bench.take_file(folder.write("sounds/knock.wav", "x"), ""));
+    REQUIRE(bench.take_file(folder.write("sounds/knock.wav", "x"), "") == "drum");
     CHECK(bench.editor().text().find("knock = \"sounds/knock.wav\"") != std::string::npos);
     const auto far = elsewhere.write("far.wav", "x");
-    REQUIRE(bench.take_file(far, "drum"));
+    REQUIRE(bench.take_file(far, "drum") == "drum");
     CHECK(bench.editor().text().find("\"" + far.string() + "\"") != std::string::npos);
     REQUIRE(bench.undo());
     // In the same folder all paths stay as they are.

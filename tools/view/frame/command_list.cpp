@@ -207,8 +207,9 @@ void CommandList::draw(const std::vector<Command>& commands, const Fonts& fonts)
             if (!command.keys.empty()) row(command.keys.c_str(), command.name.c_str());
         row("in the patch", "");
         row("double-click", "empty: add a node; output: a scope; sub-patch: open it");
-        row("drag", "output to input: a wire; a wire off its input; a node; over empty ground: choose");
-        row("Shift-click", "choose more nodes");
+        row("drag", "output to input: a wire; a wire near its end: to another port; a node; over empty ground: choose");
+        row("drag a comment", "with what lies in it; with Alt: alone");
+        row("Shift-click", "choose more nodes and comments");
         row("right button", "drag: move the view; click: menu");
         row("wheel", "nearer and farther");
         row("in the scene", "");

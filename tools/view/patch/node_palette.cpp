@@ -33,10 +33,9 @@ void NodePalette::open(Point at, Point world, const std::string& from, const Val
 
 std::string NodePalette::add(const NodeType& type) {
     const std::string lane = lane_.empty() ? bench_.lane_for(type.name) : lane_;
-    const std::string name = bench_.add_node(type.name, lane, place_in_lane(bench_.picture(), lane, world_));
-    if (name.empty() || from_.empty()) return name;
-    if (const PicturePort* input = input_for(type, type_)) bench_.connect(from_, name + "." + input->name);
-    return name;
+    const PicturePort* input = from_.empty() ? nullptr : input_for(type, type_);
+    return bench_.add_node(type.name, lane, place_for(bench_.picture(), lane, world_), from_,
+                           input ? input->name : std::string());
 }
 
 void NodePalette::preview(const NodeType& type) const {

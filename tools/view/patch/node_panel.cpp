@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/patch/node_panel.hpp"
 
+#include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/view/frame/elide.hpp"
+#include "tools/view/patch/type_search.hpp"
+#include "tools/view/ports/part_ports.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -98,7 +101,8 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     if (!speed) mark_default(field);
     if (ended && turning_ == id) {
         turning_.clear();
-        bench_.set(node, field.name, turned_);
+        // A value that is refused does not stay in the run.
+        if (!bench_.set(node, field.name, turned_) && field.is_live) bench_.turn(node, field.name, field.text);
     }
 }
 
@@ -111,7 +115,8 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     tip(name == field.name ? explanation(field) : field.name + "\n" + explanation(field));
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1.0f);
-    ImGui::BeginDisabled(is_read_only || field.is_driven);
+    const std::string refused = refusal(field, node);
+    ImGui::BeginDisabled(is_read_only || field.is_driven || !refused.empty());
     switch (field.kind) {
         case Kind::quantity: quantity(field, node); break;
         case Kind::asset: asset(field, node); break;
@@ -150,6 +155,8 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
         }
     }
     ImGui::EndDisabled();
+    if (!refused.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s", refused.c_str());
     ImGui::TableNextColumn();
     if (field.kind == Kind::quantity) {
         ImGui::AlignTextToFramePadding();
@@ -159,7 +166,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
         tip(shown == range ? explanation(field) : range + "\n" + explanation(field));
     }
     ImGui::TableNextColumn();
-    if (field.is_set && !is_read_only) {
+    if (field.is_set && !is_read_only && refused.empty()) {
         const bool pressed = ImGui::SmallButton("↺");
         mark_spot("reset " + field.name);
         if (pressed) bench_.reset(node, field.name);
@@ -167,8 +174,20 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     }
 }
 
+std::string NodePanel::refusal(const ParameterField& field, const std::string& node) const {
+    const std::size_t within = node.find(patch::within_node);
+    if (within == std::string::npos || !bench_.offered_as(node, field.name).empty()) return {};
+    return fmt::format("'{}' does not offer this parameter; set it in the file of that patch", node.substr(0, within));
+}
+
 void NodePanel::read_fields(const PictureNode& node) {
     fields_.clear();
+    const auto& nodes = bench_.written().nodes;
+    const auto part = std::ranges::find(nodes, node.name, &patch::PatchNode::name);
+    if (part != nodes.end() && patch::is_sub_patch(*part)) {
+        fields_ = parameters_of_part(bench_.written(), *part);
+        return;
+    }
     if (node.plan >= 0) {
         fields_ = parameters_of(*bench_.plan(), node.plan);
         return;
@@ -184,7 +203,12 @@ void NodePanel::leave() {
     const std::string node = std::exchange(shown_, {}), param = std::exchange(turning_, {});
     const bool renames = std::exchange(is_renaming_, false);
     if (is_read_only || bench_.picture().find(node) < 0) return;
+    constexpr std::string_view device = "device ";
     if (param.starts_with(node + ".")) bench_.set(node, param.substr(node.size() + 1), turned_);
+    else if (param.starts_with(device)) {
+        const std::size_t dot = param.find('.');
+        bench_.set_device(param.substr(device.size(), dot - device.size()), param.substr(dot + 1), turned_);
+    }
     if (renames && renaming_ != node) bench_.rename(node, renaming_);
 }
 
@@ -208,9 +232,11 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     mark_spot("name");
     ImGui::PopFont();
     ImGui::SameLine();
-    ImGui::TextDisabled("%s, %s", node.type.c_str(),
-                        bench_.picture().lanes[static_cast<std::size_t>(node.group)].name.c_str());
+    const std::string lane = bench_.picture().lanes[static_cast<std::size_t>(node.group)].name;
+    if (is_read_only || !bench_.has_lane(node.name)) ImGui::TextDisabled("%s, %s", node.type.c_str(), lane.c_str());
+    else draw_lane(node.name, lane);
     if (type != nodes::catalogue().end()) dim(std::string((*type)->about));
+    else if (!node.type.empty()) dim(node.type);
     if (!node.lacks.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
         ImGui::TextWrapped("Does not run yet: %s.", node.lacks.c_str());
@@ -247,36 +273,67 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     }
 }
 
+/// The lane of a node, to choose among those of the patch, or a rate that is typed.
+void NodePanel::draw_lane(const std::string& node, const std::string& lane) {
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool is_open = ImGui::BeginCombo("##lane", lane.c_str(), ImGuiComboFlags_HeightLargest);
+    mark_spot("lane");
+    if (!is_open) return tip("rate or group: where it runs");
+    std::string wanted;
+    std::vector<std::string> lanes;
+    for (const PictureLane& each : bench_.picture().lanes)
+        if (each.name.find(patch::within_node) == std::string::npos) lanes.push_back(each.name);
+    for (const patch::PatchGroup& group : bench_.written().groups)
+        if (std::ranges::find(lanes, group.name) == lanes.end()) lanes.push_back(group.name);
+    for (const std::string& each : lanes) {
+        if (ImGui::Selectable(each.c_str(), each == lane)) wanted = each;
+        mark_spot("lane " + each);
+    }
+    ImGui::SetNextItemWidth(9.0f * ImGui::GetFontSize());
+    if (ImGui::InputTextWithHint("##rate", "a rate, as 2 kHz", &typed_rate_, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        wanted = std::exchange(typed_rate_, {});
+        ImGui::CloseCurrentPopup();
+    }
+    mark_spot("lane rate");
+    ImGui::EndCombo();
+    if (!wanted.empty() && wanted != lane) bench_.move_to_lane({node}, wanted);
+}
+
 void NodePanel::draw_catalogue(std::string& selected) {
     if (is_read_only) return dim("A take is read-only; run the patch to change it.");
     const auto& lanes = bench_.picture().lanes;
-    group_ = std::clamp(group_, 0, std::max(0, static_cast<int>(lanes.size()) - 1));
+    const auto known = std::ranges::find(lanes, lane_, &PictureLane::name);
+    if (known == lanes.end()) lane_.clear();
+    constexpr const char* usual = "their usual rate";
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
     ImGui::InputTextWithHint("##search", "search by name or purpose", &search);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0f);
-    if (!lanes.empty() && ImGui::BeginCombo("##group", lanes[static_cast<std::size_t>(group_)].name.c_str())) {
-        for (std::size_t g = 0; g < lanes.size(); ++g)
-            if (ImGui::Selectable(lanes[g].name.c_str(), static_cast<int>(g) == group_)) group_ = static_cast<int>(g);
+    if (ImGui::BeginCombo("##group", lane_.empty() ? usual : lane_.c_str())) {
+        if (ImGui::Selectable(usual, lane_.empty())) lane_.clear();
+        for (const PictureLane& lane : lanes)
+            if (lane.name.find(patch::within_node) == std::string::npos &&
+                ImGui::Selectable(lane.name.c_str(), lane.name == lane_))
+                lane_ = lane.name;
         ImGui::EndCombo();
     }
-    std::string wanted = search;
-    std::ranges::transform(wanted, wanted.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     ImGui::BeginChild("types");
     std::string chosen;
-    for (const NodeType* type : nodes::catalogue()) {
-        std::string all = type->name + " " + std::string(type->about);
-        std::ranges::transform(all, all.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (all.find(wanted) == std::string::npos) continue;
+    for (const NodeType* type : types_for(search, nullptr)) {
         if (ImGui::Selectable(type->name.c_str())) chosen = type->name;
+        if (ImGui::BeginDragDropSource()) {
+            ImGui::SetDragDropPayload(dragged_type, type->name.data(), type->name.size());
+            ImGui::TextUnformatted(type->name.c_str());
+            ImGui::EndDragDropSource();
+        }
         mark_spot("type " + type->name);
-        tip(std::string(type->about));
+        tip(std::string(type->about) + "\nclick, or drag it into the patch");
         ImGui::SameLine(11.0f * ImGui::GetFontSize());
         ImGui::TextDisabled("%.*s", static_cast<int>(type->about.size()), type->about.data());
     }
     ImGui::EndChild();
     if (chosen.empty()) return;
-    const std::string lane = lanes.empty() ? bench_.lane_for(chosen) : lanes[static_cast<std::size_t>(group_)].name;
+    const std::string lane = lane_.empty() ? bench_.lane_for(chosen) : lane_;
     if (const std::string made = bench_.add_node(chosen, lane); !made.empty()) selected = made;
 }
 

@@ -34,7 +34,10 @@ private:
     void field(const ParameterField& field, const std::string& node);
     void asset(const ParameterField& field, const std::string& node);
     void draw_device(const PictureNode& node);
+    void draw_lane(const std::string& node, const std::string& lane);
     void read_fields(const PictureNode& node);
+    /// Why a parameter cannot be set here; empty: it can.
+    std::string refusal(const ParameterField& field, const std::string& node) const;
     /// Another node is chosen: what was being typed or turned for the one before is set there.
     void leave();
     void quantity(const ParameterField& field, const std::string& node);
@@ -43,7 +46,8 @@ private:
     std::vector<ParameterField> fields_;
     std::string shown_, typed_, renaming_;
     std::int64_t version_ = -1;
-    int group_ = 0;
+    std::string lane_;         ///< where new nodes go; empty: their usual one
+    std::string typed_rate_;   ///< of the node
     std::string turning_;  ///< the parameter being dragged or typed, "node.param"
     std::string turned_;   ///< its value so far, as it would be set
     double turned_to_ = 0.0;

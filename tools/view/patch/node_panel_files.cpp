@@ -62,14 +62,15 @@ void NodePanel::draw_device(const PictureNode& node) {
     mark_spot("driver");
     for (const OptionText& setting : device.settings) {
         ImGui::PushID(setting.name.c_str());
-        std::string text = turning_ == "device " + setting.name ? typed_ : setting.text;
+        const std::string id = "device " + device.name + "." + setting.name;
+        std::string text = turning_ == id ? typed_ : setting.text;
         ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
         if (ImGui::InputText(setting.name.c_str(), &text)) {
-            turning_ = "device " + setting.name;
-            typed_ = text;
+            turning_ = id;
+            turned_ = typed_ = text;
         }
         mark_spot("device " + setting.name);
-        if (ImGui::IsItemDeactivatedAfterEdit() && turning_ == "device " + setting.name) {
+        if (ImGui::IsItemDeactivatedAfterEdit() && turning_ == id) {
             turning_.clear();
             bench_.set_device(device.name, setting.name, typed_);
         }

@@ -84,6 +84,19 @@ std::vector<ParameterField> parameters_of(const compile::Plan& plan, int index) 
     return fields;
 }
 
+void take_setting(ParameterField& field, const patch::PatchNode& node) {
+    const auto setting = std::ranges::find(node.settings, field.name, &OptionText::name);
+    if (setting == node.settings.end()) return;
+    field.is_set = true;
+    field.text = setting->text;
+    if (field.kind != Kind::quantity) return;
+    try {
+        field.value = parse_as(setting->text, field.unit) / (field.unit.empty() ? 1.0 : parse_unit(field.unit).factor);
+    } catch (const Error&) {
+        // The compiler will say so; the form shows the default.
+    }
+}
+
 std::vector<ParameterField> parameters_of(const NodeType& type, const patch::Patch& patch,
                                           const patch::PatchNode& node) {
     const compile::NodeInstance fresh(type.create(), type.destroy);
@@ -93,17 +106,7 @@ std::vector<ParameterField> parameters_of(const NodeType& type, const patch::Pat
         field.normal = field.value;
         if (field.kind == Kind::asset)
             for (const patch::PatchAsset& asset : patch.assets) field.options.push_back(asset.name);
-        const auto setting = std::ranges::find(node.settings, field.name, &OptionText::name);
-        if (setting == node.settings.end()) continue;
-        field.is_set = true;
-        field.text = setting->text;
-        if (field.kind != Kind::quantity) continue;
-        try {
-            field.value =
-                parse_as(setting->text, field.unit) / (field.unit.empty() ? 1.0 : parse_unit(field.unit).factor);
-        } catch (const Error&) {
-            // The compiler will say so; the form shows the default.
-        }
+        take_setting(field, node);
     }
     return fields;
 }

@@ -33,6 +33,9 @@ std::vector<ParameterField> parameters_of(const compile::Plan& plan, int node);
 std::vector<ParameterField> parameters_of(const NodeType& type, const patch::Patch& patch,
                                           const patch::PatchNode& node);
 
+/// Gives a field the value that a node's text sets, if it does.
+void take_setting(ParameterField& field, const patch::PatchNode& node);
+
 /// For quantities with a range too wide for a slider: change per pixel of dragging, in its unit; proportional to the
 /// value, at least as for a value of 1. None: use a slider.
 std::optional<double> drag_speed(const ParameterField& field);

@@ -93,6 +93,9 @@ void PatchPanel::notice_new_plan() {
     plan_version_ = bench_.plan_version();
     times_.clear();
     dragging_ = {};
+    arrival_.reset();
+    landing_ = {};
+    std::erase_if(chosen_comments, [&](const std::string& name) { return !comment_named(name); });
     if (!selected.empty() && bench_.picture().find(selected) < 0) selected.clear();
     std::erase_if(chosen, [&](const std::string& name) { return bench_.picture().find(name) < 0; });
 }
@@ -142,6 +145,7 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
         "canvas", vec(size),
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     handle_mouse();
+    take_dropped_type();
     notice_new_plan();
 
     notice_status();
@@ -275,10 +279,13 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
     const double size = written.value_or(0.0);
     const double half = 0.5 * node_width * z - 10.0 * z;
     const PatchPicture& picture = bench_.picture();
-    const ValueType* wanted = nullptr;
-    if (wiring_.node >= 0 && !wiring_.is_backward)
-        wanted =
-            picture.nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)].type;
+    const ValueType *wanted = nullptr, *wanted_source = nullptr;
+    if (wiring_.node >= 0) {
+        const PictureNode& held = picture.nodes[static_cast<std::size_t>(wiring_.node)];
+        const auto port = static_cast<std::size_t>(wiring_.port);
+        if (wiring_.is_backward) wanted_source = held.inputs[port].type;
+        else wanted = held.outputs[port].type;
+    }
     for (const PicturePort& port : node.inputs) {
         const Point at = screen(port.at);
         const bool suits = wanted && (!port.type || port.type == wanted);
@@ -293,6 +300,7 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
     for (const PicturePort& port : node.outputs) {
         const Point at = screen(port.at);
         const ImU32 ink = colour_of(port.type);
+        if (wanted_source && (!port.type || port.type == wanted_source)) paint.dot(at, 8.0 * z, faded(ink, 0.35));
         paint.dot(at, 4.0 * z, ink);
         if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
         if (!written) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/view/canvas.hpp"
+#include "tools/view/frame/commands.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/patch/node_palette.hpp"
 #include "tools/view/signal/feed.hpp"
@@ -26,12 +27,15 @@ public:
 
     std::string selected;     ///< name of a node, empty: none
     std::set<std::string> chosen;  ///< nodes; with `selected` among them
+    std::set<std::string> chosen_comments;
+    bool has_chosen() const { return !chosen.empty() || !chosen_comments.empty(); }
     std::string wants_scope;  ///< a port to show in a scope
     bool is_read_only = false;
     void fit() { fits_ = false; }
     // What menus and keys do with the chosen nodes.
     void copy() const;
-    void paste();
+    /// At the pointer when it is over the canvas, or at a point; else beside what was copied.
+    void paste(std::optional<Point> at = std::nullopt);
     void duplicate();
     void cut();
     void remove_chosen();
@@ -39,9 +43,11 @@ public:
     enum class Align { left, top, columns, rows };
     void align(Align how);
     void nudge(Point by);
-    void add_comment();
+    void add_comment(std::optional<Point> at = std::nullopt);
     void make_sub_patch();
     void open_palette();
+    /// What can be done with what the patch has: wires, comments, sub-patches, colours. `is_seen`: the panel is shown.
+    void add_commands(std::vector<Command>& all, bool is_seen);
     bool has_minimap = true;
     void choose_only(const std::string& name);
     /// The node of the patch's text under the mouse, also while files are dragged; empty: none.
@@ -62,15 +68,36 @@ private:
     struct Wiring {
         int node = -1, port = -1;  ///< the output, or input, from which a wire is being dragged
         bool is_backward = false;  ///< from an input to an output
-        std::string taken_off;     ///< the input that a wire was taken off, "node.port"; empty: a new wire
+        std::string taken_off;  ///< the end that a wire was taken off, "node.port"; empty: a new wire
         std::string checked, objection;
     };
-    /// Nodes, a comment or a frame that the mouse drags; in units of the picture.
+    /// Nodes and comments, the corner of a comment, or a frame that the mouse drags; in units of the picture.
     struct Dragging {
-        enum class What { nothing, nodes, comment, corner, frame } what = What::nothing;
+        enum class What { nothing, chosen, corner, frame } what = What::nothing;
         Point from, to;
-        std::string name;  ///< of a comment
+        std::string name;  ///< of the node that was pressed, or of the comment of a corner
+        bool is_alone = false;  ///< a comment leaves where it is what lies in it
         bool is_moved() const { return what != What::nothing && (from.x != to.x || from.y != to.y); }
+    };
+    /// What moves when the chosen things move.
+    struct Things {
+        std::set<std::string> nodes, comments;
+    };
+    /// Nodes dropped in another lane, until a person says whether they run there.
+    struct Arrival {
+        std::map<std::string, patch::PatchPlace> places;  ///< if they stay
+        std::vector<patch::PatchComment> comments;
+        std::vector<std::string> nodes;  ///< that can run there
+        std::string lane, old_lane;
+        std::map<std::string, patch::PatchPlace> there;
+    };
+    /// A wire dropped on a node, until a person says where it leads.
+    struct Landing {
+        std::string end;  ///< that is held, "node.port"
+        std::string node;  ///< that it was dropped on
+        std::string taken_off;
+        bool is_backward = false;
+        const ValueType* type = nullptr;
     };
     struct Health {
         std::int64_t missed = 0;
@@ -103,9 +130,23 @@ private:
     void press_node(const std::string& name);
     void drag(Point world);
     void let_go(Point world);
+    void press_wire(const PictureWire& wire, Point world);
+    void press_comment(const PictureComment& comment, Point world);
     void finish_wire(const Hit& over);
+    /// Makes a wire from what is held to this end, or leads the one that was taken off there.
+    void land(const Landing& wire, const std::string& end);
+    void landing_menu();
+    void let_chosen_go(const Dragging& done, Point world);
+    void arrival_menu();
+    void take_dropped_type();
+    Things moving(bool is_alone) const;
+    patch::PatchComment moved_comment(const std::string& name, Point by) const;
     const PictureComment* comment_at(Point world) const;
     std::vector<std::string> chosen_nodes() const;  ///< of the patch's text, once each
+    std::vector<std::string> whole_nodes() const;  ///< those that are chosen and stand in the patch's text
+    void choose_these(const std::vector<std::string>& nodes);
+    std::string copied_text() const;
+    void move_chosen(Point by, bool is_alone);
     /// Size of text at this zoom; none: there is no room for readable letters.
     std::optional<double> letters(double size, double room) const;
     void explain(const Hit& over);
@@ -113,6 +154,9 @@ private:
     void node_menu(const std::string& name, bool is_part);
     void canvas_menu();
     std::string port_name(const Hit& hit) const;
+    /// The same as the text of the patch has it: of a node within a sub-patch, what that offers.
+    std::string end_name(const Hit& hit) const;
+    void add_wire_commands(std::vector<Command>& all);
     Point screen(Point world) const { return canvas_.to_pixel(world) + corner_; }
     Box screen(const Box& world) const;
     /// Zoomed out so far that stacked boxes merge and single wires are not visible.
@@ -139,7 +183,10 @@ private:
     bool is_on_map_ = false;
     bool wants_part_name_ = false;
     mutable int pastes_ = 0;
-    Point mouse_;  ///< in units of the picture
+    Point mouse_, menu_at_;  ///< in units of the picture
+    bool is_pointed_ = false;  ///< the pointer is over the canvas
+    std::optional<Arrival> arrival_;
+    Landing landing_;
 };
 
 /// The most informative number of a value as text, such as "12.3 mm".

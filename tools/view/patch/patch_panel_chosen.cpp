@@ -20,60 +20,106 @@ std::vector<std::string> PatchPanel::chosen_nodes() const {
     return {names.begin(), names.end()};
 }
 
+/// With places of all, so that they stand to each other where they are pasted as they do here.
 void PatchPanel::copy() const {
     if (chosen.empty()) return;
-    ImGui::SetClipboardText(bench_.copy(chosen_nodes()).c_str());
+    ImGui::SetClipboardText(copied_text().c_str());
     pastes_ = 0;
 }
 
-void PatchPanel::paste() {
+std::string PatchPanel::copied_text() const {
+    const PatchPicture& picture = bench_.picture();
+    const std::vector<std::string> nodes = chosen_nodes();
+    std::map<std::string, patch::PatchPlace> places;
+    for (const std::string& name : nodes)
+        if (const int index = picture.find(name); index >= 0) {
+            const PictureNode& node = picture.nodes[static_cast<std::size_t>(index)];
+            places[name] = place_in_lane(picture, node, {node.box.left, node.box.top});
+        }
+    return bench_.copy(nodes, places);
+}
+
+namespace {
+
+/// How far a copy moves so that its upper left corner stands at a point; vertically by the nodes of the lane there.
+patch::PatchPlace way_to(const PatchPicture& picture, const std::string& text, Point at, patch::PatchPlace otherwise) {
+    const std::map<std::string, patch::PatchPlace> places = patch::window_of(text).places;
+    if (places.empty()) return otherwise;
+    patch::Problems ignored;
+    const patch::Patch copy = patch::read_patch(text, "clipboard", ignored);
+    const PictureLane* lane = lane_at(picture, at);
+    double left = 1e9, top = 1e9;
+    for (const patch::PatchNode& node : copy.nodes) {
+        const auto place = places.find(node.name);
+        if (place == places.end()) continue;
+        left = std::min(left, place->second.x);
+        if (lane && (node.group.empty() ? node.rate : node.group) == lane->name) top = std::min(top, place->second.y);
+    }
+    if (left >= 1e9) return otherwise;
+    return {at.x - left, top >= 1e9 ? otherwise.y : std::max(at.y - lane->top, lane_head_height) - top};
+}
+
+}  // namespace
+
+void PatchPanel::paste(std::optional<Point> at) {
     const char* text = ImGui::GetClipboardText();
     if (!text || is_read_only) return;
+    if (!at && is_pointed_) at = mouse_;
     const double by = 30.0 * ++pastes_;
-    const std::vector<std::string> made = bench_.paste(text, {by, by});
-    if (made.empty()) return;
-    chosen = {made.begin(), made.end()};
-    selected = made.front();
+    patch::PatchPlace way{by, by};
+    if (at) way = way_to(bench_.picture(), text, *at, way);
+    choose_these(bench_.paste(text, way));
 }
 
 void PatchPanel::duplicate() {
     if (chosen.empty() || is_read_only) return;
-    const std::vector<std::string> made = bench_.paste(bench_.copy(chosen_nodes()), {40.0, 40.0});
-    if (made.empty()) return;
-    chosen = {made.begin(), made.end()};
-    selected = made.front();
+    choose_these(bench_.paste(copied_text(), {40.0, 40.0}));
+}
+
+void PatchPanel::choose_these(const std::vector<std::string>& nodes) {
+    if (nodes.empty()) return;
+    choose_only(nodes.front());
+    chosen = {nodes.begin(), nodes.end()};
 }
 
 void PatchPanel::cut() {
     copy();
+    chosen_comments.clear();
     remove_chosen();
 }
 
-/// A node within an open sub-patch stands in the file of that; it does not take the sub-patch along.
-void PatchPanel::remove_chosen() {
-    if (is_read_only || chosen.empty()) return;
+/// Nodes within an open sub-patch stand in the file of that.
+std::vector<std::string> PatchPanel::whole_nodes() const {
     std::vector<std::string> whole;
     for (const std::string& name : chosen)
         if (name.find(patch::within_node) == std::string::npos) whole.push_back(name);
-    if (!whole.empty()) bench_.remove(whole);
-    else
-        bench_.tell(fmt::format("{} stands within a sub-patch: open the file of that to remove it, or close the "
-                                "sub-patch to remove it as a whole",
-                                *chosen.begin()),
-                    true);
+    return whole;
+}
+
+void PatchPanel::remove_chosen() {
+    if (is_read_only || !has_chosen()) return;
+    const std::vector<std::string> whole = whole_nodes();
+    if (whole.empty() && chosen_comments.empty())
+        return bench_.tell(fmt::format("{} stands within a sub-patch: open the file of that to remove it, or close the "
+                                       "sub-patch to remove it as a whole",
+                                       *chosen.begin()),
+                           true);
+    bench_.remove(whole, {chosen_comments.begin(), chosen_comments.end()});
 }
 
 void PatchPanel::choose_all() {
-    chosen.clear();
+    choose_only("");
     for (const PictureNode& node : bench_.picture().nodes) chosen.insert(node.name);
+    for (const PictureComment& comment : bench_.picture().comments) chosen_comments.insert(comment.name);
     if (!chosen.empty()) selected = *chosen.begin();
 }
 
 void PatchPanel::align(Align how) {
     const PatchPicture& picture = bench_.picture();
     std::vector<const PictureNode*> nodes;
+    const std::vector<std::string> whole = whole_nodes();
     for (const PictureNode& node : picture.nodes)
-        if (chosen.contains(node.name)) nodes.push_back(&node);
+        if (std::ranges::find(whole, node.name) != whole.end()) nodes.push_back(&node);
     if (nodes.size() < 2 || is_read_only) return;
     const bool is_row = how == Align::top || how == Align::columns;
     std::ranges::sort(nodes, {}, [&](const PictureNode* n) { return is_row ? n->box.left : n->box.top; });
@@ -90,19 +136,49 @@ void PatchPanel::align(Align how) {
     bench_.place(places);
 }
 
-void PatchPanel::nudge(Point by) {
+PatchPanel::Things PatchPanel::moving(bool is_alone) const {
     const PatchPicture& picture = bench_.picture();
-    std::map<std::string, patch::PatchPlace> places;
-    for (const PictureNode& node : picture.nodes)
-        if (chosen.contains(node.name))
-            places[node.name] = place_in_lane(picture, node, Point{node.box.left, node.box.top} + by);
-    if (!places.empty() && !is_read_only) bench_.place(places);
+    Things things;
+    for (const std::string& name : whole_nodes()) things.nodes.insert(name);
+    things.comments = chosen_comments;
+    if (is_alone) return things;
+    const auto lies_in = [](const Box& inner, const Box& outer) {
+        return outer.contains({inner.left, inner.top}) && outer.contains({inner.right, inner.bottom});
+    };
+    for (const PictureComment& frame : picture.comments) {
+        if (!chosen_comments.contains(frame.name)) continue;
+        for (const PictureNode& node : picture.nodes)
+            if (node.name.find(patch::within_node) == std::string::npos && lies_in(node.box, frame.box))
+                things.nodes.insert(node.name);
+        for (const PictureComment& other : picture.comments)
+            if (lies_in(other.box, frame.box)) things.comments.insert(other.name);
+    }
+    return things;
 }
 
-void PatchPanel::add_comment() {
-    if (is_read_only) return;
-    const Point at = canvas_.to_world({0.5 * width_, 0.5 * height_});
-    if (bench_.add_comment({at.x, at.y}, "a comment")) commented_ = bench_.window().comments.back().name;
+patch::PatchComment PatchPanel::moved_comment(const std::string& name, Point by) const {
+    const patch::PatchComment* found = comment_named(name);
+    patch::PatchComment moved = found ? *found : patch::PatchComment{};
+    moved.place = {moved.place.x + by.x, moved.place.y + by.y};
+    return moved;
+}
+
+void PatchPanel::move_chosen(Point by, bool is_alone) {
+    const PatchPicture& picture = bench_.picture();
+    const Things things = moving(is_alone);
+    std::map<std::string, patch::PatchPlace> places;
+    for (const PictureNode& node : picture.nodes)
+        if (things.nodes.contains(node.name))
+            places[node.name] = place_in_lane(picture, node, Point{node.box.left, node.box.top} + by);
+    std::vector<patch::PatchComment> comments;
+    for (const std::string& name : things.comments) comments.push_back(moved_comment(name, by));
+    if (!places.empty() || !comments.empty()) bench_.place(places, comments);
+    else if (!chosen.empty())
+        bench_.tell(fmt::format("{} stands within a sub-patch, whose own file says where", *chosen.begin()), true);
+}
+
+void PatchPanel::nudge(Point by) {
+    if (!is_read_only && has_chosen()) move_chosen(by, false);
 }
 
 void PatchPanel::make_sub_patch() {
@@ -151,42 +227,18 @@ void PatchPanel::node_menu(const std::string& name, bool is_part) {
 
 void PatchPanel::canvas_menu() {
     const bool may = !is_read_only;
-    const PictureComment* comment = comment_at(mouse_);
+    const PictureComment* comment = comment_at(menu_at_);
     if (comment && ImGui::MenuItem("Change the comment...", nullptr, false, may)) commented_ = comment->name;
     if (comment && ImGui::MenuItem("Remove the comment", nullptr, false, may)) bench_.remove_comment(comment->name);
     if (ImGui::MenuItem("Add a node...", "Tab", false, may)) open_palette();
-    if (ImGui::MenuItem("Add a comment", nullptr, false, may)) add_comment();
-    if (ImGui::MenuItem("Paste", "Ctrl+V", false, may)) paste();
+    if (ImGui::MenuItem("Add a comment", nullptr, false, may)) add_comment(menu_at_);
+    if (ImGui::MenuItem("Paste", "Ctrl+V", false, may)) paste(menu_at_);
     if (ImGui::MenuItem("Place all automatically", nullptr, false, may)) {
         choose_all();
         bench_.place_automatically(chosen_nodes());
     }
     if (ImGui::MenuItem("Show all", "F")) fit();
     ImGui::MenuItem("Small map", nullptr, &has_minimap);
-}
-
-void PatchPanel::draw_comments(const Painter& paint) {
-    const double z = canvas_.zoom;
-    for (const PictureFrame& frame : bench_.picture().frames) {
-        const Box box = screen(frame.box);
-        paint.box(box, colour(0x2b3a52, 130), 6.0 * z);
-        paint.frame(box, tone::node_edge, 6.0 * z);
-        if (const auto size = letters(small_size, 14.0))
-            paint.text({box.left + 4.0 * z, box.top - 1.2 * *size}, *size, tone::dim, frame.name);
-    }
-    for (const PictureComment& comment : bench_.picture().comments) {
-        const Box box = screen(comment.box);
-        const std::uint32_t ink = colour_named(comment.colour.empty() ? "grey" : comment.colour);
-        paint.box(box, faded(ink, 0.35), 4.0 * z);
-        paint.frame(box, ink, 4.0 * z);
-        const auto size = letters(text_size, 16.0);
-        if (!size) continue;
-        paint.list()->PushClipRect(vec({box.left, box.top}), vec({box.right, box.bottom}), true);
-        paint.list()->AddText(ImGui::GetFont(), static_cast<float>(*size), vec({box.left + 6.0 * z, box.top + 4.0 * z}),
-                              tone::text, comment.text.c_str(), nullptr,
-                              static_cast<float>(std::max(10.0, box.width() - 12.0 * z)));
-        paint.list()->PopClipRect();
-    }
 }
 
 void PatchPanel::draw_dragging(const Painter& paint) {
@@ -203,17 +255,19 @@ void PatchPanel::draw_dragging(const Painter& paint) {
         paint.box(box, faded(tone::chosen, 0.15));
         return paint.frame(box, tone::chosen);
     }
-    if (dragging_.what == What::nodes)
-        for (const PictureNode& node : bench_.picture().nodes)
-            if (chosen.contains(node.name)) ghost(node.box);
-    for (const PictureComment& comment : bench_.picture().comments)
-        if (comment.name == dragging_.name) {
-            if (dragging_.what == What::comment) ghost(comment.box);
-            else
+    if (dragging_.what == What::corner) {
+        for (const PictureComment& comment : bench_.picture().comments)
+            if (comment.name == dragging_.name)
                 paint.frame(
                     screen(Box{comment.box.left, comment.box.top, comment.box.right + by.x, comment.box.bottom + by.y}),
                     tone::chosen, 4.0, 2.0);
-        }
+        return;
+    }
+    const Things things = moving(dragging_.is_alone);
+    for (const PictureNode& node : bench_.picture().nodes)
+        if (things.nodes.contains(node.name)) ghost(node.box);
+    for (const PictureComment& comment : bench_.picture().comments)
+        if (things.comments.contains(comment.name)) ghost(comment.box);
 }
 
 /// Shown while a part of the patch is outside of the panel.
@@ -265,51 +319,6 @@ void PatchPanel::draw_minimap(const Painter& paint) {
     paint.frame(on_map(canvas_.visible(width_, height_)), tone::text);
     paint.list()->PopClipRect();
     set_spot("small map", map);
-}
-
-const patch::PatchComment* PatchPanel::comment_named(const std::string& name) const {
-    const auto& all = bench_.window().comments;
-    const auto found = std::ranges::find(all, name, &patch::PatchComment::name);
-    return found == all.end() ? nullptr : &*found;
-}
-
-void PatchPanel::keep_comment(const std::string& colour) {
-    const patch::PatchComment* found = comment_named(writing_);
-    if (!found || (found->text == comment_text_ && colour.empty())) return;
-    patch::PatchComment changed = *found;
-    changed.text = comment_text_;
-    if (!colour.empty()) changed.colour = colour;
-    bench_.comment(changed);
-}
-
-void PatchPanel::edit_comment() {
-    constexpr const char* title = "comment";
-    if (!commented_.empty()) {
-        writing_ = std::exchange(commented_, {});
-        if (const patch::PatchComment* found = comment_named(writing_)) {
-            comment_text_ = found->text;
-            ImGui::OpenPopup(title);
-        }
-    }
-    if (!ImGui::BeginPopup(title)) {
-        // A click beside it ends the writing and keeps the words.
-        keep_comment("");
-        return writing_.clear();
-    }
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    ImGui::InputTextMultiline("##text", &comment_text_,
-                              ImVec2(26.0f * ImGui::GetFontSize(), 6.0f * ImGui::GetFontSize()));
-    mark_spot("comment text");
-    const bool ends = ImGui::Button("Done");
-    mark_spot("comment done");
-    for (const std::string& colour : patch::colour_names()) {
-        ImGui::SameLine();
-        if (ImGui::ColorButton(colour.c_str(), ImGui::ColorConvertU32ToFloat4(colour_named(colour))))
-            keep_comment(colour);
-        mark_spot("comment " + colour);
-    }
-    if (ends) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
 }
 
 void PatchPanel::name_sub_patch() {

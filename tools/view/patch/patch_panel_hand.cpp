@@ -13,15 +13,10 @@
 
 namespace tactus::view {
 
-const PictureComment* PatchPanel::comment_at(Point world) const {
-    const auto& all = bench_.picture().comments;
-    const auto found = std::ranges::find_if(all, [&](const PictureComment& c) { return c.box.contains(world); });
-    return found == all.end() ? nullptr : &*found;
-}
-
 void PatchPanel::choose_only(const std::string& name) {
     selected = name;
     chosen.clear();
+    chosen_comments.clear();
     if (!name.empty()) chosen.insert(name);
 }
 
@@ -55,7 +50,7 @@ void PatchPanel::press_node(const std::string& name) {
 void PatchPanel::press(const Hit& over, Point world) {
     const PatchPicture& picture = bench_.picture();
     using What = Dragging::What;
-    dragging_ = {What::nothing, world, world, {}};
+    dragging_ = {What::nothing, world, world, {}, false};
     if (over.what == Hit::What::output || over.what == Hit::What::input) {
         if (is_read_only) return;
         wiring_ = {over.index, over.port, over.what == Hit::What::input, {}, {}, {}};
@@ -63,25 +58,37 @@ void PatchPanel::press(const Hit& over, Point world) {
         // A wire that is there comes off its input.
         for (const PictureWire& wire : picture.wires)
             if (wire.to == over.index && wire.input == over.port)
-                wiring_ = {wire.from, wire.output, false, port_name(over), {}, {}};
+                wiring_ = {wire.from, wire.output, false, end_name(over), {}, {}};
         return;
     }
     if (over.what == Hit::What::node) {
-        press_node(picture.nodes[static_cast<std::size_t>(over.index)].name);
-        if (!is_read_only) dragging_.what = What::nodes;
+        dragging_.name = picture.nodes[static_cast<std::size_t>(over.index)].name;
+        press_node(dragging_.name);
+        if (!is_read_only) dragging_.what = What::chosen;
         return;
     }
-    if (over.what == Hit::What::wire) return;
-    if (const PictureComment* comment = comment_at(world); comment && !is_read_only) {
-        constexpr double corner = 16.0;
-        const bool at_corner = world.x > comment->box.right - corner && world.y > comment->box.bottom - corner;
-        dragging_.what = at_corner ? What::corner : What::comment;
-        dragging_.name = comment->name;
+    if (over.what == Hit::What::wire) {
+        if (!is_read_only) press_wire(picture.wires[static_cast<std::size_t>(over.index)], world);
         return;
     }
+    if (const PictureComment* comment = comment_at(world); comment && !is_read_only)
+        return press_comment(*comment, world);
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.KeyShift && !io.KeyCtrl) choose_only("");
     dragging_.what = What::frame;
+}
+
+/// Near one of its ends a wire is taken off there.
+void PatchPanel::press_wire(const PictureWire& wire, Point world) {
+    const Hit from{Hit::What::output, wire.from, wire.output}, to{Hit::What::input, wire.to, wire.input};
+    const PatchPicture& picture = bench_.picture();
+    const Point
+        a = picture.nodes[static_cast<std::size_t>(wire.from)].outputs[static_cast<std::size_t>(wire.output)].at,
+        b = picture.nodes[static_cast<std::size_t>(wire.to)].inputs[static_cast<std::size_t>(wire.input)].at;
+    const double to_a = std::hypot(world.x - a.x, world.y - a.y), to_b = std::hypot(world.x - b.x, world.y - b.y);
+    const double near = (to_a + to_b) / 3.0;
+    if (to_a < near) wiring_ = {wire.to, wire.input, true, end_name(from), {}, {}};
+    else if (to_b < near) wiring_ = {wire.from, wire.output, false, end_name(to), {}, {}};
 }
 
 void PatchPanel::drag(Point world) {
@@ -95,33 +102,26 @@ void PatchPanel::let_go(Point world) {
     const Point by = world - done.from;
     const PatchPicture& picture = bench_.picture();
     using What = Dragging::What;
-    if (done.what == What::nodes) {
-        std::map<std::string, patch::PatchPlace> places;
-        for (const PictureNode& node : picture.nodes)
-            if (chosen.contains(node.name))
-                places[node.name] = place_in_lane(picture, node, Point{node.box.left, node.box.top} + by);
-        bench_.place(places);
-    } else if (done.what == What::comment || done.what == What::corner) {
-        const auto& all = bench_.window().comments;
-        const auto found = std::ranges::find(all, done.name, &patch::PatchComment::name);
-        if (found == all.end()) return;
-        patch::PatchComment moved = *found;
-        patch::PatchPlace& changed = done.what == What::comment ? moved.place : moved.size;
-        changed = {changed.x + by.x, changed.y + by.y};
-        moved.size = {std::max(moved.size.x, 60.0), std::max(moved.size.y, 30.0)};
+    if (done.what == What::chosen) let_chosen_go(done, world);
+    else if (done.what == What::corner) {
+        patch::PatchComment moved = moved_comment(done.name, {0.0, 0.0});
+        if (moved.name.empty()) return;
+        moved.size = {std::max(moved.size.x + by.x, 60.0), std::max(moved.size.y + by.y, 30.0)};
         bench_.comment(moved);
     } else if (done.what == What::frame) {
         const Box box{std::min(done.from.x, world.x), std::min(done.from.y, world.y), std::max(done.from.x, world.x),
                       std::max(done.from.y, world.y)};
         for (const PictureNode& node : picture.nodes)
             if (node.box.meets(box)) chosen.insert(node.name), selected = node.name;
+        for (const PictureComment& comment : picture.comments)
+            if (comment.box.meets(box)) chosen_comments.insert(comment.name);
     }
 }
 
 void PatchPanel::handle_mouse() {
     const ImGuiIO& io = ImGui::GetIO();
     const Point mouse = point(io.MousePos) - corner_;
-    const bool inside = ImGui::IsItemHovered();
+    const bool inside = is_pointed_ = ImGui::IsItemHovered();
     if (inside && io.MouseWheel != 0.0f) {
         canvas_.zoom_at(mouse, std::pow(1.15, static_cast<double>(io.MouseWheel)));
         follows_size_ = false;
@@ -160,38 +160,10 @@ void PatchPanel::handle_mouse() {
     }
     if (inside && ImGui::IsMouseReleased(ImGuiMouseButton_Right) && io.MouseDragMaxDistanceSqr[1] < 16.0f) {
         menu_ = hovered_;
+        menu_at_ = world;
         if (hovered_.what == Hit::What::node)
             press_node(bench_.picture().nodes[static_cast<std::size_t>(hovered_.index)].name);
         ImGui::OpenPopup("menu");
-    }
-}
-
-void PatchPanel::finish_wire(const Hit& over) {
-    const Wiring wiring = std::exchange(wiring_, {});
-    const Hit from{wiring.is_backward ? Hit::What::input : Hit::What::output, wiring.node, wiring.port};
-    const std::string name = port_name(from);
-    if (wiring.is_backward) {
-        if (over.what == Hit::What::output) bench_.connect(port_name(over), name);
-        return;
-    }
-    if (over.what == Hit::What::input) {
-        if (wiring.taken_off.empty()) bench_.connect(name, port_name(over));
-        else if (wiring.taken_off != port_name(over)) bench_.reconnect(name, wiring.taken_off, port_name(over));
-        return;
-    }
-    if (!wiring.taken_off.empty()) {
-        bench_.disconnect(wiring.taken_off, name);
-        return;
-    }
-    if (over.what == Hit::What::node && over.index != wiring.node) {
-        // A wire dropped on a node drives one of its parameters.
-        menu_ = over;
-        new_name_ = name;
-        ImGui::OpenPopup("drive");
-    } else if (over.what == Hit::What::nothing && ImGui::IsItemHovered()) {
-        const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(wiring.node)];
-        palette_.open(point(ImGui::GetIO().MousePos), mouse_, name,
-                      node.outputs[static_cast<std::size_t>(wiring.port)].type);
     }
 }
 
@@ -213,13 +185,14 @@ void PatchPanel::explain(const Hit& over) {
             fmt::format("{}.{}: {}{}{}{}{}{}", node.name, port.name, port.type ? port.type->name : "any type",
                         port.unit.empty() ? "" : ", ", port.unit, port.is_param ? ", parameter" : "",
                         port.about.empty() ? "" : "\n", port.about);
-        if (wiring_.node >= 0 && !wiring_.is_backward && over.what == Hit::What::input) {
-            const std::string pair = port_name({Hit::What::output, wiring_.node, wiring_.port}) + ">" + port_name(over);
-            if (pair != wiring_.checked) {
-                wiring_.checked = pair;
+        if (wiring_.node >= 0 && (over.what == Hit::What::output) == wiring_.is_backward) {
+            const std::string held =
+                end_name({wiring_.is_backward ? Hit::What::input : Hit::What::output, wiring_.node, wiring_.port});
+            const std::string end = end_name(over);
+            if (held + ">" + end != wiring_.checked) {
+                wiring_.checked = held + ">" + end;
                 wiring_.objection =
-                    bench_.objection(port_name({Hit::What::output, wiring_.node, wiring_.port}), port_name(over))
-                        .value_or("");
+                    (wiring_.is_backward ? bench_.objection(end, held) : bench_.objection(held, end)).value_or("");
             }
             if (!wiring_.objection.empty()) text = wiring_.objection;
         }
@@ -233,43 +206,29 @@ void PatchPanel::menus() {
         if (menu_.what == Hit::What::wire) {
             const PictureWire& wire = picture.wires[static_cast<std::size_t>(menu_.index)];
             const Hit from{Hit::What::output, wire.from, wire.output}, to{Hit::What::input, wire.to, wire.input};
-            const std::string a = port_name(from), b = port_name(to);
+            const std::string a = port_name(from), b = end_name(to), written = end_name(from);
             ImGui::TextDisabled("%s -> %s", a.c_str(), b.c_str());
             if (ImGui::MenuItem("Show in a scope")) wants_scope = a;
             if (!is_read_only) {
                 if (ImGui::BeginMenu("Deliver as")) {
                     for (const char* mode : {"hold", "linear", "batch", "delay 1"})
-                        if (ImGui::MenuItem(mode)) bench_.connect(a, b, mode);
+                        if (ImGui::MenuItem(mode)) bench_.connect(written, b, mode);
                     ImGui::EndMenu();
                 }
-                if (ImGui::MenuItem("Remove the wire")) bench_.disconnect(b, a);
+                if (ImGui::MenuItem("Remove the wire")) bench_.disconnect(b, written);
             }
         } else if (menu_.what == Hit::What::output) {
             if (ImGui::MenuItem("Show in a scope")) wants_scope = port_name(menu_);
         } else if (menu_.what == Hit::What::input) {
-            if (ImGui::MenuItem("Remove the wire", nullptr, false, !is_read_only)) bench_.disconnect(port_name(menu_));
+            if (ImGui::MenuItem("Remove the wire", nullptr, false, !is_read_only)) bench_.disconnect(end_name(menu_));
         } else if (menu_.what == Hit::What::node) {
             const PictureNode& node = picture.nodes[static_cast<std::size_t>(menu_.index)];
             node_menu(node.name, node.is_part);
         } else canvas_menu();
         ImGui::EndPopup();
     }
-    if (ImGui::BeginPopup("drive")) {
-        const std::string node =
-            picture.nodes.empty() || menu_.index < 0 ? "" : picture.nodes[static_cast<std::size_t>(menu_.index)].name;
-        ImGui::TextDisabled("%s drives a parameter of %s", new_name_.c_str(), node.c_str());
-        const TypePorts* ports =
-            menu_.index < 0 ? nullptr : ports_of_type(picture.nodes[static_cast<std::size_t>(menu_.index)].type);
-        if (ports)
-            for (const auto& [name, unit] : ports->params) {
-                const bool is_chosen = ImGui::MenuItem(name.c_str(), unit.c_str());
-                mark_spot("drive " + name);
-                if (!is_chosen) continue;
-                bench_.connect(new_name_, node + "." + name);
-                break;
-            }
-        ImGui::EndPopup();
-    }
+    landing_menu();
+    arrival_menu();
 }
 
 }  // namespace tactus::view

@@ -90,7 +90,8 @@ void PatchPanel::draw_wiring(const Painter& paint) {
         (wiring_.is_backward ? node.inputs : node.outputs)[static_cast<std::size_t>(wiring_.port)];
     const Point mouse = point(ImGui::GetIO().MousePos), from = screen(port.at);
     const auto curve = wiring_.is_backward ? curve_between(mouse, from) : curve_between(from, mouse);
-    const bool refused = hovered_.what == Hit::What::input && !wiring_.objection.empty();
+    const bool refused =
+        hovered_.what == (wiring_.is_backward ? Hit::What::output : Hit::What::input) && !wiring_.objection.empty();
     paint.list()->AddBezierCubic(vec(curve[0]), vec(curve[1]), vec(curve[2]), vec(curve[3]),
                                  refused ? tone::bad : colour_of(port.type), 2.5f);
 }

@@ -29,12 +29,18 @@ patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& 
     return {corner.x, corner.y - picture.lanes[static_cast<std::size_t>(node.group)].top};
 }
 
-patch::PatchPlace place_in_lane(const PatchPicture& picture, const std::string& lane, Point corner) {
-    constexpr double lane_gap = 14.0;
+const PictureLane* lane_at(const PatchPicture& picture, Point at) {
+    const auto found = std::ranges::find_if(
+        picture.lanes, [&](const PictureLane& lane) { return at.y >= lane.top && at.y < lane.bottom; });
+    return found == picture.lanes.end() ? nullptr : &*found;
+}
+
+patch::PatchPlace place_for(const PatchPicture& picture, const std::string& lane, Point at) {
     const auto shown = std::ranges::find(picture.lanes, lane, &PictureLane::name);
+    constexpr double lane_gap = 14.0;
     const double below = picture.lanes.empty() ? 0.0 : picture.bounds.bottom + lane_gap;
     const double top = shown == picture.lanes.end() ? below : shown->top;
-    return {corner.x, std::max(corner.y - top, lane_head_height)};
+    return {at.x, std::max(at.y - top, lane_head_height)};
 }
 
 Hit hit(const PatchPicture& picture, Point at, double reach) {

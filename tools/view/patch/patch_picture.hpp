@@ -91,8 +91,11 @@ PatchPicture picture_of(const compile::Plan& plan);
 
 /// Where a node stands within its lane, as a window keeps it.
 patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& node, Point corner);
-/// The place of a new node in a lane that may not be there yet.
-patch::PatchPlace place_in_lane(const PatchPicture& picture, const std::string& lane, Point corner);
+
+/// The lane at a height; null: none is there.
+const PictureLane* lane_at(const PatchPicture& picture, Point at);
+/// Where a node that is added at a point stands within a lane, which may be new.
+patch::PatchPlace place_for(const PatchPicture& picture, const std::string& lane, Point at);
 
 inline constexpr double lane_head_height = 30.0;
 

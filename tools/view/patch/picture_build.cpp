@@ -133,7 +133,7 @@ private:
                                         false,
                                         false,
                                         {}});
-            else if (input != node->inputs.end() && !known(made.inputs))
+            else if (input != node->inputs.end() && !known(made.inputs)) {
                 made.inputs.push_back({name,
                                        std::string(input->port->about),
                                        std::string(input->port->unit),
@@ -142,6 +142,8 @@ private:
                                        false,
                                        false,
                                        {}});
+                made.inputs.back().takes_many = input->port->kind == InputKind::events;
+            }
         }
         picture_.nodes.push_back(std::move(made));
         return static_cast<int>(picture_.nodes.size()) - 1;

@@ -3,7 +3,7 @@
 
 #include "nodes/catalogue.hpp"
 #include "tools/view/frame/search.hpp"
-#include "tools/view/patch/unfinished.hpp"
+#include "tools/view/ports/type_ports.hpp"
 
 #include <algorithm>
 #include <functional>

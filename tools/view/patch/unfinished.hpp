@@ -5,25 +5,14 @@
 
 #include "graph/compile/plan.hpp"
 #include "tools/view/patch/patch_picture.hpp"
+#include "tools/view/ports/part_ports.hpp"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tactus::view {
-
-/// The ports of a node type, by a node with default parameters.
-struct TypePorts {
-    struct File {
-        std::string name, type;  ///< of the parameter; "bone"
-    };
-    std::vector<File> files;  ///< parameters that take one
-    std::vector<PicturePort> inputs, outputs;
-    std::vector<std::pair<std::string, std::string>> params;  ///< that wires may drive: name, unit
-    std::vector<std::string> assets;  ///< required
-};
-/// Null: there is no such type. Only on the window's thread.
-const TypePorts* ports_of_type(std::string_view type);
 
 struct UnfinishedNode {
     std::string name, type, lane;  ///< lane: its rate or group
@@ -34,6 +23,7 @@ struct UnfinishedNode {
 struct Unfinished {
     std::vector<UnfinishedNode> nodes;
     std::vector<patch::PatchWire> wires;  ///< that begin or end there
+    std::map<std::string, PartPorts> parts;  ///< of all sub-patches, by their types
 
     bool empty() const { return nodes.empty(); }
     const UnfinishedNode* find(std::string_view name) const;

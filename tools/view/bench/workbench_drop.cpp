@@ -70,8 +70,8 @@ std::string Workbench::take_file(const fs::path& file, const std::string& node, 
     const auto add = [&](const char* type, const char* param) {
         const std::string lane = lane_for(type);
         std::optional<patch::PatchPlace> place;
-        if (at) place = place_in_lane(picture_, lane, *at);
-        return add_node(type, lane, place, NodeFile{param, file});
+        if (at) place = place_for(picture_, lane, *at);
+        return add_node(type, lane, place, {}, {}, NodeFile{param, file});
     };
     if (kind == FileKind::sound) return add("player", "sound");
     if (kind == FileKind::bone) return add("body", "bone");

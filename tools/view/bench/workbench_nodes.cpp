@@ -67,6 +67,12 @@ NamedAsset asset_for(const fs::path& file, const patch::Patch& patch, const fs::
     return {asset_name_of(path, patch), path.string(), edit::path_from(folder, path), true};
 }
 
+std::string count_of(std::size_t nodes, std::size_t comments) {
+    if (comments == 0) return count_of(nodes);
+    const std::string all = fmt::format("{} comment{}", comments, comments == 1 ? "" : "s");
+    return nodes == 0 ? all : count_of(nodes) + " and " + all;
+}
+
 }  // namespace
 
 std::string Workbench::free_name(const std::string& type) const {
@@ -91,8 +97,23 @@ std::string Workbench::lane_for(const std::string& type) const {
     return best.empty() ? is_audio ? audio : fast : best;
 }
 
+std::string Workbench::lane_for(const std::string& type, const std::string& wanted) const {
+    // Groups within a sub-patch are those of its own file.
+    if (wanted.empty() || wanted.find(patch::within_node) != std::string::npos) return lane_for(type);
+    if (!carries_signal(type)) return wanted;
+    const auto group = std::ranges::find(written_.groups, wanted, &patch::PatchGroup::name);
+    try {
+        const Flicks period = patch::parse_rate(group == written_.groups.end() ? wanted : group->rate);
+        constexpr Flicks slowest_sound = flicks_per_second / 8000;
+        return period <= slowest_sound ? wanted : lane_for(type);
+    } catch (const Error&) {
+        return wanted;
+    }
+}
+
 std::string Workbench::add_node(const std::string& type, const std::string& lane,
-                                std::optional<patch::PatchPlace> place, const std::optional<NodeFile>& file) {
+                                std::optional<patch::PatchPlace> place, const std::string& from,
+                                const std::string& input, const std::optional<NodeFile>& file) {
     const NodeType* known = type_of(type);
     if (!known) {
         tell(fmt::format("no node type '{}'", type), true);
@@ -103,33 +124,103 @@ std::string Workbench::add_node(const std::string& type, const std::string& lane
     edit::NewNode node{name, type, is_group ? "" : lane, is_group ? lane : "", {}, {}};
     const NamedAsset asset = file ? asset_for(file->path, written_, folder_of(editor_->file())) : NamedAsset{};
     if (file) node.settings.emplace_back(file->param, asset.name);
+    if (!from.empty() && !input.empty()) node.wires.push_back({from, name + "." + input, {}});
     const bool is_of_hand = known->role == NodeRole::hand_source || known->role == NodeRole::hand_sink;
     const bool needs_device = is_of_hand && written_.devices.empty();
-    const bool made = edit(
-        [&](std::string_view text) {
-            std::string changed(text);
-            if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.written);
-            changed = edit::with_node(changed, node);
-            if (needs_device) changed = edit::with_device(changed, "simulated", "simulated");
-            if (place) changed = edit::with_places(changed, {{name, *place}});
-            return changed;
-        },
-        fmt::format("added {} of type {}", name, type));
+    const auto add = [&] {
+        return edit(
+            [&](std::string_view text) {
+                std::string changed(text);
+                if (asset.is_new) changed = edit::with_asset(changed, asset.name, asset.written);
+                changed = edit::with_node(changed, node);
+                if (needs_device) changed = edit::with_device(changed, "simulated", "simulated");
+                if (place) changed = edit::with_places(changed, {{name, *place}});
+                return changed;
+            },
+            fmt::format("added {} of type {}", name, type));
+    };
+    bool made = add();
+    if (!made && !node.wires.empty()) {
+        node.wires.clear();
+        made = add();
+    }
     if (!made) return {};
     last_added_ = name;
     return name;
 }
 
-bool Workbench::remove(const std::vector<std::string>& nodes) {
-    if (nodes.empty()) return false;
-    if (nodes.size() == 1) return remove(nodes.front());
-    return edit([&](std::string_view text) { return edit::without_nodes(text, nodes); },
-                fmt::format("removed {}", count_of(nodes.size())));
+std::string Workbench::add_part(const fs::path& file, const std::string& lane, std::optional<patch::PatchPlace> place) {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    // A file beside the patch moves with it.
+    const fs::path beside = path.lexically_relative(fs::absolute(editor_->file()).parent_path());
+    const bool is_beside = !is_untitled() && !beside.empty() && *beside.begin() != "..";
+    patch::Patch alone;
+    alone.file = editor_->file();
+    patch::PatchNode& written = alone.nodes.emplace_back();
+    written.type = std::string(patch::sub_patch_prefix) + (is_beside ? beside : path).generic_string();
+    const auto parts = part_ports_of(alone);
+    if (parts.empty()) {
+        tell(fmt::format("{} is no patch that can be read", path.string()), true);
+        return {};
+    }
+    std::string stem = path.stem().string();
+    for (char& c : stem)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    edit::NewNode node{free_name(stem), written.type, {}, {}, {}, {}};
+    if (parts.begin()->second.takes_rate) {
+        const bool is_group =
+            std::ranges::find(written_.groups, lane, &patch::PatchGroup::name) != written_.groups.end();
+        (is_group ? node.group : node.rate) = lane.empty() ? fast : lane;
+    }
+    const bool made = edit(
+        [&](std::string_view text) {
+            const std::string changed = edit::with_node(text, node);
+            return place ? edit::with_places(changed, {{node.name, *place}}) : changed;
+        },
+        fmt::format("added {}, which is {}", node.name, path.string()));
+    if (!made) return {};
+    last_added_ = node.name;
+    return node.name;
 }
 
-bool Workbench::place(const std::map<std::string, patch::PatchPlace>& places) {
-    return edit([&](std::string_view text) { return edit::with_places(text, places); },
-                fmt::format("moved {}", count_of(places.size())));
+bool Workbench::has_lane(const std::string& node) const {
+    const auto written = std::ranges::find(written_.nodes, node, &patch::PatchNode::name);
+    return written != written_.nodes.end() && !(written->rate.empty() && written->group.empty());
+}
+
+bool Workbench::move_to_lane(const std::vector<std::string>& nodes, const std::string& lane,
+                             const std::map<std::string, patch::PatchPlace>& places) {
+    const bool is_group = std::ranges::find(written_.groups, lane, &patch::PatchGroup::name) != written_.groups.end();
+    return edit(
+        [&](std::string_view text) {
+            std::string changed(text);
+            for (const std::string& node : nodes) changed = edit::with_lane(changed, node, lane, is_group);
+            return places.empty() ? changed : edit::with_places(changed, places);
+        },
+        fmt::format("{} in {}", nodes.size() == 1 ? nodes.front() : count_of(nodes.size()), lane));
+}
+
+bool Workbench::remove(const std::vector<std::string>& nodes, const std::vector<std::string>& comments) {
+    if (nodes.empty() && comments.empty()) return false;
+    if (nodes.size() == 1 && comments.empty()) return remove(nodes.front());
+    return edit(
+        [&](std::string_view text) {
+            std::string changed = edit::without_nodes(text, nodes);
+            for (const std::string& name : comments) changed = edit::without_comment(changed, name);
+            return changed;
+        },
+        "removed " + count_of(nodes.size(), comments.size()));
+}
+
+bool Workbench::place(const std::map<std::string, patch::PatchPlace>& places,
+                      const std::vector<patch::PatchComment>& comments) {
+    return edit(
+        [&](std::string_view text) {
+            std::string changed = edit::with_places(text, places);
+            for (const patch::PatchComment& comment : comments) changed = edit::with_comment(changed, comment);
+            return changed;
+        },
+        "moved " + count_of(places.size(), comments.size()));
 }
 
 bool Workbench::place_automatically(const std::vector<std::string>& nodes) {
@@ -142,9 +233,13 @@ bool Workbench::colour(const std::vector<std::string>& nodes, const std::string&
                 fmt::format("coloured {}", count_of(nodes.size())));
 }
 
-std::string Workbench::copy(const std::vector<std::string>& nodes) const {
+std::string Workbench::copy(const std::vector<std::string>& nodes,
+                            const std::map<std::string, patch::PatchPlace>& places) const {
     try {
-        return edit::copied(editor_->text(), nodes, fs::absolute(editor_->file()).parent_path());
+        std::map<std::string, patch::PatchPlace> unplaced = places;
+        for (const auto& [node, place] : window_.places) unplaced.erase(node);
+        return edit::with_places(edit::copied(editor_->text(), nodes, fs::absolute(editor_->file()).parent_path()),
+                                 unplaced);
     } catch (const Error&) {
         return {};
     }
@@ -218,12 +313,12 @@ bool Workbench::remove_comment(const std::string& name) {
     return edit([&](std::string_view text) { return edit::without_comment(text, name); }, "removed a comment");
 }
 
-bool Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
+std::string Workbench::add_comment(patch::PatchPlace place, const std::string& words) {
     std::string name = "note";
     for (int i = 2; std::ranges::find(window_.comments, name, &patch::PatchComment::name) != window_.comments.end();
          ++i)
         name = fmt::format("note_{}", i);
-    return comment({name, words, "", place, {220.0, 80.0}});
+    return comment({name, words, "", place, {220.0, 80.0}}) ? name : std::string();
 }
 
 bool Workbench::use_file(const std::string& node, const std::string& param, const fs::path& file) {
