@@ -5,9 +5,11 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
 #include "tests/tools/background_run.hpp"
+#include "tools/session/load_plan.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <string>
 
 using namespace tactus;
@@ -70,6 +72,46 @@ TEST_CASE("what a person is told about forces that are away is true") {
         forces.is_windowless = true;
         CHECK_THAT(forces.text(), ContainsSubstring("forces stay off, as that window is closed"));
     }
+}
+
+TEST_CASE("a fault that a gripper was told by a wire is cleared at its source, which the text names") {
+    const test::Folder folder;
+    std::ofstream(folder.path / "gripper.toml") << R"(title = "stuck"
+wires = [
+  "push.value -> object.force", "push.value -> object.position", "sensor.value -> object.fault",
+  "object.velocity -> motor.finger_speed", "object.reason -> motor.fault",
+]
+[devices.wqsm]
+driver = "wqsm_gripper"
+[nodes.push]
+type = "constant"
+rate = "150 Hz"
+[nodes.sensor]
+type = "constant"
+rate = "150 Hz"
+number = 6
+[nodes.object]
+type = "admittance_controller"
+rate = "150 Hz"
+stiffness = "1 N/mm"
+hand_stiffness = "0.38 N/mm"
+[nodes.motor]
+type = "gripper_output"
+rate = "150 Hz"
+device = "wqsm"
+)";
+    compile::AssetCache assets;
+    session::PatchChoice choice;
+    choice.patch = (folder.path / "gripper.toml").string();
+    run::EngineOptions options;
+    options.seconds = 0.2;
+    run::Engine engine(session::load_plan(choice, assets), options);
+    engine.render(1);
+    const auto all = session::forces_of(engine);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].state == control::ForceState::by_hand);
+    CHECK(all[0].node == "object");
+    CHECK_THAT(all[0].text(), ContainsSubstring("tactus set object.recover="));
 }
 
 TEST_CASE("a trainer that stood still for a moment tells it, and when its forces are on again", "[live]") {
