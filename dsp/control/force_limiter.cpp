@@ -74,17 +74,17 @@ void ForceLimiter::hold_off(bool wanted) noexcept {
     faded_s_ = 0.0;
 }
 
-void ForceLimiter::recover() noexcept {
+void ForceLimiter::recover(double least_ramp_s) noexcept {
     fault_ = Fault::none;
     has_counter_ = false;
     still_ticks_ = small_ticks_ = 0;
-    ramped_s_ = slow_ramp_s_ = 0.0;
+    ramped_s_ = 0.0;
+    slow_ramp_s_ = least_ramp_s;
 }
 
 void ForceLimiter::recover_slowly(double ramp_s) noexcept {
-    recover();
+    recover(ramp_s);
     small_ticks_ = limits_.engage_ticks;
-    slow_ramp_s_ = ramp_s;
 }
 
 double ForceLimiter::ramp() const noexcept { return std::max(limits_.engage_ramp_s, slow_ramp_s_); }

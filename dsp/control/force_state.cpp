@@ -10,10 +10,11 @@ const char* describe(ForceState state) noexcept {
         case ForceState::ramps: return "forces are coming in";
         case ForceState::waits: return "forces return when the hand leaves the bone";
         case ForceState::held_back: return "forces are held back for a pause or an edit";
-        case ForceState::returns: return "forces return by themselves once ticks were on time for 1 s";
+        case ForceState::returns: return "forces return by themselves once ticks were on time";
         case ForceState::returns_freed: return "forces return when this is over and the hand leaves the bone";
         case ForceState::by_hand: return "forces stay off until you let them return";
-        case ForceState::never: return "forces stay off in this run; end it and mend the patch";
+        case ForceState::by_source: return "forces stay off until the node that reports the fault goes on";
+        case ForceState::never: return "forces stay off in this run";
     }
     return "unknown state";
 }

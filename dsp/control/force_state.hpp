@@ -15,6 +15,7 @@ enum class ForceState : std::uint8_t {
     returns,        ///< a late tick: forces come back by themselves
     returns_freed,  ///< another fault: once it is over and the hand leaves the bone
     by_hand,        ///< forces stay away until a person asks for them
+    by_source,      ///< a fault that came by a wire: until the node that sends it goes on
     never,          ///< forces stay away until the end of the run
 };
 

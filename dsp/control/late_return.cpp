@@ -15,16 +15,28 @@ constexpr double most_at_once = 2.0;
 }  // namespace
 
 void LateReturn::prepare(double period_s, double at_least_s) noexcept {
-    *this = LateReturn{};
     period_s_ = period_s;
     wait_s_ = std::max(on_time_s, at_least_s);
+    on_time_ = quiet_ = 0.0;
+    left_out_ = 0;
+}
+
+bool LateReturn::leaves_out_too_many(double ticks) noexcept {
+    if (ticks > most_at_once) return true;
+    for (int n = 0; n < static_cast<int>(ticks); ++n) {
+        double& at = left_out_at_[next_left_out_];  // the oldest, once there are so many
+        if (left_out_ == most_left_out && now_s_ - at < on_time_s * rounding) return true;
+        at = now_s_;
+        next_left_out_ = (next_left_out_ + 1) % left_out_at_.size();
+        left_out_ = std::min(left_out_ + 1, most_left_out);
+    }
+    return false;
 }
 
 void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
     now_s_ += elapsed_s;
     const double left_out = std::max(0.0, std::round(elapsed_s / period_s_) - 1.0);
-    left_out_ += static_cast<int>(std::min(left_out, 100.0));
-    if (is_late || left_out > most_at_once || left_out_ > most_left_out) {
+    if (is_late || leaves_out_too_many(left_out)) {
         on_time_ = 0.0;
         left_out_ = 0;
     } else on_time_ += elapsed_s;

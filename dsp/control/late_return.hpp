@@ -4,7 +4,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 
 namespace tactus::control {
 
@@ -13,14 +13,15 @@ class LateReturn {
 public:
     static constexpr double quiet_s = 0.5;  ///< the hand was given no force for this long, and ...
     static constexpr double on_time_s = 1.0;  ///< ... ticks were on time for this long, before forces come back
-    /// That may be left out in this time, one or two at once: a busy machine always leaves out some, and a force that is
-    /// held for 2 ms harms nobody.
+    /// That may be left out within `on_time_s`, one or two at once: a busy machine always leaves out some, and a force
+    /// that is held for 2 ms harms nobody.
     static constexpr int most_left_out = 10;
     static constexpr double ramp_s = 0.5;  ///< in which they then come in, at least
     static constexpr int most_returns = 3;  ///< in `window_s`; the next loss waits for a person
     static constexpr double window_s = 60.0;
 
-    /// `period_s`: nominal, of the ticks. `at_least_s`: forces stay away for this long, at least `on_time_s`.
+    /// `period_s`: nominal, of the ticks. `at_least_s`: forces stay away for this long, at least `on_time_s`. Earlier
+    /// returns still count; the waits begin anew.
     void prepare(double period_s, double at_least_s) noexcept;
 
     /// Each tick, whatever the state. `is_late`: the force of a tick came too late. `is_quiet`: the hand was given no force
@@ -37,10 +38,15 @@ public:
     void forgive() noexcept;
 
 private:
+    /// So many ticks were left out. True when they are too many at once, or within `on_time_s`.
+    bool leaves_out_too_many(double ticks) noexcept;
+
     double period_s_ = 0.001, wait_s_ = on_time_s;
     double now_s_ = 0.0, on_time_ = 0.0, quiet_ = 0.0;
     std::array<double, most_returns> at_{};  // times of the last returns
-    int count_ = 0, left_out_ = 0;
+    std::array<double, most_left_out> left_out_at_{};  // times of the last ticks that were left out, a ring
+    std::size_t next_left_out_ = 0;
+    int count_ = 0, left_out_ = 0;  // entries of the two
     bool needs_hand_ = false;
 };
 

@@ -5,6 +5,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+
 namespace tactus::io {
 
 namespace {
@@ -49,19 +51,29 @@ void DeviceGuard::note(control::Fault reason, control::ForceState state, std::in
     if (const auto now = static_cast<std::int64_t>(state); (told & 15) != now)
         state_.store(16 * tick + now, std::memory_order_release);
     if (reason == last_) return;
+    const auto keep = [this] { faults_[static_cast<std::size_t>(newest_.number) % most_faults].write(newest_); };
+    if (last_ != control::Fault::none) {
+        newest_.over = tick;
+        keep();
+    }
     last_ = reason;
-    const std::size_t count = count_.load(std::memory_order_relaxed);
-    if (is_kept_) over_[count - 1].store(tick + 1, std::memory_order_release);
-    is_kept_ = reason != control::Fault::none && count < faults_.size();
-    if (!is_kept_) return;
-    faults_[count] = {reason, tick, force_N};
+    if (reason == control::Fault::none) return;
+    const std::int64_t count = count_.load(std::memory_order_relaxed);
+    newest_ = {reason, tick, force_N, -1, count};
+    keep();
     count_.store(count + 1, std::memory_order_release);
 }
 
 std::vector<DeviceFault> DeviceGuard::faults() const {
-    std::vector<DeviceFault> all(faults_.begin(),
-                                 faults_.begin() + static_cast<std::ptrdiff_t>(count_.load(std::memory_order_acquire)));
-    for (std::size_t i = 0; i < all.size(); ++i) all[i].over = over_[i].load(std::memory_order_acquire) - 1;
+    std::vector<DeviceFault> all;
+    const std::int64_t count = count_.load(std::memory_order_acquire);
+    for (std::int64_t n = std::max<std::int64_t>(0, count - most_faults); n < count; ++n) {
+        DeviceFault fault;
+        std::uint64_t version = 0;
+        // A newer one may have taken its place meanwhile.
+        if (faults_[static_cast<std::size_t>(n) % most_faults].read(fault, version) && fault.number == n)
+            all.push_back(fault);
+    }
     return all;
 }
 

@@ -3,6 +3,7 @@
 // comes no more, from the watchdog's.
 #pragma once
 
+#include "devices/hosted/seqlock.hpp"
 #include "dsp/control/commit_guard.hpp"
 #include "dsp/control/force_limiter.hpp"
 #include "dsp/control/force_state.hpp"
@@ -22,6 +23,7 @@ struct DeviceFault {
     std::int64_t tick = 0;  ///< of the device's group
     double force_N = 0.0;   ///< that was on the hand the tick before
     std::int64_t over = -1;  ///< tick at which it was over, or another fault took its place; -1: it is not over
+    std::int64_t number = 0;  ///< of the device's faults in this run, from 0 on
 };
 
 /// Whether the hand feels forces, and since when.
@@ -67,7 +69,8 @@ public:
     /// Retired, and no force is left.
     bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
 
-    /// The first 64 faults. Any thread, never in a tick.
+    static constexpr std::size_t most_faults = 64;
+    /// The newest of them, oldest first. Any thread, never in a tick.
     std::vector<DeviceFault> faults() const;
     /// Any thread.
     DeviceState state() const noexcept;
@@ -80,12 +83,10 @@ private:
     std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
-    static constexpr std::size_t most_faults = 64;
-    std::array<DeviceFault, most_faults> faults_;  // without `over`
-    std::array<std::atomic<std::int64_t>, most_faults> over_{};  // tick, + 1; 0: not over
+    DeviceFault newest_;  // thread of the tick
+    std::array<hosted::Seqlock<DeviceFault>, most_faults> faults_;  // a ring
+    std::atomic<std::int64_t> count_{0};  // of all faults
     std::atomic<std::int64_t> state_{0};  // 16 * since + state
-    bool is_kept_ = false;  // the fault that is on; thread of the tick
-    std::atomic<std::size_t> count_{0};
 };
 
 }  // namespace tactus::io

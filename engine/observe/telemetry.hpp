@@ -108,9 +108,20 @@ struct GroupTelemetry {
     LateCounts skip_causes;   ///< of `skipped`, live only
     LateCounts withheld;      ///< values of this group that others went without, by why it was late; live only
     mutable std::atomic<std::int64_t> awaited{0};  ///< those not yet explained; written by the groups that miss them
-    std::atomic<double> force_N{0.0};      ///< on the hand, of the last tick
+    std::atomic<double> force_N{0.0};      ///< on the hand, of the last tick; of several the largest
+    mutable std::atomic<double> most_force_N{0.0};  ///< since the last `take_most_force`
     DurationHistogram execution;           ///< ns per call
     DurationHistogram lateness;            ///< ns from release to start, live only
+
+    /// Thread of the group; wait-free.
+    void note_force(double newtons) noexcept {
+        force_N.store(newtons, std::memory_order_relaxed);
+        // Whoever takes the largest meanwhile is told of it now or the next time, never not at all.
+        if (newtons > most_force_N.load(std::memory_order_relaxed))
+            most_force_N.store(newtons, std::memory_order_relaxed);
+    }
+    /// The largest force since the call before; one thread.
+    double take_most_force() const noexcept { return most_force_N.exchange(0.0, std::memory_order_relaxed); }
 };
 
 }  // namespace tactus::observe

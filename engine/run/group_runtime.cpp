@@ -156,8 +156,11 @@ int GroupRuntime::finish_call() noexcept {
         clear_events(n);
     }
     committing_ = n;
+    double largest = 0.0;
+    for (const build::DeviceSlot* slot : program_->driven)
+        largest = std::max(largest, glm::length(io::clamp_to_device(slot->port.wrench, slot->port.info).force));
+    telemetry.note_force(largest);
     for (build::DeviceSlot* slot : program_->driven) {
-        telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
         slot->guard.note(slot->port.fault, slot->port.state, next_, glm::length(slot->committed.force));
         // The node that wrote it reads here what the device was given.
         slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);

@@ -4,6 +4,7 @@
 
 #include "dsp/control/force_limiter.hpp"
 #include "dsp/control/force_state.hpp"
+#include "dsp/control/late_return.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/time.hpp"
 #include "graph/node/device.hpp"
@@ -35,7 +36,8 @@ struct Tick {
 };
 
 /// A device, shared by the nodes of one group. The engine fills `sample` before the nodes run and sends `wrench` and
-/// `motors` to the driver after them.
+/// `motors` to the driver after them. It outlives its nodes; `prepare` writes nothing here, as it may run beside the ticks
+/// of the node that it replaces.
 struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
@@ -45,10 +47,12 @@ struct DevicePort {
     control::ForceState state = control::ForceState::unknown;  ///< of the node that writes `wrench`
     /// True before the plan changes: fade the force to zero. Ramp it in when this is false again.
     bool hold_off = false;
+    /// How often forces came back after late ticks: an edit that replaces the node does not forget it.
+    control::LateReturn late;
 };
 
 enum class DeviceUse : std::uint8_t {
-    read,   ///< the node reads the sample
+    read,  ///< the node reads the sample
     drive,  ///< the node writes the port's wrench; one node per device may
 };
 

@@ -28,7 +28,6 @@ struct GripperOutput {
         port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_output");
         asked_ = recover;
-        port_->motors = {};
     }
 
     void process(const Tick& tick) noexcept {
@@ -46,9 +45,7 @@ struct GripperOutput {
         motors.free = !still && low_friction >= 0.5;
         if (cord.connected && std::isfinite(cord.get())) motors.cord = cord;
         port_->fault = reason_ != control::Fault::none ? reason_ : upstream();
-        port_->state = port_->fault != control::Fault::none ? control::ForceState::by_hand
-                       : port_->hold_off                    ? control::ForceState::held_back
-                                                            : control::ForceState::on;
+        port_->state = state();
         given = motors.speed[0];
         const double fastest = port_->info.max_speed;
         cycles = fastest > 0.0 ? std::min(1.0, std::abs(motors.speed[0]) / fastest) * drive_limit : 0.0;
@@ -63,6 +60,12 @@ struct GripperOutput {
     }
 
 private:
+    control::ForceState state() const noexcept {
+        if (reason_ != control::Fault::none) return control::ForceState::by_hand;
+        // What holds the motors is not this node's to clear.
+        if (port_->fault != control::Fault::none) return control::ForceState::by_source;
+        return port_->hold_off ? control::ForceState::held_back : control::ForceState::on;
+    }
     control::Fault fault_of(double first, double second) const noexcept {
         if (!std::isfinite(first) || !std::isfinite(second)) return control::Fault::not_finite;
         const double most = port_->info.max_speed * (1.0 + 1e-6);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/energy_cap.hpp"
 #include "dsp/control/force_limiter.hpp"
-#include "dsp/control/late_return.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
@@ -60,16 +59,15 @@ struct DeviceOutput {
         // A device states its damping with a hand on it. More than this would blur what a bounce returns.
         cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
         cap_.prepare(cap);
-        late_.prepare(seconds(setup.period), recover_after);
-        asked_ = recover;
-        port_->state = control::ForceState::waits;
+        is_new_ = true;
     }
 
     void process(const Tick& tick) noexcept {
+        if (is_new_) take_over(tick);
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
         const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
-        late_.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
+        port_->late.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
         if (s.late) limiter_.fail(control::Fault::late_source);
@@ -85,7 +83,7 @@ struct DeviceOutput {
         asked_ = recover;
         port_->state = state();
         counter_ = s.counter;
-        engaged = limiter_.engaged();
+        engaged = was_engaged_ = limiter_.engaged();
         engaged_ticks_ += limiter_.engaged();
         const double force = glm::length(out.force);
         largest_ = std::max(largest_, force);
@@ -127,6 +125,15 @@ struct DeviceOutput {
     }
 
 private:
+    /// An edit clears no fault: what the node before it left on the port holds on, and forces come back as they would have
+    /// there, through engagement.
+    void take_over(const Tick& tick) noexcept {
+        is_new_ = false;
+        asked_ = recover;
+        port_->late.prepare(seconds(tick.period), recover_after);
+        if (port_->fault != control::Fault::none) limiter_.fail(port_->fault);
+    }
+
     /// A simulation goes on while forces are off: what it asks for then is not what the hand felt.
     void note_felt(const Tick& tick, double force) noexcept {
         const double asked = glm::length(wrench.get().force);
@@ -184,11 +191,13 @@ private:
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
+            must_engage_ = !was_engaged_;
             still_ticks_ = control::ForceLimits{}.stale_ticks;
             ++faults_;
             well_for_ = 0.0;
-            if (is_lateness(last_fault_)) late_.lose();
+            if (is_lateness(last_fault_)) port_->late.lose();
         }
+        must_engage_ = must_engage_ || port_->hold_off;
         const DeviceSample& s = port_->sample;
         // A device may give samples less often than this ticks.
         still_ticks_ = s.counter != counter_ ? 0 : still_ticks_ + 1;
@@ -200,15 +209,17 @@ private:
         in_fault_ = false;
     }
 
-    /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body: they
-    /// wait for the hand to leave it.
+    /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body. And a
+    /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
+    /// there. Then they wait for the hand to leave it.
     void return_from_lateness(bool is_good) noexcept {
         const bool is_asked = recover.value != asked_;
-        if (is_asked) late_.forgive();
+        if (is_asked) port_->late.forgive();
         is_let_ = is_let_ || is_asked;
-        if (!is_good || (recover_after == 0.0 && !is_let_) || !late_.returns()) return;
-        if (energy_cap) limiter_.recover_slowly(std::max(control::LateReturn::ramp_s, engage_time.value));
-        else limiter_.recover();
+        if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let_) || !port_->late.returns()) return;
+        const double ramp_s = std::max(control::LateReturn::ramp_s, engage_time.value);
+        if (energy_cap && !must_engage_) limiter_.recover_slowly(ramp_s);
+        else limiter_.recover(ramp_s);
         in_fault_ = is_let_ = false;
         ++returns_;
     }
@@ -220,8 +231,9 @@ private:
             case Fault::not_finite: return ForceState::never;
             case Fault::late_commit:
             case Fault::late_source: {
-                const bool waits_for_hand = late_.needs_hand() || (recover_after == 0.0 && !is_let_);
-                return waits_for_hand ? ForceState::by_hand : ForceState::returns;
+                const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let_);
+                if (waits_for_hand) return ForceState::by_hand;
+                return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;
             }
             default: return recover_after == 0.0 ? ForceState::never : ForceState::returns_freed;
         }
@@ -234,7 +246,6 @@ private:
     DevicePort* port_ = nullptr;
     control::ForceLimiter limiter_;
     control::EnergyCap cap_;
-    control::LateReturn late_;
     double most_granted_ = 0.0, most_capped_ = 0.0;
     std::int64_t capped_ticks_ = 0;
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
@@ -243,7 +254,10 @@ private:
     std::int64_t counter_ = 0, still_ticks_ = 0, faults_ = 0, returns_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
     std::string name_;
     control::Fault last_fault_ = control::Fault::none;
+    bool is_new_ = true;  // no tick has run
+    bool was_engaged_ = false;  // after the tick before
     bool in_fault_ = false;
+    bool must_engage_ = false;  // after this fault, also if it is lateness
     bool is_let_ = false;  // a person lets forces return
 };
 

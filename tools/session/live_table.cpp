@@ -71,9 +71,9 @@ std::string describe_sound(const io::SoundCard& card) {
                        s.frames_underflowed, s.frames_dropped, s.frames_left_out);
 }
 
-std::string live_table(const run::Engine& engine) {
+std::string live_table(const run::Engine& engine, LetReturn way) {
     std::string text = fmt::format("{:.1f} s, {:.1f} N on the hand", engine.progress_seconds(), force_of(engine));
-    for (const HandForces& forces : forces_of(engine))
+    for (const HandForces& forces : forces_of(engine, way))
         if (const std::string state = forces.text(); !state.empty())
             text += fmt::format("; '{}': {}", forces.device, state);
     for (const auto& card : engine.host().cards) text += "; sound " + describe_sound(*card);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/run/engine.hpp"
+#include "tools/session/force_news.hpp"
 
 #include <string>
 #include <vector>
@@ -26,6 +27,6 @@ std::string describe_lateness(const run::GroupRuntime& group);
 std::string describe_sound(const io::SoundCard& card);
 
 /// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
-std::string live_table(const run::Engine& engine);
+std::string live_table(const run::Engine& engine, LetReturn way);
 
 }  // namespace tactus::session

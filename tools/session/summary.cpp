@@ -125,6 +125,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
                  {"time_s", tactus::seconds(fault.tick * slot->period)},
                  {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
                  {"force_N", fault.force_N}});
+    json["faults_not_listed"] = faults_not_kept(engine);
     json["signals"] = Json::array();
     Json all = Json::array();
     for (const auto& stream : engine.host().streams) {
@@ -171,6 +172,8 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
             at[1], at[2], number_in(report, "contact", "blade_clearance_mm"));
     for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
+    if (const std::int64_t more = faults_not_kept(engine); more > 0)
+        text += fmt::format("  {} faults before those that follow\n", more);
     for (const FaultOnRecord& fault : faults_on_record(engine)) text += fmt::format("  fault {}\n", fault.text());
     for (const auto& group : engine.groups())
         if (const std::int64_t lost = group->telemetry.lost_events.load(); lost > 0)

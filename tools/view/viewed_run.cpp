@@ -106,10 +106,12 @@ void ViewedRun::look_at(RunSession& session) {
     for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
         say(notices[told_notices_]);
     for (const auto& group : engine.groups()) {
+        status.most = std::max(status.most, group->telemetry.take_most_force());
         if (group->is_over()) continue;
         status.groups.push_back(status_of(*group));
         status.force = std::max(status.force, group->telemetry.force_N.load(std::memory_order_relaxed));
     }
+    status.peak = peak_ = std::max(peak_, status.most);
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
     status.forces = session::forces_of(engine);
     status.faults = session::faults_on_record(engine);

@@ -40,6 +40,8 @@ struct RunStatus {
     enum class State { loading, runs, fades, stands, over } state = State::loading;
     double time = 0.0;  ///< logical, s
     double force = 0.0;  ///< force on the hand, N
+    double most = 0.0;   ///< largest since the status before, N
+    double peak = 0.0;   ///< largest of the run so far, N
     std::vector<GroupStatus> groups;
     std::vector<NodeStatus> nodes;
     std::vector<session::HandForces> forces;
@@ -107,7 +109,8 @@ private:
     double changed_s_ = 0.0;
     int tends_ = 0;
     std::size_t told_notices_ = 0;
-    session::ForceNews news_;
+    session::ForceNews news_{choice_.edits ? session::LetReturn::by_set : session::LetReturn::by_button};
+    double peak_ = 0.0;  // force of the run so far, N
     std::string json_, text_;
     std::vector<std::string> losses_;
     std::unique_ptr<RunSession> session_;  // kept after the end, so that the last values stay visible

@@ -129,6 +129,23 @@ TEST_CASE("after a late tick forces come back when ticks were on time for a seco
         }
         CHECK(waiting.ticks_until_return() == 952);
     }
+    SECTION("a wait of ten seconds ends although two ticks are left out each second") {
+        waiting.late.prepare(period, 10.0);
+        waiting.lose();
+        int ticks = 0;
+        for (bool is_back = false; !is_back && ticks < 60'000; ++ticks) {
+            waiting.late.tick(false, true, ticks % 500 == 250 ? 2.0 * period : period);
+            is_back = waiting.late.returns();
+        }
+        CHECK(ticks == 9980);  // 20 of 10 000 were left out
+    }
+    SECTION("eleven that are left out within a second begin a longer wait anew as well") {
+        waiting.late.prepare(period, 10.0);
+        waiting.lose();
+        CHECK(waiting.ticks_until_return(9000) == 9000);
+        for (int n = 0; n < 11; ++n) waiting.late.tick(false, true, 2.0 * period);
+        CHECK(waiting.ticks_until_return(20'000) == 10'000);
+    }
     SECTION("a longer wait that the patch asks for is kept") {
         waiting.late.prepare(period, 3.0);
         waiting.lose();
@@ -170,6 +187,18 @@ TEST_CASE("forces come back three times a minute, then by hand") {
         CHECK(patient.ticks_until_return() == 1000);
         for (int k = 0; k < 20'000; ++k) patient.late.tick(false, false, period);
     }
+}
+
+TEST_CASE("a return that engages can have a longer ramp") {
+    control::ForceLimiter limiter;
+    limiter.prepare({.engage_ramp_s = 1e-3}, period);
+    std::int64_t count = 0;
+    const auto force = [&](double raw) { return limiter.tick({{0.0, 0.0, raw}, {}}, ++count, true, period).force.z; };
+    limiter.cut(control::Fault::late_commit);
+    limiter.recover(0.5);
+    for (int n = 0; n < 3; ++n) REQUIRE(force(0.1) == 0.0);
+    for (int n = 0; n < 249; ++n) REQUIRE(force(8.0) <= 4.0);
+    CHECK(force(8.0) == Approx(4.0));
 }
 
 TEST_CASE("a slow return ramps a large force in over half a second of ticks on time") {

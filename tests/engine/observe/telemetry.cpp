@@ -3,6 +3,7 @@
 
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
+#include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -17,6 +18,31 @@ TEST_CASE("a late call is blamed on the largest of late start, standstill and co
     CHECK(observe::blame(50, observe::LateCause::ran_long, 30, 20) == observe::LateCause::ran_long);
     CHECK(observe::blame(5, observe::LateCause::woken_late, 100, 20) == observe::LateCause::preempted);
     CHECK(observe::blame(5, observe::LateCause::woken_late, 100, 90) == observe::LateCause::ran_long);
+}
+
+TEST_CASE("a force of one tick is not missed by who looks ten times a second") {
+    observe::GroupTelemetry t;
+    for (const double force : {1.0, 9.0, 2.0}) t.note_force(force);
+    CHECK(t.force_N.load() == 2.0);
+    CHECK(t.take_most_force() == 9.0);
+    t.note_force(3.0);
+    CHECK(t.take_most_force() == 3.0);
+    CHECK(t.take_most_force() == 0.0);
+}
+
+TEST_CASE("of two hands of a group the larger force is told, whichever comes last") {
+    for (const bool left_is_firm : {true, false}) {
+        for (const char* name : {"left", "right"}) watched_hand(name);
+        PatchText patch;
+        add_hand(patch, "left", left_is_firm ? "2 N/mm" : "1 N/mm");
+        add_hand(patch, "right", left_is_firm ? "1 N/mm" : "2 N/mm");
+        run::EngineOptions options;
+        options.seconds = 0.4;
+        run::Engine engine(compile_text(patch.toml()), options);
+        engine.render(1);
+        CHECK(engine.groups()[0]->telemetry.force_N.load() == Approx(4.0));
+        CHECK(engine.groups()[0]->telemetry.take_most_force() == Approx(4.0));
+    }
 }
 
 namespace {

@@ -4,8 +4,10 @@
 #include "tests/support/node_harness.hpp"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
+#include <utility>
 
 using namespace tactus;
 using test::NodeHarness;
@@ -19,6 +21,7 @@ constexpr double asked = 4.0;  // N, from 300 ms on, for ever: the hand is deep 
 struct LateOutput {
     NodeHarness node{"device_output", servo};
     std::set<std::int64_t> taken, late, invalid;
+    std::int64_t held_from = -1, held_to = -1;  ///< a pause
 
     LateOutput() {
         node.device_feed = [this](std::int64_t k, DevicePort& port) {
@@ -27,6 +30,7 @@ struct LateOutput {
             port.sample.valid = !invalid.contains(k);
             port.sample.taken = taken.contains(k);
             port.sample.late = late.contains(k);
+            port.hold_off = k >= held_from && k < held_to;
         };
         node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{asked, 0.0, 0.0}, {}}; });
     }
@@ -126,4 +130,115 @@ TEST_CASE("nothing but lateness brings a force back to a hand that stays in the 
     out.run(6000);
     for (std::size_t k = 615; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
     CHECK(out.port().state == expected);
+}
+
+TEST_CASE("a pause while ticks were late: the force waits for the hand to leave the body") {
+    LateOutput out;
+    out.taken.insert(600);
+    SECTION("after the late tick") { out.held_from = 700, out.held_to = 800; }
+    SECTION("before it") { out.held_from = 500, out.held_to = 595; }
+    SECTION("when it came") { out.held_from = 590, out.held_to = 650; }
+    SECTION("longer than the wait") { out.held_from = 700, out.held_to = 3000; }
+    out.run(4000);
+    for (std::size_t k = 615; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(out.port().state == control::ForceState::waits);
+    // It leaves, and comes in again.
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) { return Wrench{{k < 4010 ? 0.0 : asked, 0.0, 0.0}, {}}; });
+    out.node.forget();
+    out.node.run(700);
+    const auto later = out.node.values<Wrench>("applied");
+    CHECK(later[250].force.x <= 0.5 * asked);
+    CHECK(later.back().force.x == Approx(asked));
+}
+
+TEST_CASE("a late tick before forces were on brings none to a hand that was deep inside from the start") {
+    LateOutput out;
+    out.node.feed<Wrench>("wrench", Wrench{{asked, 0.0, 0.0}, {}});
+    out.taken.insert(600);
+    out.run(4000);
+    for (const double force : out.applied) REQUIRE(force == 0.0);
+    CHECK(out.port().state == control::ForceState::waits);
+}
+
+TEST_CASE("a wait for the hand is told as such while ticks are late") {
+    LateOutput out;
+    out.taken.insert(600);
+    out.held_from = 700, out.held_to = 800;
+    out.run(1000);
+    CHECK(out.port().state == control::ForceState::returns_freed);
+}
+
+namespace {
+
+/// The node that an edit puts in the place of another; the device and its port stay.
+struct EditedOutput {
+    LateOutput before, after;
+
+    explicit EditedOutput(const std::function<Wrench(std::int64_t)>& wrench = {}) {
+        if (wrench) before.node.feed<Wrench>("wrench", wrench);
+    }
+    void edit() {
+        after.node.host.devices = std::move(before.node.host.devices);
+        after.node.set("max_force", "9 N");
+    }
+};
+
+}  // namespace
+
+TEST_CASE("an edit that replaces the node clears no fault") {
+    SECTION("a force that is no number: never again in this run") {
+        EditedOutput out([](std::int64_t k) {
+            return Wrench{{k == 600 ? std::numeric_limits<double>::quiet_NaN() : 0.0, 0.0, 0.0}, {}};
+        });
+        out.before.run(1000);
+        REQUIRE(out.before.port().state == control::ForceState::never);
+        out.edit();
+        out.after.run(4000);
+        for (const double force : out.after.applied) REQUIRE(force == 0.0);
+        CHECK(out.after.port().state == control::ForceState::never);
+        CHECK(out.after.port().fault == control::Fault::not_finite);
+    }
+    SECTION("the fourth late tick in a minute: until a person lets forces return") {
+        EditedOutput out;
+        for (int n = 0; n < 4; ++n) out.before.taken.insert(600 + 2000 * n);
+        out.before.run(8000);
+        REQUIRE(out.before.port().state == control::ForceState::by_hand);
+        out.edit();
+        out.after.run(4000);
+        for (const double force : out.after.applied) REQUIRE(force == 0.0);
+        CHECK(out.after.port().state == control::ForceState::by_hand);
+    }
+    SECTION("a late tick: forces wait for the hand") {
+        EditedOutput out;
+        out.before.taken.insert(600);
+        out.before.run(800);
+        out.edit();
+        out.after.node.feed<Wrench>("wrench", Wrench{{asked, 0.0, 0.0}, {}});
+        out.after.run(4000);
+        for (const double force : out.after.applied) REQUIRE(force == 0.0);
+        CHECK(out.after.port().state == control::ForceState::waits);
+    }
+}
+
+TEST_CASE("returns after late ticks count across an edit") {
+    EditedOutput out;
+    for (int n = 0; n < 3; ++n) out.before.taken.insert(600 + 2000 * n);
+    out.before.run(8000);
+    REQUIRE(out.before.port().state == control::ForceState::on);
+    out.edit();
+    out.after.taken.insert(600);
+    out.after.run(4000);
+    CHECK(out.after.applied[599] == Approx(asked));
+    CHECK(out.after.applied.back() == 0.0);
+    CHECK(out.after.port().state == control::ForceState::by_hand);
+}
+
+TEST_CASE("a node that an edit prepares touches nothing of a device that another drives") {
+    LateOutput out;
+    out.run(1000);
+    REQUIRE(out.port().state == control::ForceState::on);
+    LateOutput next;
+    next.node.host.devices = std::move(out.node.host.devices);
+    next.node.prepare();
+    CHECK(next.port().state == control::ForceState::on);
 }

@@ -36,7 +36,8 @@ int run(const view::ViewedRunChoice& choice) {
             say(stderr, fmt::format("tactus: {}\n", losses[told]));
         }
     };
-    ForceNews news;
+    const LetReturn way = choice.edits ? LetReturn::by_set : LetReturn::by_nothing;
+    ForceNews news(way);
     const auto tell_forces = [&] {
         for (const std::string& text : news.next(session.engine())) {
             line.clear();
@@ -49,7 +50,7 @@ int run(const view::ViewedRunChoice& choice) {
         const auto now = std::chrono::steady_clock::now();
         if (choice.json || !line.is_terminal() || now < next_table) return;
         next_table = now + std::chrono::milliseconds(200);
-        line.show(live_table(session.engine()));
+        line.show(live_table(session.engine(), way));
     };
     const auto tell = [&line](const std::string& said) {
         line.clear();
@@ -60,6 +61,7 @@ int run(const view::ViewedRunChoice& choice) {
                                 choice.seconds ? fmt::format("{} s", *choice.seconds) : "an unlimited time"));
     session.run({tend, tell}, interrupted);
     line.clear();
+    tell_forces();  // what came after the last look
     session.finish();
     tell_losses();
     if (choice.json) say(stdout, session.summary_json());

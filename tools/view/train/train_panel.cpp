@@ -191,8 +191,8 @@ void TrainPanel::draw(const std::shared_ptr<observe::Observer>& observer, bool h
     follow(observer);
     const std::shared_ptr<const RunStatus> status = bench_.status();
     const bool is_over = status->state == RunStatus::State::over;
-    const double force = is_over ? 0.0 : status->force;
-    peak_N_ = std::max(peak_N_, force);
+    const double force = is_over ? 0.0 : status->most;
+    peak_N_ = std::max(peak_N_, status->peak);
     ImGui::PushFont(fonts.bold);
     ImGui::TextWrapped("%s", task_ ? task_->title.c_str() : bench_.title().c_str());
     ImGui::PopFont();

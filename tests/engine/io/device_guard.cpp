@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/device_guard.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <atomic>
+#include <thread>
+
+using namespace tactus;
+using control::Fault, control::ForceState;
+
+TEST_CASE("of more faults than are kept the newest are told and all are counted") {
+    io::DeviceGuard guard;
+    for (int n = 0; n < 100; ++n) {
+        guard.note(Fault::late_commit, ForceState::returns, 10 * n, n);
+        if (n < 99) guard.note(Fault::none, ForceState::on, 10 * n + 5, 0.0);
+    }
+    const auto faults = guard.faults();
+    REQUIRE(faults.size() == io::DeviceGuard::most_faults);
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+        const auto number = static_cast<std::int64_t>(i + 36);
+        CHECK(faults[i].number == number);
+        CHECK(faults[i].tick == 10 * number);
+        CHECK(faults[i].force_N == static_cast<double>(number));
+        CHECK(faults[i].over == (number < 99 ? 10 * number + 5 : -1));
+    }
+}
+
+TEST_CASE("a fault that takes the place of another ends it") {
+    io::DeviceGuard guard;
+    guard.note(Fault::late_commit, ForceState::returns, 10, 4.0);
+    guard.note(Fault::not_finite, ForceState::never, 20, 0.0);
+    const auto faults = guard.faults();
+    REQUIRE(faults.size() == 2);
+    CHECK(faults[0].over == 20);
+    CHECK(faults[1].reason == Fault::not_finite);
+    CHECK(faults[1].over == -1);
+}
+
+TEST_CASE("whoever reads faults while they are written sees each whole") {
+    io::DeviceGuard guard;
+    std::atomic<bool> is_over{false};
+    std::thread ticks([&] {
+        for (int n = 0; n < 20'000; ++n) {
+            guard.note(Fault::late_commit, ForceState::returns, 2 * n, n);
+            guard.note(Fault::none, ForceState::on, 2 * n + 1, 0.0);
+        }
+        is_over = true;
+    });
+    std::int64_t wrong = 0;
+    while (!is_over)
+        for (const io::DeviceFault& fault : guard.faults())
+            wrong += fault.tick != 2 * fault.number || fault.force_N != static_cast<double>(fault.number) ||
+                     (fault.over >= 0 && fault.over != fault.tick + 1);
+    ticks.join();
+    CHECK(wrong == 0);
+}
