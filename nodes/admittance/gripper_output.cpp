@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::nodes {
 
@@ -28,10 +29,14 @@ struct GripperOutput {
         port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_output");
         asked_ = recover;
+        is_new_ = true;
     }
 
     void process(const Tick& tick) noexcept {
         const double second = thumb_speed.connected ? thumb_speed.get() : 0.0;
+        // An edit clears no fault: the node before this one may have held the motors.
+        if (std::exchange(is_new_, false) && port_->state == control::ForceState::by_hand)
+            reason_ = last_ = port_->fault;
         const control::Fault found = fault_of(finger_speed, second);
         if (found != control::Fault::none && reason_ == control::Fault::none) {
             reason_ = last_ = found;
@@ -79,6 +84,7 @@ private:
     DevicePort* port_ = nullptr;
     double asked_ = 0.0, held_s_ = 0.0;
     control::Fault reason_ = control::Fault::none, last_ = control::Fault::none;
+    bool is_new_ = true;
     std::int64_t faults_ = 0;
 };
 

@@ -138,6 +138,8 @@ void Desk::draw() {
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};
     begin_whole_window("desk", fonts_);
     shortcuts();
+    // Also behind the start page: a step or a pause keeps the run from beginning again.
+    plan_.tend(take_ ? nullptr : bench_.observer());
     if (start_page_.is_open) return draw_start();
     // On a narrow window the words of the run need the room of the menus.
     draw_menus(commands_, static_cast<double>(ImGui::GetWindowWidth()) > 1000.0 * fonts_.scale ? 1e9 : 0.0,
@@ -148,7 +150,6 @@ void Desk::draw() {
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
     // Three slices and a scene need more than a small window has.
     slices_.propose(height > 620.0 * fonts_.scale);
-    plan_.tend(take_ ? nullptr : bench_.observer());
     arrange(width);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     for (std::size_t c = 0; c < columns_.size(); ++c) {

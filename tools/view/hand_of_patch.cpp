@@ -34,7 +34,8 @@ std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
     for (const compile::PlanNode& node : plan.nodes) {
         const bool is_of_hand = node.type->role == NodeRole::hand_source || node.type->role == NodeRole::hand_sink;
         const std::string named = device_named_by(node);
-        if (&node == &*source || (is_of_hand && !named.empty() && named == hand.device))
+        // A node without a device means the only one, which must not be opened beside the window's hand.
+        if (&node == &*source || (is_of_hand && (named.empty() || named == hand.device)))
             hand.nodes.push_back(node.name);
     }
     return hand;

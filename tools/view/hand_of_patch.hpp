@@ -26,4 +26,7 @@ double largest_force(const compile::Plan& plan);
 /// None: no node reads a hand.
 std::optional<HandOfPatch> hand_of(const compile::Plan& plan);
 
+/// Takes each of `some` out of `all`, once, where it stands last.
+void without_last(std::vector<std::string>& all, const std::vector<std::string>& some);
+
 }  // namespace tactus::view

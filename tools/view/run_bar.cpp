@@ -82,7 +82,10 @@ void forces_word(const RunStatus& status) {
 bool wants_faults = false;
 
 std::string faults_label(const RunStatus& status) {
-    return fmt::format("{} fault{}###faults", status.faults.size(), status.faults.size() > 1 ? "s" : "");
+    // Of a device the newest 64 are kept.
+    constexpr std::size_t most_kept = 64;
+    return fmt::format("{}{} fault{}###faults", status.faults.size(), status.faults.size() >= most_kept ? "+" : "",
+                       status.faults.size() > 1 ? "s" : "");
 }
 
 /// Faults of the run behind a button, which stays when the run is over.

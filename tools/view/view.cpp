@@ -207,6 +207,8 @@ private:
             // A script says where it fails; a person reads it in the window.
             if (std::exchange(is_wanted_by_script_, false)) throw;
             if (!desk_) open_start_page();
+            // Who did not want to save goes on with what is there: the next way out asks again.
+            bench_->want_edits();
             bench_->tell(error.what(), true);
         }
     }

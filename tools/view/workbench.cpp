@@ -6,6 +6,7 @@
 #include "graph/edit/patch_arrange.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/hand_of_patch.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
 #include <fmt/format.h>
@@ -51,6 +52,8 @@ RunChoice Workbench::choice() const {
     RunChoice choice = choice_;
     choice.patch = editor_->file().string();
     choice.record.clear();
+    // Whoever opens it again takes the hand anew.
+    without_last(choice.overrides.settings, hand_settings_);
     return choice;
 }
 

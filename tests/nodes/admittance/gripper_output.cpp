@@ -63,3 +63,21 @@ TEST_CASE("a gripper's node that an edit prepares does not move the motors or th
     CHECK(next.port().motors.cord == 0.02);
     CHECK(next.port().motors.speed[0] == 0.01);
 }
+
+TEST_CASE("a gripper's node that an edit prepares keeps the fault that is on until a person asks") {
+    Gripper gripper;
+    gripper.node.feed<double>("finger_speed", std::numeric_limits<double>::quiet_NaN());
+    gripper.node.prepare();
+    gripper.node.run(10);
+    REQUIRE(gripper.port().state == ForceState::by_hand);
+    Gripper next;
+    next.node.host.devices = std::move(gripper.node.host.devices);
+    next.node.prepare();
+    next.node.run(10);
+    CHECK(next.port().state == ForceState::by_hand);
+    CHECK(next.port().fault == Fault::not_finite);
+    CHECK(next.port().motors.speed[0] == 0.0);
+    next.node.set("recover", "1");
+    next.node.run(10);
+    CHECK(next.port().state == ForceState::on);
+}

@@ -68,6 +68,22 @@ TEST_CASE("taking the hand of one of two devices leaves the other one") {
         if (node.name == "finger" || node.name == "motor") CHECK(node.texts.at("device")->value == "gripper");
 }
 
+TEST_CASE("a node without a device goes with the hand that the window takes wherever it stands in the file") {
+    const Folder folder;
+    const auto patch = folder.write("pen.toml",
+                                    "wires = [\"hand.pose -> ball.pose\", \"ball.wrench -> out.wrench\"]\n"
+                                    "[devices.pen]\ndriver = \"simulated\"\n"
+                                    "[nodes.out]\ntype = \"device_output\"\nrate = \"1 kHz\"\n"
+                                    "[nodes.ball]\ntype = \"sphere_contact\"\nrate = \"1 kHz\"\n"
+                                    "[nodes.hand]\ntype = \"device_input\"\nrate = \"1 kHz\"\n");
+    Workbench bench(choice_of(patch));
+    REQUIRE(bench.use_hand_of_window(true));
+    for (const compile::PlanNode& node : bench.plan()->nodes)
+        if (node.name != "ball") CHECK(node.texts.at("device")->value == "mouse");
+    // Whoever opens the patch again has its own hand.
+    CHECK(bench.choice().overrides.settings.empty());
+}
+
 TEST_CASE("the run begins again with the hand of the window", "[live]") {
     const Folder folder;
     ++haptic::window_hand().windows;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 namespace tactus::picture {
 
@@ -181,8 +182,8 @@ display::Picture& SceneModel::update() {
     until_ = std::chrono::steady_clock::now() + most_work;
     if (making_.is_ready()) try {
             take_body(making_.take());
-        } catch (const Error& error) {
-            do_not_make(made_body_, error.message());
+        } catch (const std::exception& error) {
+            do_not_make(made_body_, error.what());
         }
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};

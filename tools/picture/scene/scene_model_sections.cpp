@@ -29,8 +29,9 @@ std::span<const display::GreyImage> SceneModel::densities_of(const std::string& 
             return images;
         });
     if (!waits_for_files_ && !known.reading.is_ready()) return {};
-    known.images = known.reading.take();
+    // Not again with each picture, where it fails.
     known.is_read = true;
+    known.images = known.reading.take();
     return known.images;
 }
 

@@ -75,7 +75,7 @@ void FileDialog::tools() {
     ImGui::SameLine();
     bool hidden = chooser_->shows_hidden();
     const ImGuiIO& io = ImGui::GetIO();
-    const bool is_toggled = io.KeyCtrl && ImGui::IsKeyPressed('H', false);
+    const bool is_toggled = !chooser_->replaced && io.KeyCtrl && ImGui::IsKeyPressed('H', false);
     if (ImGui::Checkbox("hidden files", &hidden)) chooser_->show_hidden(hidden);
     else if (is_toggled) chooser_->show_hidden(!chooser_->shows_hidden());
     mark_spot("hidden files");
@@ -131,7 +131,8 @@ void FileDialog::places() {
         if (folder.empty() || !fs::is_directory(folder, ignored)) return;
         // Letters and arrows belong to the name.
         ++number;
-        const bool is_pressed = ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed('0' + number, false);
+        const bool is_pressed =
+            !chooser_->replaced && ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed('0' + number, false);
         if (ImGui::Selectable(name) || is_pressed) chooser_->go_to(folder);
         mark_spot(std::string("place ") + name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", folder.c_str());

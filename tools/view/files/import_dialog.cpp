@@ -40,7 +40,7 @@ std::optional<double> hounsfield(const std::string& text) {
 }  // namespace
 
 void ImportDialog::open(const fs::path& scan, const fs::path& folder, Done done) {
-    if (import_.is_busy()) return;
+    if (is_open_) return;
     scan_ = fs::absolute(scan);
     done_ = std::move(done);
     out_ = free_bone(scan_, folder).string();
@@ -123,7 +123,9 @@ void ImportDialog::show_progress(const Fonts& fonts) {
 
 void ImportDialog::draw(const Fonts& fonts) {
     if (!is_open_) return;
-    if (std::exchange(wants_open_, false)) ImGui::OpenPopup(title);
+    // A question that came meanwhile has closed it.
+    const bool is_closed = !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+    if (std::exchange(wants_open_, false) || is_closed) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(vec({560.0 * fonts.scale, 0.0}));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts.scale, 6.0 * fonts.scale}));

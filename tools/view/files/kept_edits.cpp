@@ -74,8 +74,14 @@ std::string KeptEdits::tend(const edit::PatchEditor& editor, bool has_unsaved_ed
         if (!problem_.empty() && problem_ != told_) return told_ = problem_;
     }
     if (editor.is_saved()) {
-        // Who undoes what was restored may want it later.
         if (!was_restored_) remove();
+        else {
+            // Who undoes what was restored may want it later: new edits get a file of their own.
+            let_go();
+            file_.clear();
+            was_restored_ = false;
+            kept_version_ = new_version_ = -1;
+        }
         return {};
     }
     if (!has_unsaved_edits || editor.version() == kept_version_) return {};

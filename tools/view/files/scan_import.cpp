@@ -29,7 +29,10 @@ std::string words_for(const bone::ImportSummary& made, const fs::path& out) {
 
 }  // namespace
 
-ScanImport::~ScanImport() { stops_ = true; }
+ScanImport::~ScanImport() {
+    stops_ = true;
+    if (work_.valid()) work_.wait();
+}
 
 void ScanImport::begin(const bone::ImportOptions& options, const fs::path& out) {
     stops_ = false;

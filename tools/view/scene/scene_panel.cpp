@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace tactus::view {
@@ -37,7 +38,7 @@ bool is_case_of(const SceneOutline& one, const SceneOutline& other) {
 void ScenePanel::attempt(const std::function<void()>& what) {
     try {
         what();
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         bench_.tell(error.what(), true);
     }
 }
@@ -229,7 +230,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         draw_measured({{}, marks_}, tone::chosen, paint, corner, 1.0 / dense);
         draw_hand(paint, corner, size, 1.0 / dense);
         if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         if (problem_ != error.what()) bench_.tell(problem_ = error.what(), true);
         ImGui::TextWrapped("%s", problem_.c_str());
     }

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hand of the patch: that of the window in place of the patch's own.
 #include "tools/view/hand_of_patch.hpp"
+#include "tools/view/plan/case_run.hpp"
 #include "tools/view/workbench.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 namespace tactus::view {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -33,24 +38,45 @@ bool Workbench::use_hand_of_window(bool wanted) {
         const std::vector<std::string> nodes = hand_of(*plan_).value().nodes;
         for (const std::string& node : nodes) of_hand.push_back(node + ".device=" + device);
         settings.insert(settings.end(), of_hand.begin(), of_hand.end());
-    } else
-        // What the command line said holds again.
-        for (const std::string& setting : hand_settings_)
-            if (const auto last = std::find(settings.rbegin(), settings.rend(), setting); last != settings.rend())
-                settings.erase(std::next(last).base());
+    } else without_last(settings, hand_settings_);  // what the command line said holds again
     if (const auto problem = check(editor_->text())) {
         settings = before;
         tell(*problem, true);
         return false;
     }
     hand_settings_ = std::move(of_hand);
+    if (is_recording())
+        tell(fmt::format("the recording into {} ends here: the run begins again", last_take_.string()), true);
     run_.reset();
     adopt();
     return true;
 }
 
+void without_last(std::vector<std::string>& all, const std::vector<std::string>& some) {
+    for (const std::string& one : some)
+        if (const auto last = std::find(all.rbegin(), all.rend(), one); last != all.rend())
+            all.erase(std::next(last).base());
+}
+
 void Workbench::begin_with_hand(bool of_window) {
+    const std::vector<std::string> assets = choice_.overrides.assets;
+    // The run goes on with the plan that it has written.
+    const auto scene = std::ranges::find(written_.nodes, "case_scene", &patch::PatchNode::type);
+    const fs::path folder = status()->folder;
+    std::error_code none;
+    if (scene != written_.nodes.end() && !folder.empty()) {
+        const auto plan = std::ranges::find(scene->settings, "plan", &OptionText::name);
+        const auto file = std::ranges::find(scene->settings, "file", &OptionText::name);
+        const fs::path written = folder / (file == scene->settings.end() ? "case.plan.json" : file->text);
+        const fs::path copy = free_plan(folder);
+        if (plan != scene->settings.end() && fs::copy_file(written, copy, none)) {
+            std::erase_if(choice_.overrides.assets,
+                          [&](const std::string& given) { return given.starts_with(plan->text + "="); });
+            choice_.overrides.assets.push_back(plan->text + "=" + fs::absolute(copy).string());
+        }
+    }
     if (use_hand_of_window(of_window)) run();
+    else choice_.overrides.assets = assets;
 }
 
 }  // namespace tactus::view

@@ -343,6 +343,8 @@ bool Workbench::replace_asset(const std::string& asset, const fs::path& file) {
         },
         fmt::format("{} is now {}", asset, path));
     if (!is_made) choice_.overrides.assets = before;
+    // The text may have named the file already, and the override hid it.
+    else if (before.size() != choice_.overrides.assets.size()) adopt_text();
     return is_made;
 }
 

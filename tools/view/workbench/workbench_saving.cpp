@@ -91,7 +91,8 @@ bool Workbench::save_as(const std::string& name, Existing existing) {
     try {
         if (name.empty()) throw Error("a file needs a name");
         fs::path file = fs::absolute(name);
-        if (file.extension() != ".toml") file += ".toml";
+        // Whoever replaces a file has named it whole.
+        if (file.extension() != ".toml" && existing == Existing::refuse) file += ".toml";
         if (session::is_of_library(file))
             throw Error(fmt::format("{}: this file belongs to the library; choose another", file.string()));
         if (fs::exists(fs::symlink_status(file)) && existing == Existing::refuse)
