@@ -84,7 +84,7 @@ TEST_CASE("pictures of the library look as they did", "[slow]") {
           Case{"press-fragments", "--seconds 1.6 --view-from iso"},
           Case{"gripper-on-arm", "--seconds 4 --view-from iso"}, Case{"gripper-twum", "--seconds 1 --no-legend"},
           Case{"gripper-wqsm", "--seconds 1 --no-legend"},
-          Case{"burr-training", "--seconds 6 --view-from iso --no-legend"},
+          Case{"burr-training", "--seconds 6 --view-from top --no-legend"},
           Case{"fragments", "--seconds 2 --view-from iso --no-legend"}, Case{"look-around", "--seconds 2 --no-legend"},
           Case{"saw-task", "--seconds 3 --view-from iso --no-legend"},
           Case{"saw-training", "--seconds 4 --view-from iso --no-legend"},
