@@ -51,7 +51,7 @@ public:
         ::setenv("UMOCKDEV_DIR", folder_.c_str(), 1);
         ::setenv("XDG_CONFIG_HOME", config_.c_str(), 1);
         ::setenv("TACTUS_DEVICE_HOST", host_.c_str(), 1);
-        ::setenv("LD_PRELOAD", "libumockdev-preload.so.0", 1);
+        ::setenv("LD_PRELOAD", TACTUS_MOCK_PRELOAD, 1);
     }
     ~Mock() {
         for (const char* name : {"UMOCKDEV_DIR", "XDG_CONFIG_HOME", "TACTUS_DEVICE_HOST", "LD_PRELOAD"})
@@ -183,6 +183,6 @@ TEST_CASE("a wheel that is unplugged is invalid, and pushes again when it is bac
 
 #else
 
-TEST_CASE("a wheel of umockdev", "[live]") { tactus::test::skip("libumockdev-dev is missing"); }
+TEST_CASE("a wheel of umockdev", "[live]") { tactus::test::skip("umockdev or libumockdev-dev is missing"); }
 
 #endif
