@@ -66,6 +66,8 @@ public:
     DeskWishes wishes;
     /// Lays the start page over what is open, which stays as it is until something is chosen.
     void open_start_page();
+    /// What is being typed in the patch becomes an edit, as if its field had been left: before it is saved or left behind.
+    void end_typing();
     /// A file dropped on the window.
     void take_dropped(const std::filesystem::path& file);
 
@@ -105,6 +107,7 @@ private:
     std::vector<Command> all_commands();
     void ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done);
     void ask_open();
+    void save();
     void ask_save_as();
     void ask_scan();
     void ask_import();

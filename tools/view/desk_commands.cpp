@@ -24,8 +24,10 @@ void Desk::add_file_commands(std::vector<Command>& all) {
     all.push_back({"File", "New patch", "Ctrl+N", "empty canvas begin", [this] { wishes.new_patch = true; }});
     all.push_back({"File", "Open...", "Ctrl+O", "patch take plan file", [this] { ask_open(); }});
     all.push_back({"File", "Start page", "", "examples recent home", [this] { wishes.start_page = true; }});
-    all.push_back({"File", "Save", "Ctrl+S", "write file", [this] { bench_.save(); },
-                   [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled()); }, nullptr, true});
+    all.push_back(
+        {"File", "Save", "Ctrl+S", "write file", [this] { save(); },
+         [this] { return !take_ && (!bench_.editor().is_saved() || bench_.is_untitled() || nodes_.has_begun_edit()); },
+         nullptr, true});
     all.push_back(
         {"File", "Save as...", "Ctrl+Shift+S", "write copy another name", [this] { ask_save_as(); }, is_patch});
     all.push_back(
@@ -207,7 +209,19 @@ void Desk::ask_open() {
              [this](const fs::path& path) { wishes.open = path; });
 }
 
+void Desk::end_typing() {
+    if (take_) return;
+    nodes_.end_typing(patch_.selected);
+    patch_.end_typing();
+}
+
+void Desk::save() {
+    end_typing();
+    bench_.save();
+}
+
 void Desk::ask_save_as() {
+    end_typing();
     std::error_code ignored;
     const fs::path file = bench_.editor().file();
     const bool is_own = !bench_.is_untitled() && !session::is_of_library(file);

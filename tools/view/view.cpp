@@ -164,7 +164,13 @@ public:
 private:
     /// Called on every way out of a patch. The patch of a take is read-only.
     void keep_edits() noexcept {
-        if (bench_ && !take_) bench_->keep_edits();
+        if (!bench_ || take_) return;
+        try {
+            if (desk_) desk_->end_typing();
+        } catch (const std::exception&) {
+            // What was edited before is kept.
+        }
+        bench_->keep_edits();
     }
 
     void close() {
@@ -192,6 +198,7 @@ private:
 
     /// Asks first when edits or a run would be left behind.
     void wish(DeskWishes wishes) {
+        desk_->end_typing();
         if (wishes.start_page) return desk_->open_start_page();
         asked_ = std::move(wishes);
         using Leaving = Questions::Leaving;
@@ -234,6 +241,7 @@ private:
     /// True when the run continues after the window closes.
     std::optional<bool> farewell() {
         using Farewell = Desk::Farewell;
+        if (window_.wants_to_close()) desk_->end_typing();
         const bool runs = bench_->running() && !bench_->running()->is_over();
         // A run of limited length closes the window at its end; a script is run to its end.
         if (choice_.seconds && bench_->running() && !runs && (!script_ || script_->is_done())) return false;

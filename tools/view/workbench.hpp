@@ -265,6 +265,7 @@ private:
     patch::PatchWindow window_;
     std::string running_text_, last_added_;
     bool is_broken_ = false;
+    bool was_never_saved_ = false;  // a new patch: a file of its name is another window's
     std::optional<bool> wanted_hand_;
     std::vector<std::string> hand_settings_;  // with which the window has taken the hand, among the overrides
     std::shared_ptr<observe::Observer> observer_;

@@ -109,3 +109,45 @@ TEST_CASE("a patch of the library that is saved in the window gets a name, and t
     CHECK(slurp(patches / "touch-sphere.toml") == before);
     CHECK_FALSE(fs::exists(patches / "touch-sphere.unsaved.toml"));
 }
+
+TEST_CASE("what is being typed is in the file that is saved, and is asked about when the window closes", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    const std::string type_name = "stop\nuntil over\nframes 3\npress tone\npress name\nkey ctrl+a\ntype lead\n";
+    const fs::path patch = folder.write("voice.toml", voice);
+
+    // The field is never left.
+    folder.write("script", type_name + "key ctrl+s\nframes 3\ntext seen.toml\nclose\n");
+    Outcome done = on(display, folder, run_voice);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(slurp(patch).find("[nodes.lead]") != std::string::npos);
+    CHECK(slurp(patch) == slurp(folder.path / "seen.toml"));
+
+    folder.write("voice.toml", voice);
+    folder.write("script", type_name + "shut\nframes 3\npress \"save edits\"\nwait 30\n");
+    done = on(display, folder, run_voice);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(slurp(patch).find("[nodes.lead]") != std::string::npos);
+
+    folder.write("voice.toml", voice);
+    folder.write("script", type_name + "close\n");
+    done = on(display, folder, run_voice);
+    INFO(done.err);
+    CHECK(done.code == 0);
+    CHECK(slurp(folder.path / "voice.unsaved.toml").find("[nodes.lead]") != std::string::npos);
+}
+
+TEST_CASE("the words of a comment that is being written are kept when the window closes", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("script",
+                 "stop\nuntil over\nframes 3\nkey ctrl+p\ntype comment\nkey enter\nframes 3\nkey ctrl+a\n"
+                 "type louder\nscreenshot writing.png\nclose\n");
+    const Outcome done = on(display, folder, run_voice);
+    INFO(done.err);
+    CHECK(done.code == 0);
+    CHECK(slurp(folder.path / "voice.unsaved.toml").find("louder") != std::string::npos);
+}

@@ -59,7 +59,7 @@ std::string leave_edit(const RunChoice& choice, const std::string& frequency) {
 
 /// What a window does between pictures, until something holds or it takes too long.
 template <class Holds>
-bool tend_until(Workbench& bench, Holds holds) {
+bool tended_until(Workbench& bench, Holds holds) {
     for (int i = 0; i < 1000 && !holds(); ++i) {
         bench.tend();
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -77,7 +77,7 @@ TEST_CASE("a window that is killed has kept its edits shortly before") {
     if (process == 0) {
         Workbench bench(choice_of(patch));
         bench.set("tone", "frequency", "220 Hz");
-        tend_until(bench, [&] { return fs::exists(kept) && fs::file_size(kept) > 0; });
+        tended_until(bench, [&] { return fs::exists(kept) && fs::file_size(kept) > 0; });
         ::kill(::getpid(), SIGKILL);
     }
     int status = 0;
@@ -97,9 +97,9 @@ TEST_CASE("edits kept while a window works go when they are saved or undone and 
     bench.tend();
     CHECK_FALSE(fs::exists(kept));
     const auto is_kept = [&] { return fs::exists(kept) && slurp(kept) == bench.editor().text(); };
-    REQUIRE(tend_until(bench, is_kept));
+    REQUIRE(tended_until(bench, is_kept));
     REQUIRE(bench.set("tone", "frequency", "330 Hz"));
-    REQUIRE(tend_until(bench, is_kept));
+    REQUIRE(tended_until(bench, is_kept));
     bench.tend();
     CHECK(find_unsaved(patch).size() == 1);
     Workbench second(choice_of(patch));
@@ -107,9 +107,9 @@ TEST_CASE("edits kept while a window works go when they are saved or undone and 
     CHECK_FALSE(second.offer());
     while (bench.undo()) {
     }
-    CHECK(tend_until(bench, [&] { return !fs::exists(kept); }));
+    CHECK(tended_until(bench, [&] { return !fs::exists(kept); }));
     REQUIRE(bench.redo());
-    REQUIRE(tend_until(bench, is_kept));
+    REQUIRE(tended_until(bench, is_kept));
     REQUIRE(bench.save());
     CHECK_FALSE(fs::exists(kept));
     bench.tend();
@@ -141,6 +141,29 @@ TEST_CASE("edits of a patch that never was saved are offered to the next new pat
     REQUIRE(bench->save_as("mine"));
     CHECK_FALSE(fs::exists("untitled-2.unsaved.toml"));
     fs::current_path(before);
+}
+
+TEST_CASE("two windows with new patches in one folder do not take over each other's file") {
+    const Folder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path);
+    const auto first = Workbench::untitled({}), second = Workbench::untitled({});
+    fs::current_path(before);
+    REQUIRE_FALSE(first->add_node("sine", "48 kHz").empty());
+    REQUIRE_FALSE(second->add_node("constant", "60 Hz").empty());
+    second->tend();
+    const std::string theirs = first->editor().text(), mine = second->editor().text();
+    REQUIRE(first->save_as((folder.path / "untitled").string()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));  // a file is looked at twice a second
+    second->tend();
+    CHECK(second->editor().text() == mine);
+    CHECK(second->is_untitled());
+    CHECK_FALSE(second->save());
+    CHECK(second->wants_name);
+    CHECK(slurp(folder.path / "untitled.toml") == theirs);
+    CHECK_FALSE(second->save_as((folder.path / "untitled").string()));
+    REQUIRE(second->save_as((folder.path / "mine").string()));
+    CHECK(slurp(folder.path / "mine.toml") == mine);
 }
 
 TEST_CASE("edits that are not saved are kept beside the patch, offered to the next window, and restored as an edit") {

@@ -199,21 +199,30 @@ void NodePanel::read_fields(const PictureNode& node) {
         fields_ = parameters_of(**type, bench_.written(), *known);
 }
 
-void NodePanel::leave() {
-    const std::string node = std::exchange(shown_, {}), param = std::exchange(turning_, {});
+void NodePanel::end_typing(std::string& selected) {
+    const std::string node = shown_, param = std::exchange(turning_, {});
     const bool renames = std::exchange(is_renaming_, false);
     if (is_read_only || bench_.picture().find(node) < 0) return;
     constexpr std::string_view device = "device ";
-    if (param.starts_with(node + ".")) bench_.set(node, param.substr(node.size() + 1), turned_);
-    else if (param.starts_with(device)) {
+    if (param.starts_with(node + ".")) {
+        const std::string name = param.substr(node.size() + 1);
+        const auto field = std::ranges::find(fields_, name, &ParameterField::name);
+        // A value that is refused does not stay in the run.
+        if (!bench_.set(node, name, turned_) && field != fields_.end() && field->is_live)
+            bench_.turn(node, name, field->text);
+    } else if (param.starts_with(device)) {
         const std::size_t dot = param.find('.');
         bench_.set_device(param.substr(device.size(), dot - device.size()), param.substr(dot + 1), turned_);
     }
-    if (renames && renaming_ != node) bench_.rename(node, renaming_);
+    if (renames && renaming_ != node && bench_.rename(node, renaming_) && selected == node) selected = renaming_;
 }
 
 void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
-    if (shown_ != selected) leave();
+    // Another node is chosen: what was being typed for the one before is set there.
+    if (shown_ != selected) {
+        end_typing(selected);
+        shown_.clear();
+    }
     const int index = bench_.picture().find(selected);
     if (index < 0) return dim("Click a node of the patch to show its parameters here.");
     if (version_ != bench_.plan_version() || shown_ != selected) {

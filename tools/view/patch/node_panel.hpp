@@ -21,6 +21,9 @@ public:
 
     void draw_parameters(std::string& selected, const Fonts& fonts);
     void draw_catalogue(std::string& selected);
+    /// Sets what is being typed or turned, as if its field had been left. `selected` follows a new name of the node.
+    void end_typing(std::string& selected);
+    bool has_begun_edit() const { return !turning_.empty() || is_renaming_; }
 
     /// Opens a dialog for a file; the window sets it.
     std::function<void(const std::string& title, FileChooser chooser,
@@ -38,8 +41,6 @@ private:
     void read_fields(const PictureNode& node);
     /// Why a parameter cannot be set here; empty: it can.
     std::string refusal(const ParameterField& field, const std::string& node) const;
-    /// Another node is chosen: what was being typed or turned for the one before is set there.
-    void leave();
     void quantity(const ParameterField& field, const std::string& node);
 
     Workbench& bench_;

@@ -44,6 +44,8 @@ public:
     void align(Align how);
     void nudge(Point by);
     void add_comment(std::optional<Point> at = std::nullopt);
+    /// Keeps the words of the comment that is being written.
+    void end_typing() { keep_comment(""); }
     void make_sub_patch();
     void open_palette();
     /// What can be done with what the patch has: wires, comments, sub-patches, colours. `is_seen`: the panel is shown.

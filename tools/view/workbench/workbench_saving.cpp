@@ -39,12 +39,14 @@ std::unique_ptr<Workbench> Workbench::untitled(RunChoice choice) {
     choice.text = "";
     choice.overrides = {};
     choice.record.clear();
-    return std::make_unique<Workbench>(choice);
+    auto bench = std::make_unique<Workbench>(choice);
+    bench->was_never_saved_ = true;
+    return bench;
 }
 
 bool Workbench::is_untitled() const {
     std::error_code ignored;
-    return !fs::exists(editor_->file(), ignored);
+    return was_never_saved_ || !fs::exists(editor_->file(), ignored);
 }
 
 bool Workbench::save() {
@@ -106,6 +108,7 @@ bool Workbench::save_as(const std::string& name, Existing existing) {
         editor_->save_as(file, [&](std::string_view text) {
             return is_of_library ? edit::with_absolute_paths(text, folder) : edit::with_paths_moved(text, folder, to);
         });
+        was_never_saved_ = false;
         if (run_) run_->move_to(file);
         written_at_.clear();
         wants_name = false;
@@ -203,7 +206,8 @@ void Workbench::look_at_file() {
     const auto now = std::chrono::steady_clock::now();
     if (now - looked_ < between) return;
     looked_ = now;
-    std::vector<fs::path> files{editor_->file()};
+    std::vector<fs::path> files;
+    if (!was_never_saved_) files.push_back(editor_->file());
     if (plan_)
         for (const fs::path& part : patch::part_files(plan_->patch)) files.push_back(part);
     else  // a sub-patch that is wrong may be mended
@@ -247,7 +251,7 @@ void Workbench::keep_beside(const std::string& text) {
 void Workbench::take_over_file() {
     try {
         const std::string mine = editor_->is_saved() ? std::string() : editor_->text();
-        const bool is_new = editor_->reload();
+        const bool is_new = !was_never_saved_ && editor_->reload();
         if (is_new && !mine.empty()) keep_beside(mine);
         // A sub-patch may have been saved instead.
         const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
