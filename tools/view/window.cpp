@@ -104,9 +104,10 @@ void Window::listen() {
         // Dear ImGui repeats keys by itself.
         if (key < 0 || action == GLFW_REPEAT) return;
         const char* const name = KeyLetters::is_printable(key) ? glfwGetKeyName(key, scancode) : nullptr;
-        KeyLetters& letters = static_cast<Listener*>(glfwGetWindowUserPointer(w))->letters;
+        auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(w));
         const bool is_down = action == GLFW_PRESS;
-        queue(w, {Kind::key, 0.0, 0.0, letters.code(key, scancode, name, is_down), is_down});
+        if (!listener.held.takes(scancode, is_down)) return;
+        queue(w, {Kind::key, 0.0, 0.0, listener.letters.code(key, scancode, name, is_down), is_down});
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned letter) {
         queue(w, {Kind::letter, 0.0, 0.0, static_cast<int>(letter), false});
@@ -123,6 +124,7 @@ void Window::listen() {
     });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
         if (!focused) leave(w);
+        static_cast<Listener*>(glfwGetWindowUserPointer(w))->held.focus(focused != 0);
         queue(w, {Kind::focus, 0.0, 0.0, 0, focused != 0});
         ImGui_ImplGlfw_WindowFocusCallback(w, focused);
     });
@@ -193,6 +195,7 @@ void Window::rescale(double scale) {
 
 bool Window::begin() {
     glfwPollEvents();
+    listener_.held.tend();
     if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         return false;

@@ -4,6 +4,7 @@
 
 #include "devices/display/offscreen.hpp"
 #include "tools/view/frame/damage.hpp"
+#include "tools/view/frame/held_keys.hpp"
 #include "tools/view/frame/key_letters.hpp"
 #include "tools/view/input_queue.hpp"
 
@@ -79,6 +80,7 @@ private:
     struct Listener {
         InputQueue input;
         KeyLetters letters;
+        HeldKeys held;
         std::vector<std::string> dropped;
         bool was_left = false;  // at once, not after the events that wait
         bool is_uncovered = false;  // another window lay over it

@@ -156,26 +156,42 @@ Picture Person::look() const {
     return picture;
 }
 
-bool Person::sees_window(const std::string& title, double most_s) const {
+unsigned long Person::window(const std::string& title) const {
     using Tree = int(void*, unsigned long, unsigned long*, unsigned long*, unsigned long**, unsigned*);
     const auto root = x_->find<unsigned long(void*)>(x_->x11, "XDefaultRootWindow")(x_->display);
+    unsigned long top = 0, parent = 0, *children = nullptr, found = 0;
+    unsigned count = 0;
+    x_->find<Tree>(x_->x11, "XQueryTree")(x_->display, root, &top, &parent, &children, &count);
+    for (unsigned i = 0; i < count; ++i) {
+        char* name = nullptr;
+        x_->find<int(void*, unsigned long, char**)>(x_->x11, "XFetchName")(x_->display, children[i], &name);
+        if (!name) continue;
+        if (std::string(name).find(title) != std::string::npos) found = children[i];
+        x_->x("XFree", static_cast<void*>(name));
+    }
+    if (children) x_->x("XFree", static_cast<void*>(children));
+    return found;
+}
+
+bool Person::sees_window(const std::string& title, double most_s) const {
     for (double waited = 0.0; waited < most_s; waited += 0.1) {
-        unsigned long top = 0, parent = 0, *children = nullptr;
-        unsigned count = 0;
-        x_->find<Tree>(x_->x11, "XQueryTree")(x_->display, root, &top, &parent, &children, &count);
-        bool is_found = false;
-        for (unsigned i = 0; i < count; ++i) {
-            char* name = nullptr;
-            x_->find<int(void*, unsigned long, char**)>(x_->x11, "XFetchName")(x_->display, children[i], &name);
-            if (!name) continue;
-            is_found = is_found || std::string(name).find(title) != std::string::npos;
-            x_->x("XFree", static_cast<void*>(name));
-        }
-        if (children) x_->x("XFree", static_cast<void*>(children));
-        if (is_found) return true;
+        if (window(title) != 0) return true;
         wait(0.1);
     }
     return false;
+}
+
+void Person::give_keyboard(const std::string& title) {
+    constexpr int back_to_parent = 2;
+    x_->x("XSetInputFocus", x_->display, window(title), back_to_parent, 0ul);
+    x_->x("XFlush", x_->display);
+}
+
+void Person::take_keyboard() {
+    constexpr unsigned long nobody = 0;
+    constexpr int back_to_nobody = 0;
+    x_->x("XSetInputFocus", x_->display, nobody, back_to_nobody, 0ul);
+    x_->x("XFlush", x_->display);
 }
 
 }  // namespace tactus::test

@@ -41,8 +41,14 @@ public:
     Picture look() const;
     /// Waits until a window of that title is there; false after that time.
     bool sees_window(const std::string& title, double most_s) const;
+    /// Gives the keyboard to the window of that title, or takes it from all.
+    void give_keyboard(const std::string& title);
+    void take_keyboard();
 
 private:
+    /// Of the window with that title; 0: there is none.
+    unsigned long window(const std::string& title) const;
+
     struct Libraries;
     std::unique_ptr<Libraries> x_;
 };
