@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/recovery/shaken_hand.hpp"
 
-#include "dsp/core/random.hpp"
+#include "dsp/control/energy_cap.hpp"
 #include "engine/run/clock.hpp"
 
 #include <fmt/format.h>
@@ -32,9 +32,13 @@ constexpr double let_go_s = 12e-3, watchdog_s = 16e-3, stale_s = 22e-3;
 // 2 * EnergyCap::calm_m_s, and 5 % of a bounce for the extrapolated motion of its last holds.
 constexpr double refunded = 2.0, refunded_below = 0.1;  // N·s/m, m/s
 constexpr double of_taken = 0.05;
-// The motion of a slow hand is known to half the diagonal of an encoder step, 17 µm, twice; 20 ms of refund may be left of
-// before the contact.
-constexpr double known_J = device_force * 2.0 * 17.4e-6 + refunded * refunded_below * refunded_below * 0.02;
+// The motion of a slow hand is known to half the diagonal of an encoder step, 17 µm, on both sides: once in a contact, and
+// each time that the hand turns round. 20 ms of refund may be left of before the contact.
+constexpr double unseen = 2.0 * 17.4e-6;  // m
+constexpr double known_J = device_force * unseen + refunded * refunded_below * refunded_below * 0.02;
+// A hand at rest counts as held by its owner until it moves at 2 * EnergyCap::slow_m_s; two ticks later the force is less.
+constexpr double found_out = 2.0 * control::EnergyCap::slow_m_s + 2.0 * tick_s * device_force / OperatedMass::mass;
+constexpr double trusted_J = 0.5 * OperatedMass::mass * found_out * found_out;
 
 }  // namespace
 
@@ -276,7 +280,8 @@ void ShakenHand::tick() {
 void ShakenHand::pass() {
     for (const bool looks : {true, false}) {
         const double force = device_.given.force.x;
-        const double given = hand_.move(force, 0.5 * tick_s);
+        const double before = hand_.v, given = hand_.move(force, 0.5 * tick_s);
+        if (before * hand_.v < 0.0) allowed_J_ += std::abs(force) * unseen;
         if (force != 0.0 && std::abs(hand_.v) < refunded_below)
             damped_J_ += refunded * hand_.v * hand_.v * 0.5 * tick_s;
         gain(given);
@@ -290,7 +295,7 @@ void ShakenHand::pass() {
 void ShakenHand::gain(double given_J) {
     gained_J_ += given_J;
     taken_J_ = std::max(taken_J_, -gained_J_);
-    const double bound = known_J + damped_J_ + allowed_J_ + of_taken * taken_J_;
+    const double bound = known_J + trusted_J + damped_J_ + allowed_J_ + of_taken * taken_J_;
     if (is_capped_) {
         counts_.most_gained_J = std::max(counts_.most_gained_J, gained_J_);
         counts_.most_allowed_J = std::max(counts_.most_allowed_J, gained_J_ - bound);
