@@ -29,7 +29,7 @@ ShakenCounts shake(std::uint64_t first, std::uint64_t past, double seconds) {
 
 }  // namespace
 
-TEST_CASE("a hand that everything happens to keeps its limits and its faults and its energy") { shake(1, 13, 60.0); }
+TEST_CASE("a hand that everything happens to keeps its limits and its faults and its energy") { shake(1, 11, 60.0); }
 
 TEST_CASE("many hands that everything happens to keep their limits and faults and energy", "[slow]") {
     const ShakenCounts all = shake(100, 200, 120.0);

@@ -32,6 +32,7 @@ constexpr double let_go_s = 12e-3, watchdog_s = 16e-3, stale_s = 22e-3;
 // 2 * EnergyCap::calm_m_s, and 5 % of a bounce for the extrapolated motion of its last holds.
 constexpr double refunded = 2.0, refunded_below = 0.1;  // N·s/m, m/s
 constexpr double of_taken = 0.05;
+constexpr int over_after = 6;  // halves of a tick without force, after which a contact is over
 // The motion of a slow hand is known to half the diagonal of an encoder step, 17 µm, on both sides: once in a contact, and
 // each time that the hand turns round. 20 ms of refund may be left of before the contact.
 constexpr double unseen = 2.0 * 17.4e-6;  // m
@@ -303,7 +304,9 @@ void ShakenHand::gain(double given_J) {
             broken_ = fmt::format("a contact gave {:.3g} mJ more than it took, {:.3g} mJ are allowed", 1e3 * gained_J_,
                                   1e3 * bound);
     }
-    if (device_.given.force.x == 0.0) gained_J_ = taken_J_ = damped_J_ = allowed_J_ = 0.0;
+    // A force that turns round passes zero in the middle of a contact.
+    without_force_ = device_.given.force.x == 0.0 ? without_force_ + 1 : 0;
+    if (without_force_ > over_after) gained_J_ = taken_J_ = damped_J_ = allowed_J_ = 0.0;
 }
 
 std::string ShakenHand::run(double seconds) {

@@ -119,6 +119,7 @@ private:
     std::int64_t edit_at_ = -1;  // when the plan changes, at the earliest; −1: no edit is on its way
 
     double gained_J_ = 0.0, taken_J_ = 0.0, damped_J_ = 0.0, allowed_J_ = 0.0;  // of this contact
+    int without_force_ = 0;  // halves of a tick
 };
 
 }  // namespace tactus::test
