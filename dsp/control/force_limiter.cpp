@@ -51,9 +51,13 @@ void ForceLimiter::start_from(const Wrench& committed) noexcept {
 }
 
 void ForceLimiter::fail(Fault reason) noexcept {
-    // A late tick says only that something is wrong: a reason that says what replaces it.
-    if (is_lateness(fault_) && reason != Fault::none && !is_lateness(reason)) fault_ = reason;
-    if (fault_ != Fault::none) return;
+    // A late tick says only that something is wrong: a reason that says what replaces it. What is not finite must not be
+    // forgotten for a fault that passes.
+    const bool replaces = reason == Fault::not_finite || (is_lateness(fault_) && !is_lateness(reason));
+    if (fault_ != Fault::none) {
+        if (replaces && reason != Fault::none) fault_ = reason;
+        return;
+    }
     fault_ = reason;
     fade_from_ = output_;
     faded_s_ = 0.0;
@@ -68,7 +72,9 @@ void ForceLimiter::hold_off(bool wanted) noexcept {
     if (wanted == held_off_) return;
     held_off_ = wanted;
     small_ticks_ = 0;
-    ramped_s_ = slow_ramp_s_ = 0.0;
+    // Forces that had not come in yet still come in slowly.
+    if (ramped_s_ >= ramp()) slow_ramp_s_ = 0.0;
+    ramped_s_ = 0.0;
     if (!wanted || fault_ != Fault::none) return;
     fade_from_ = output_;
     faded_s_ = 0.0;

@@ -73,15 +73,15 @@ public:
     /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
     void start_from(const Wrench& committed) noexcept;
 
-    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only lateness, which
-    /// names no cause, is replaced by a later one.
+    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; but lateness, which names
+    /// no cause, is replaced by a later one, and every reason by a force that is not finite.
     void fail(Fault reason) noexcept;
 
     /// The same when another thread has already faded the force: the output is zero at once.
     void cut(Fault reason) noexcept;
 
     /// While true, forces fade to zero and stay there; afterwards they re-engage: a hand that has moved deep into a
-    /// body meanwhile is not thrown out. For intended changes.
+    /// body meanwhile is not thrown out. For intended changes. A slow ramp that was not over begins anew.
     void hold_off(bool wanted) noexcept;
 
     /// Clears the fault; forces re-engage, and ramp in over at least `least_ramp_s` of ticks that are on time.

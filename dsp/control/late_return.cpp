@@ -47,6 +47,8 @@ void LateReturn::lose() noexcept {
     const auto recent =
         std::count_if(at_.begin(), at_.begin() + count_, [&](double t) { return now_s_ - t < window_s; });
     needs_hand_ = needs_hand_ || recent >= most_returns;
+    is_lost_ = true;
+    comes_in_ = false;
 }
 
 bool LateReturn::returns() noexcept {
@@ -56,7 +58,14 @@ bool LateReturn::returns() noexcept {
         --count_;
     }
     at_[static_cast<std::size_t>(count_++)] = now_s_;
+    is_lost_ = false;
+    comes_in_ = true;
     return true;
+}
+
+void LateReturn::come_in(bool are_on, bool are_full) noexcept {
+    if (!are_on && count_ > 0) at_[static_cast<std::size_t>(count_ - 1)] = now_s_;
+    comes_in_ = comes_in_ && !(are_on && are_full);
 }
 
 void LateReturn::forgive() noexcept {

@@ -28,10 +28,17 @@ public:
     /// since the last tick. `elapsed_s`: since that tick, more than a period when ticks were left out.
     void tick(bool is_late, bool is_quiet, double elapsed_s) noexcept;
 
-    /// Forces were lost to a late tick.
+    /// Forces were lost to a late tick, or a tick was late while they were away.
     void lose() noexcept;
+    /// Since `lose`, until `returns`: a late tick is not forgotten for another fault that passes, nor for an edit.
+    bool is_lost() const noexcept { return is_lost_; }
     /// True once when forces may come back; that counts as a return.
     bool returns() noexcept;
+    /// Since `returns`: forces are not back in full.
+    bool comes_in() const noexcept { return comes_in_; }
+    /// Each tick of that time. A return counts from when forces are on, which may be long after they may come back;
+    /// `are_full`: the ramp is over.
+    void come_in(bool are_on, bool are_full) noexcept;
     /// Forces come back by themselves no more: they did so `most_returns` times within `window_s` before they were lost.
     bool needs_hand() const noexcept { return needs_hand_; }
     /// A person lets forces come back: earlier returns are forgotten.
@@ -47,7 +54,7 @@ private:
     std::array<double, most_left_out> left_out_at_{};  // times of the last ticks that were left out, a ring
     std::size_t next_left_out_ = 0;
     int count_ = 0, left_out_ = 0;  // entries of the two
-    bool needs_hand_ = false;
+    bool needs_hand_ = false, is_lost_ = false, comes_in_ = false;
 };
 
 }  // namespace tactus::control

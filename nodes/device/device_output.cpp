@@ -80,6 +80,7 @@ struct DeviceOutput {
         port_->wrench = out;
         port_->fault = limiter_.fault();
         if (limiter_.fault() != control::Fault::none) recover_from_fault(tick);
+        else if (port_->late.comes_in()) port_->late.come_in(limiter_.engaged(), !limiter_.is_ramping());
         asked_ = recover;
         port_->state = state();
         counter_ = s.counter;
@@ -132,6 +133,7 @@ private:
         asked_ = recover;
         port_->late.prepare(seconds(tick.period), recover_after);
         if (port_->fault != control::Fault::none) limiter_.fail(port_->fault);
+        else if (port_->late.comes_in()) limiter_.recover(control::LateReturn::ramp_s);
     }
 
     /// A simulation goes on while forces are off: what it asks for then is not what the hand felt.
@@ -188,6 +190,8 @@ private:
     void recover_from_fault(const Tick& tick) noexcept {
         using control::Fault;
         last_fault_ = limiter_.fault();
+        const DeviceSample& s = port_->sample;
+        if (s.taken || s.late) port_->late.lose();
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
@@ -195,31 +199,31 @@ private:
             still_ticks_ = control::ForceLimits{}.stale_ticks;
             ++faults_;
             well_for_ = 0.0;
-            if (is_lateness(last_fault_)) port_->late.lose();
         }
         must_engage_ = must_engage_ || port_->hold_off;
-        const DeviceSample& s = port_->sample;
         // A device may give samples less often than this ticks.
         still_ticks_ = s.counter != counter_ ? 0 : still_ticks_ + 1;
         const bool is_good = s.valid && is_valid(s.pose) && still_ticks_ < control::ForceLimits{}.stale_ticks;
-        well_for_ = is_good && !s.taken ? well_for_ + tick.elapsed_seconds() : 0.0;
+        well_for_ = is_good && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
+        if (last_fault_ == Fault::not_finite) return;
+        const bool is_asked = recover.value != asked_;
+        if (is_asked && port_->late.is_lost()) port_->late.forgive();
+        is_let_ = is_let_ || is_asked;
         if (is_lateness(last_fault_)) return return_from_lateness(is_good);
-        if (last_fault_ == Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
-        limiter_.recover();
-        in_fault_ = false;
+        if (recover_after == 0.0 || well_for_ < recover_after) return;
+        // A tick that was late, too, asks for more than the device.
+        if (port_->late.is_lost() && !port_->late.returns()) return;
+        limiter_.recover(port_->late.comes_in() ? control::LateReturn::ramp_s : 0.0);
+        in_fault_ = is_let_ = false;
     }
 
     /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body. And a
     /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
     /// there. Then they wait for the hand to leave it.
     void return_from_lateness(bool is_good) noexcept {
-        const bool is_asked = recover.value != asked_;
-        if (is_asked) port_->late.forgive();
-        is_let_ = is_let_ || is_asked;
         if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let_) || !port_->late.returns()) return;
-        const double ramp_s = std::max(control::LateReturn::ramp_s, engage_time.value);
-        if (energy_cap && !must_engage_) limiter_.recover_slowly(ramp_s);
-        else limiter_.recover(ramp_s);
+        if (energy_cap && !must_engage_) limiter_.recover_slowly(control::LateReturn::ramp_s);
+        else limiter_.recover(control::LateReturn::ramp_s);
         in_fault_ = is_let_ = false;
         ++returns_;
     }
@@ -235,7 +239,9 @@ private:
                 if (waits_for_hand) return ForceState::by_hand;
                 return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;
             }
-            default: return recover_after == 0.0 ? ForceState::never : ForceState::returns_freed;
+            default:
+                if (recover_after == 0.0) return ForceState::never;
+                return port_->late.needs_hand() ? ForceState::by_hand : ForceState::returns_freed;
         }
         if (limiter_.is_held_off()) return ForceState::held_back;
         if (!limiter_.engaged()) return ForceState::waits;

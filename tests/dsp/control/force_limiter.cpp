@@ -143,7 +143,7 @@ TEST_CASE("every fault fades to zero within 10 ms, says why, and latches until r
     CHECK(rig.within_limits());
 }
 
-TEST_CASE("a fault that names a cause replaces a late tick, and no other fault") {
+TEST_CASE("a fault that names a cause replaces a late tick and no other fault: only what is not finite replaces all") {
     for (const control::Fault cause : {control::Fault::sound_lost, control::Fault::stale_input}) {
         Rig rig;
         rig.engage();
@@ -164,6 +164,15 @@ TEST_CASE("a fault that names a cause replaces a late tick, and no other fault")
     rig.limiter.cut(control::Fault::late_commit);
     rig.run({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}}, 1);
     CHECK(rig.limiter.fault() == control::Fault::not_finite);
+    for (const control::Fault passes : {control::Fault::invalid_input, control::Fault::sound_lost}) {
+        Rig other;
+        other.limiter.fail(passes);
+        other.limiter.fail(control::Fault::not_finite);
+        CHECK(other.limiter.fault() == control::Fault::not_finite);
+        other.limiter.fail(passes);
+        other.limiter.fail(control::Fault::none);
+        CHECK(other.limiter.fault() == control::Fault::not_finite);
+    }
 }
 
 TEST_CASE("a resting hand is not a stale device") {

@@ -189,6 +189,31 @@ TEST_CASE("forces come back three times a minute, then by hand") {
     }
 }
 
+TEST_CASE("a return counts from when the hand may feel forces") {
+    Waiting waiting;
+    waiting.lose();
+    CHECK(waiting.late.is_lost());
+    CHECK(waiting.ticks_until_return() == 1000);
+    CHECK_FALSE(waiting.late.is_lost());
+    // The hand leaves the body 50 s later.
+    for (int n = 0; n < 50'000; ++n) {
+        waiting.late.tick(false, true, period);
+        waiting.late.come_in(false, false);
+    }
+    REQUIRE(waiting.late.comes_in());
+    waiting.late.come_in(true, false);
+    REQUIRE(waiting.late.comes_in());
+    waiting.late.come_in(true, true);
+    CHECK_FALSE(waiting.late.comes_in());
+    for (int n = 0; n < 2; ++n) {
+        waiting.lose();
+        CHECK(waiting.ticks_until_return() == 1000);
+    }
+    for (int n = 0; n < 20'000; ++n) waiting.late.tick(false, false, period);
+    waiting.lose();
+    CHECK(waiting.late.needs_hand());
+}
+
 TEST_CASE("a return that engages can have a longer ramp") {
     control::ForceLimiter limiter;
     limiter.prepare({.engage_ramp_s = 1e-3}, period);

@@ -242,3 +242,110 @@ TEST_CASE("a node that an edit prepares touches nothing of a device that another
     next.node.prepare();
     CHECK(next.port().state == control::ForceState::on);
 }
+
+namespace {
+
+/// The largest force at a tick of a ramp that begins in tick `from` at the earliest and takes half a second.
+bool comes_in_slowly(const std::vector<double>& applied, std::size_t from) {
+    for (std::size_t k = from; k < applied.size(); ++k)
+        if (applied[k] > asked * static_cast<double>(k - from + 1) / 500.0 + 1e-9) return false;
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("a force that is no number is not forgotten for a bad device that becomes good again") {
+    LateOutput out;
+    for (int k = 600; k < 650; ++k) out.invalid.insert(k);
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) {
+        return Wrench{{k == 620               ? std::numeric_limits<double>::quiet_NaN()
+                       : k > 1000 && k < 2000 ? 0.0
+                                              : 0.3,
+                       0, 0},
+                      {}};
+    });
+    out.run(4000);
+    for (std::size_t k = 615; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(out.port().fault == control::Fault::not_finite);
+    CHECK(out.port().state == control::ForceState::never);
+}
+
+TEST_CASE("a wait for a person is not forgotten for a bad sample") {
+    LateOutput out;
+    for (int n = 0; n < 4; ++n) out.taken.insert(600 + 2000 * n);
+    SECTION("after the fourth late tick") { out.invalid.insert(7000); }
+    SECTION("before it") {
+        out.invalid.insert(6595);
+        out.taken.insert(6605);
+    }
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) {
+        return Wrench{{k < 300 || (k > 9000 && k < 9100) ? 0.0 : asked, 0.0, 0.0}, {}};
+    });
+    out.run(12000);
+    CHECK(out.applied[6590] == Approx(asked));
+    for (std::size_t k = 6620; k < out.applied.size(); ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(out.port().fault == control::Fault::invalid_input);
+    CHECK(out.port().state == control::ForceState::by_hand);
+
+    // Somebody changes the number, and the hand leaves the body.
+    out.node.set("recover", "1");
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) { return Wrench{{k < 12100 ? 0.0 : asked, 0.0, 0.0}, {}}; });
+    out.node.run(2000);
+    CHECK(out.node.values<Wrench>("applied").back().force.x == Approx(asked));
+}
+
+TEST_CASE("after a late tick and a bad sample forces wait for both and come in slowly") {
+    LateOutput out;
+    out.node.set("recover_after", "10 ms").set("engage_time", "0 ms");
+    SECTION("the late tick first") {
+        out.taken.insert(600);
+        out.invalid.insert(605);
+    }
+    SECTION("the bad sample first") {
+        out.invalid.insert(595);
+        out.taken.insert(600);
+    }
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) {
+        return Wrench{{k < 300 || (k > 620 && k % 100 < 10) ? 0.0 : asked, 0.0, 0.0}, {}};
+    });
+    out.run(3000);
+    for (std::size_t k = 615; k < 1600; ++k) REQUIRE(out.applied[k] == 0.0);
+    CHECK(comes_in_slowly({out.applied.begin() + 1600, out.applied.end()}, 0));
+    CHECK(out.applied[2990] == Approx(asked));
+}
+
+TEST_CASE("a pause or an edit while forces come in after a late tick does not make them come in faster") {
+    const auto leaves = [](std::int64_t from) {
+        return [from](std::int64_t k) {
+            return Wrench{{k < 300 || (k >= from && k < from + 10) ? 0.0 : asked, 0.0, 0.0}, {}};
+        };
+    };
+    LateOutput out;
+    out.taken.insert(600);
+    out.node.set("engage_time", "0 ms");
+    SECTION("a pause") {
+        out.held_from = 1700, out.held_to = 1750;
+        out.node.feed<Wrench>("wrench", std::function<Wrench(std::int64_t)>(leaves(1800)));
+        out.run(2500);
+        REQUIRE(out.applied[1699] > 0.5);
+        REQUIRE(out.applied[1790] == 0.0);
+        CHECK(comes_in_slowly(out.applied, 1802));
+        CHECK(out.applied.back() == Approx(asked));
+    }
+    SECTION("an edit") {
+        out.held_from = 1700, out.held_to = 1730;
+        out.run(1730);
+        LateOutput next;
+        next.node.host.devices = std::move(out.node.host.devices);
+        next.node.set("max_force", "9 N").set("engage_time", "0 ms");
+        next.run(1000);
+        CHECK(comes_in_slowly(next.applied, 2));
+        CHECK(next.applied.back() == Approx(asked));
+        // The next time is the next time.
+        next.node.forget();
+        next.held_from = 1000, next.held_to = 1050;
+        next.node.feed<Wrench>("wrench", std::function<Wrench(std::int64_t)>(leaves(1100)));
+        next.node.run(300);
+        CHECK(next.node.values<Wrench>("applied")[120].force.x == Approx(asked));
+    }
+}
