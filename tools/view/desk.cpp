@@ -2,7 +2,7 @@
 #include "tools/view/desk.hpp"
 
 #include "tools/view/frame/whole_window.hpp"
-#include "tools/view/scene/hand_offer.hpp"
+#include "tools/view/hand/hand_offer.hpp"
 #include "tools/view/run_bar.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/state_banner.hpp"

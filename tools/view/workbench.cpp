@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/workbench.hpp"
 #include "tools/session/site_choice.hpp"
+#include "tools/view/workbench.hpp"
 
 #include "assets/file/whole_file.hpp"
 #include "graph/edit/patch_arrange.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
-#include "tools/view/scene/hand_offer.hpp"
+#include "tools/view/hand/hand_offer.hpp"
 
 #include <fmt/format.h>
 
