@@ -5,6 +5,7 @@
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <utility>

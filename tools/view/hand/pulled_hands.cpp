@@ -35,12 +35,15 @@ void PulledHands::forget() {
 }
 
 void PulledHands::keep_those_of(const RunStatus& status) {
+    const auto is_of = [](const Hand& hand, const DevicePull& pull) {
+        return hand.link == pull.link && hand.device == pull.device;
+    };
     std::erase_if(hands_, [&](const std::unique_ptr<Hand>& hand) {
-        return std::ranges::find(status.pulls, hand->link, &DevicePull::link) == status.pulls.end();
+        return std::ranges::none_of(status.pulls, [&](const DevicePull& pull) { return is_of(*hand, pull); });
     });
     for (const DevicePull& pull : status.pulls) {
         const auto source = std::ranges::find(sources_, pull.device, &Source::device);
-        const bool is_known = std::ranges::any_of(hands_, [&](const auto& hand) { return hand->link == pull.link; });
+        const bool is_known = std::ranges::any_of(hands_, [&](const auto& hand) { return is_of(*hand, pull); });
         if (is_known || source == sources_.end() || !observer_) continue;
         auto hand = std::make_unique<Hand>();
         hand->device = pull.device;
