@@ -231,6 +231,7 @@ TEST_CASE("a 3D mouse tells where its cap wants the hand and what the hand feels
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
     daemon.send(motion(350, 0, 0, 0, 0, 0));
+    ticks(*device, 20);  // forces begin with none
     haptic::PulledHand told;
     std::uint64_t number = 0;
     CHECK(wait_until([&] {
