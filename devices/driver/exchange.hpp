@@ -3,6 +3,7 @@
 // waits for the other. What is old counts as gone: a sample is invalid after 20 ms, a force is 0 N after 10 ms.
 #pragma once
 
+#include "devices/haptic/pulled_hand.hpp"
 #include "devices/hosted/clocks.hpp"
 #include "devices/hosted/force_gate.hpp"
 #include "devices/hosted/seqlock.hpp"
@@ -53,6 +54,9 @@ public:
     void commit(const Wrench& on_hand) noexcept;
     /// Period of the commits in s. One that is slower than 600 Hz makes a force old later: after three periods.
     void expect(double period_s) noexcept;
+
+    /// Where a person wants the hand, of drivers that pull it there. The device's thread writes.
+    haptic::PullLink pull;
 
     /// Samples published since the beginning. Any thread.
     std::int64_t published() const noexcept { return published_.load(std::memory_order_relaxed); }

@@ -222,6 +222,10 @@ DeviceSample ThreadedDevice::acquire(double) noexcept { return shared_->exchange
 
 void ThreadedDevice::commit(const Wrench& on_hand) noexcept { shared_->exchange->commit(on_hand); }
 
+std::shared_ptr<const haptic::PullLink> ThreadedDevice::pull() const noexcept {
+    return {shared_->exchange, &shared_->exchange->pull};
+}
+
 std::int64_t ThreadedDevice::published() const noexcept { return shared_->exchange->published(); }
 
 int ThreadedDevice::returns() const noexcept { return shared_->returns.load(); }

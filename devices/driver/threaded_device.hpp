@@ -27,7 +27,7 @@ struct DeviceOptions {
 /// Most that a device gives until its push directions were confirmed: N. It gives no torque.
 inline constexpr double unconfirmed_force = 0.5;
 
-class ThreadedDevice final : public HapticDevice {
+class ThreadedDevice final : public HapticDevice, public haptic::PulledDevice {
 public:
     /// Waits until the device is open. Throws Error with the step that failed, or when it takes longer than
     /// open_timeout.
@@ -39,6 +39,7 @@ public:
     void prepare(double period_s) override;
     DeviceSample acquire(double elapsed_s) noexcept override;
     void commit(const Wrench& on_hand) noexcept override;
+    std::shared_ptr<const haptic::PullLink> pull() const noexcept override;
 
     const Opened& opened() const { return opened_; }
     /// Forces are capped because nobody has confirmed the directions of its pushes.

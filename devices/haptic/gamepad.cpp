@@ -3,6 +3,7 @@
 
 #include "devices/evdev/force_effect.hpp"
 #include "devices/haptic/operated.hpp"
+#include "devices/haptic/pulled_hand.hpp"
 #include "devices/hosted/clocks.hpp"
 #include "devices/hosted/seqlock.hpp"
 #include "dsp/core/error.hpp"
@@ -205,7 +206,7 @@ struct Settings {
     std::string file;
 };
 
-class Gamepad final : public HapticDevice {
+class Gamepad final : public HapticDevice, public PulledDevice {
 public:
     Gamepad(evdev::EventSystem& system, const Settings& settings, const std::string& path)
         : info_(settings.info), reader_(system, path, force_, settings.rumble) {
@@ -229,15 +230,19 @@ public:
         simulate::advance(hand_, steered_, force_.get(), elapsed_s);
         // A lost gamepad is a fault of the device: no sample is valid any more, which fades the force.
         const bool is_here = steered_.state.is_lost == 0;
+        if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), hosted::steady_ns()});
         return {hand_.pose, hand_.twist, static_cast<std::uint32_t>(steered_.state.buttons), ++counter_,
                 is_here && is_valid(hand_.pose)};
     }
 
     void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }
 
+    std::shared_ptr<const PullLink> pull() const noexcept override { return pull_; }
+
 private:
     DeviceInfo info_;
     SharedWrench force_;
+    const std::shared_ptr<PullLink> pull_ = std::make_shared<PullLink>();
     PadReader reader_;
     simulate::Hand hand_;
     Steered steered_;

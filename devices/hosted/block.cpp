@@ -27,16 +27,20 @@ void put(const Vec3& v, double (&into)[3]) noexcept {
 }
 Vec3 get(const double (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
 
+void put(const Quat& q, double (&into)[4]) noexcept {
+    into[0] = q.w;
+    into[1] = q.x;
+    into[2] = q.y;
+    into[3] = q.z;
+}
+Quat get(const double (&from)[4]) noexcept { return {from[0], from[1], from[2], from[3]}; }
+
 }  // namespace
 
 SampleRecord pack(const DeviceSample& sample) noexcept {
     SampleRecord record;
     put(sample.pose.position, record.position);
-    const Quat& q = sample.pose.orientation;
-    record.orientation[0] = q.w;
-    record.orientation[1] = q.x;
-    record.orientation[2] = q.y;
-    record.orientation[3] = q.z;
+    put(sample.pose.orientation, record.orientation);
     put(sample.twist.linear, record.linear);
     put(sample.twist.angular, record.angular);
     for (std::size_t i = 0; i < most_fingers; ++i) {
@@ -53,8 +57,7 @@ SampleRecord pack(const DeviceSample& sample) noexcept {
 DeviceSample unpack(const SampleRecord& record) noexcept {
     DeviceSample sample;
     sample.pose.position = get(record.position);
-    sample.pose.orientation =
-        Quat(record.orientation[0], record.orientation[1], record.orientation[2], record.orientation[3]);
+    sample.pose.orientation = get(record.orientation);
     sample.twist = {get(record.linear), get(record.angular)};
     for (std::size_t i = 0; i < most_fingers; ++i)
         sample.fingers[i] = {record.finger_position[i], record.finger_force[i], record.finger_state[i]};
@@ -90,6 +93,27 @@ MotorDrive unpack(const DriveRecord& record) noexcept {
     drive.cord = record.cord;
     drive.free = record.is_free == 1;
     return drive;
+}
+
+PullRecord pack(const haptic::PulledHand& hand) noexcept {
+    PullRecord record;
+    put(hand.pose.position, record.position);
+    put(hand.pose.orientation, record.orientation);
+    put(hand.wanted.position, record.wanted_position);
+    put(hand.wanted.orientation, record.wanted_orientation);
+    put(hand.force.force, record.force);
+    put(hand.force.torque, record.torque);
+    record.at_ns = hand.at_ns;
+    return record;
+}
+
+std::optional<haptic::PulledHand> unpack(const PullRecord& record) noexcept {
+    const haptic::PulledHand hand{{get(record.position), get(record.orientation)},
+                                  {get(record.wanted_position), get(record.wanted_orientation)},
+                                  {get(record.force), get(record.torque)},
+                                  record.at_ns};
+    if (!is_valid(hand.pose) || !is_valid(hand.wanted) || !is_finite(hand.force)) return std::nullopt;
+    return hand;
 }
 
 namespace {

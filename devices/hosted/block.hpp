@@ -3,12 +3,14 @@
 // checks what it reads: the other may be broken.
 #pragma once
 
+#include "devices/haptic/pulled_hand.hpp"
 #include "devices/hosted/seqlock.hpp"
 #include "graph/node/device.hpp"
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace tactus::hosted {
@@ -40,6 +42,14 @@ struct DriveRecord {
     std::int64_t committed_ns = 0;
 };
 
+/// Where a person wants the hand, of drivers that pull it there by a spring.
+struct PullRecord {
+    double position[3] = {}, orientation[4] = {1.0, 0.0, 0.0, 0.0};  ///< of the hand: m; w, x, y, z
+    double wanted_position[3] = {}, wanted_orientation[4] = {1.0, 0.0, 0.0, 0.0};
+    double force[3] = {}, torque[3] = {};  ///< N, N·m on the hand
+    std::int64_t at_ns = 0;  ///< steady_ns
+};
+
 struct InfoRecord {
     char name[128] = {};
     double max_force = 0.0, max_torque = 0.0, damping = 0.0, max_stiffness = 0.0, max_speed = 0.0, least_speed = 0.0;
@@ -52,10 +62,13 @@ SampleRecord pack(const DeviceSample& sample) noexcept;
 ForceRecord pack(const Wrench& wrench, std::int64_t now_ns) noexcept;
 DriveRecord pack(const MotorDrive& drive, std::int64_t now_ns) noexcept;
 InfoRecord pack(const DeviceInfo& info) noexcept;
+PullRecord pack(const haptic::PulledHand& hand) noexcept;
 /// Not valid when the pose is no pose or the velocity is not finite.
 DeviceSample unpack(const SampleRecord& record) noexcept;
 Wrench unpack(const ForceRecord& record) noexcept;
 MotorDrive unpack(const DriveRecord& record) noexcept;
+/// None: a pose is no pose, or the force is not finite.
+std::optional<haptic::PulledHand> unpack(const PullRecord& record) noexcept;
 /// Throws Error when a number cannot be that of a device.
 DeviceInfo unpack(const InfoRecord& record);
 
@@ -63,7 +76,7 @@ enum class HostState : std::uint32_t { opens, runs, ended };
 
 struct Block {
     static constexpr std::uint64_t right_magic = 0x3153554843544154;  // "TATCHUS1"
-    static constexpr std::uint32_t right_version = 2;
+    static constexpr std::uint32_t right_version = 3;
 
     std::uint64_t magic = right_magic;
     std::uint32_t version = right_version, size = sizeof(Block);
@@ -76,6 +89,7 @@ struct Block {
     alignas(64) Seqlock<SampleRecord> sample;
     alignas(64) Seqlock<ForceRecord> force;
     alignas(64) Seqlock<DriveRecord> drive;
+    alignas(64) Seqlock<PullRecord> pull;
 };
 
 /// Text from memory that another process writes: ends at its size, and holds only what can be printed.

@@ -89,6 +89,7 @@ void DriverLoop::open() {
         throw error_of(answer.said);
     });
     options.finish();
+    if (const auto* const pulled = dynamic_cast<const haptic::PulledDevice*>(device_.get())) pull_ = pulled->pull();
     const DeviceInfo& info = device_->info();
     gate_.max_force = info.max_force;
     gate_.max_torque = info.max_torque;
@@ -142,6 +143,15 @@ void DriverLoop::round() noexcept {
     record.answers_ns = force_.committed_ns;
     record.published_ns = boot_ns();
     block_.sample.write(record);
+    tell_pull();
+}
+
+void DriverLoop::tell_pull() noexcept {
+    haptic::PulledHand hand;
+    std::uint64_t number = 0;
+    if (!pull_ || !pull_->read(hand, number) || number == pull_number_) return;
+    pull_number_ = number;
+    block_.pull.write(pack(hand));
 }
 
 /// Each drive of the engine once, since a line may be slow. An engine that is lost is told of by one that holds, again

@@ -34,12 +34,15 @@ private:
     void serve();
     void prepare(const Words& said);
     void round() noexcept;
+    void tell_pull() noexcept;
     void give_drive(std::int64_t now_ns) noexcept;
     void fade() noexcept;
 
     Block& block_;
     const int socket_;
     std::unique_ptr<HapticDevice> device_;
+    std::shared_ptr<const haptic::PullLink> pull_;  // null: the driver pulls no hand
+    std::uint64_t pull_number_ = 0;
     int fingers_ = 0;
     ForceGate gate_;
     ForceRecord force_;

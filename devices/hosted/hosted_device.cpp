@@ -131,9 +131,18 @@ void HostedDevice::prepare(double period_s) {
 DeviceSample HostedDevice::acquire(double) noexcept {
     // One that is being written for ever is as old as the one before.
     block_->sample.read(newest_, number_);
+    pass_pull();
     DeviceSample sample = unpack(newest_);
     sample.valid = sample.valid && newest_.holds_force == 0 && is_young(newest_.published_ns, boot_ns(), limit_ns_);
     return sample;
+}
+
+void HostedDevice::pass_pull() noexcept {
+    PullRecord record;
+    std::uint64_t number = 0;
+    if (!block_->pull.read(record, number) || number == pull_number_) return;
+    pull_number_ = number;
+    if (const auto hand = unpack(record)) pull_->write(*hand);
 }
 
 void HostedDevice::commit(const Wrench& on_hand) noexcept { block_->force.write(pack(on_hand, boot_ns())); }

@@ -24,7 +24,7 @@ struct DeviceRequest {
     SourceLocation where;
 };
 
-class HostedDevice final : public HapticDevice {
+class HostedDevice final : public HapticDevice, public haptic::PulledDevice {
 public:
     /// Starts the process and waits until the driver has opened its device. Throws Error with the driver's text, or when
     /// it takes longer than placement.open_timeout.
@@ -41,6 +41,7 @@ public:
     /// Wait-free, no system call.
     void commit(const Wrench& on_hand) noexcept override;
     void drive(const MotorDrive& wanted) noexcept override;
+    std::shared_ptr<const haptic::PullLink> pull() const noexcept override { return pull_; }
 
     /// Control thread of a live run, at least every half second: says that the engine lives, and looks after the process.
     /// One that was silent for 500 ms is killed. Why the device is lost, for people, or "". Does not wait.
@@ -52,6 +53,7 @@ public:
     pid_t process() const noexcept { return process_->id(); }
 
 private:
+    void pass_pull() noexcept;
     class Socket {
     public:
         Socket();
@@ -75,9 +77,10 @@ private:
     std::unique_ptr<HostProcess> process_;
     DeviceInfo info_;
     std::int64_t limit_ns_ = 20'000'000;
+    const std::shared_ptr<haptic::PullLink> pull_ = std::make_shared<haptic::PullLink>();
     // Thread of the tick.
     SampleRecord newest_;
-    std::uint64_t number_ = 0;
+    std::uint64_t number_ = 0, pull_number_ = 0;
     // Control thread.
     std::int64_t published_ns_ = 0, heard_ns_ = 0;
     std::string loss_;

@@ -110,7 +110,9 @@ public:
         const double elapsed = static_cast<double>(elapsed_ns) * 1e-9;
         const CapState& cap = reader_.state();
         steered_.twist = {shift_of(cap) * settings_.speed, turn_of(cap) * settings_.turn_speed};
-        simulate::advance(hand_, steered_, exchange.force(), std::clamp(elapsed, 0.0, longest_step_s));
+        const Wrench force = exchange.force();
+        simulate::advance(hand_, steered_, force, std::clamp(elapsed, 0.0, longest_step_s));
+        exchange.pull.write({hand_.pose, steered_.wanted, force, hosted::steady_ns()});
         driver::Reading reading;
         reading.pose = hand_.pose;
         reading.twist = hand_.twist;

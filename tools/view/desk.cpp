@@ -2,8 +2,8 @@
 #include "tools/view/desk.hpp"
 
 #include "tools/view/frame/whole_window.hpp"
+#include "tools/view/hand/hand_offer.hpp"
 #include "tools/view/run_bar.hpp"
-#include "tools/view/scene/hand_offer.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/state_banner.hpp"
 #include "tools/view/theme.hpp"
@@ -41,6 +41,7 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take, WindowMemory& memo
     nodes_.ask_file = [this](const std::string& title, FileChooser chooser, FileDialog::Done done) {
         ask_file(title, std::move(chooser), std::move(done));
     };
+    scopes_.ask_value = [this](ValueQuestion question) { value_.ask(std::move(question)); };
     slices_.ask_scan = [this] { ask_scan(); };
     if (!take_) scene_.hand().offer = [this] { draw_hand_offer(bench_); };
 }

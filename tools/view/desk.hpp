@@ -8,6 +8,7 @@
 #include "tools/view/files/window_memory.hpp"
 #include "tools/view/frame/command_list.hpp"
 #include "tools/view/frame/layout.hpp"
+#include "tools/view/frame/value_dialog.hpp"
 #include "tools/view/patch/node_panel.hpp"
 #include "tools/view/patch/patch_panel.hpp"
 #include "tools/view/plan/plan_panel.hpp"
@@ -121,7 +122,7 @@ private:
     /// The picture of the patch is on the screen: keys of the patch mean it.
     bool sees_patch() const { return !start_page_.is_open && shows(columns_, Panel::patch); }
     void ask_value(const std::string& node, const std::string& param, const std::string& value);
-    void draw_value();
+    void ask_device_setting();
     void go_to_largest_force();
     void draw_start();
     void draw_dialogs();
@@ -150,8 +151,7 @@ private:
     CommandList list_;
     bool wants_menus_ = false;
     std::vector<Command> commands_;
-    std::string value_of_, value_;  ///< the parameter whose value is asked for
-    bool asks_value_ = false;
+    ValueDialog value_;
     std::vector<LayoutColumn> columns_;
     std::vector<std::vector<LayoutColumn>> moved_;  ///< columns of other layouts and panels, for when they return
     std::vector<std::vector<LayoutColumn>> placed_;  ///< those whose borders a person has moved, the latest last

@@ -113,6 +113,9 @@ void ViewedRun::look_at(RunSession& session) {
     }
     status.peak = peak_ = std::max(peak_, status.most);
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
+    for (const auto& slot : engine.host().devices)
+        if (const auto* const pulled = dynamic_cast<const haptic::PulledDevice*>(slot->device.get()))
+            status.pulls.push_back({slot->name, pulled->pull()});
     status.forces = session::forces_of(engine);
     status.faults = session::faults_on_record(engine);
     for (const std::string& told : news_.next(engine)) {

@@ -2,6 +2,7 @@
 // A live run on its own threads beside a window: status is copied, commands are queued.
 #pragma once
 
+#include "devices/haptic/pulled_hand.hpp"
 #include "engine/observe/observer.hpp"
 #include "graph/compile/load_assets.hpp"
 #include "tools/session/force_news.hpp"
@@ -36,6 +37,12 @@ struct NodeStatus {
     double mean_us = 0.0, max_us = 0.0, share = 0.0;  ///< share: fraction of the group's period
 };
 
+/// A device that tells where a person wants the hand that it pulls.
+struct DevicePull {
+    std::string device;
+    std::shared_ptr<const haptic::PullLink> link;
+};
+
 struct RunStatus {
     enum class State { loading, runs, fades, stands, over } state = State::loading;
     double time = 0.0;  ///< logical, s
@@ -44,6 +51,7 @@ struct RunStatus {
     double peak = 0.0;   ///< largest of the run so far, N
     std::vector<GroupStatus> groups;
     std::vector<NodeStatus> nodes;
+    std::vector<DevicePull> pulls;
     std::vector<session::HandForces> forces;
     std::vector<session::FaultOnRecord> faults;
     std::int64_t edits = 0;

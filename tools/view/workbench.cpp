@@ -6,7 +6,7 @@
 #include "graph/edit/patch_arrange.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
 #include <fmt/format.h>

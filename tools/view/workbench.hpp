@@ -147,11 +147,16 @@ public:
                const std::vector<patch::PatchComment>& comments = {});
     bool place_automatically(const std::vector<std::string>& nodes);
     bool colour(const std::vector<std::string>& nodes, const std::string& name);
-    /// `places`: of nodes that have none in the text.
-    std::string copy(const std::vector<std::string>& nodes,
-                     const std::map<std::string, patch::PatchPlace>& places = {}) const;
-    /// Adds what `copy` gave. Returns the names that the nodes have here; none: refused.
-    std::vector<std::string> paste(const std::string& copied, patch::PatchPlace by);
+    /// For a clipboard. `places`: of nodes that have none in the text. With nodes, comments stand in the lane of the first
+    /// of these, by name: the lanes of another patch lie elsewhere.
+    std::string copy(const std::vector<std::string>& nodes, const std::map<std::string, patch::PatchPlace>& places = {},
+                     const std::vector<std::string>& comments = {}) const;
+    /// The names that nodes and comments have here.
+    struct Pasted {
+        std::vector<std::string> nodes, comments;
+    };
+    /// Adds what `copy` gave, as one edit. Nothing: refused.
+    Pasted paste(const std::string& copied, patch::PatchPlace by);
     /// Moves nodes into a file beside the patch, and puts a node of that patch in their place.
     bool make_sub_patch(const std::vector<std::string>& nodes, const std::string& name);
     bool open_sub_patch(const std::string& node, bool wanted);

@@ -225,3 +225,18 @@ TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[liv
     close_it();
     ::unsetenv("SPNAV_SOCKET");
 }
+
+TEST_CASE("a 3D mouse tells where its cap wants the hand and what the hand feels", "[live]") {
+    SpaceDaemon daemon;
+    const auto device = open(daemon);
+    REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
+    daemon.send(motion(350, 0, 0, 0, 0, 0));
+    ticks(*device, 20);  // forces begin with none
+    haptic::PulledHand told;
+    std::uint64_t number = 0;
+    CHECK(wait_until([&] {
+        ticks(*device, 1, {-4.0, 0.0, 0.0});
+        return device->pull()->read(told, number) && number != 0 && told.force.force.x == -4.0 &&
+               told.wanted.position.x - told.pose.position.x > 0.001;
+    }));
+}

@@ -2,8 +2,11 @@
 // A gamepad whose events come through a pipe.
 #include "devices/haptic/gamepad.hpp"
 
+#include "devices/haptic/pulled_hand.hpp"
+#include "devices/hosted/clocks.hpp"
 #include "tests/devices/driver/event_peer.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/realtime_check.hpp"
 
 #include <fcntl.h>
 #include <linux/input.h>
@@ -138,6 +141,45 @@ TEST_CASE("a gamepad that is unplugged gives no valid sample any more, and its b
         REQUIRE_FALSE(sample.valid);
         REQUIRE(sample.buttons == 0u);
     }
+}
+
+TEST_CASE("a gamepad tells where its sticks want the hand and what it feels until it is unplugged") {
+    Rig rig;
+    const auto* const pulled = dynamic_cast<const haptic::PulledDevice*>(rig.device.get());
+    REQUIRE(pulled);
+    const auto link = pulled->pull();
+    haptic::PulledHand told;
+    std::uint64_t number = 1;
+    REQUIRE(link->read(told, number));
+    CHECK(number == 0);
+    rig.say(EV_ABS, ABS_X, 32767);
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return s.twist.linear.x > 0.05; }));
+    const Wrench force{{-10.0, 0.0, 0.0}, {}};
+    rig.device->commit(force);
+    DeviceSample sample;
+    for (int n = 0; n < 2000; ++n) sample = rig.device->acquire(1e-3);
+    REQUIRE(link->read(told, number));
+    CHECK(number != 0);
+    CHECK(told.pose.position == sample.pose.position);
+    CHECK(told.force.force == force.force);
+    // A spring of 2 N/mm.
+    CHECK(told.wanted.position.x - told.pose.position.x == Approx(0.005).margin(0.0005));
+    CHECK(told.at_ns <= hosted::steady_ns());
+    const RealtimeViolations seen = watch([&] {
+        for (int n = 0; n < 100; ++n) {
+            rig.device->acquire(1e-3);
+            rig.device->commit(force);
+        }
+    });
+    CHECK(seen.describe() == "none");
+    ::close(rig.end);
+    rig.end = -1;
+    REQUIRE(rig.ticks_until([](const DeviceSample& s) { return !s.valid; }));
+    REQUIRE(link->read(told, number));
+    const std::uint64_t last = number;
+    for (int n = 0; n < 10; ++n) rig.device->acquire(1e-3);
+    REQUIRE(link->read(told, number));
+    CHECK(number == last);
 }
 
 TEST_CASE("without a gamepad the driver says what to do") {

@@ -187,3 +187,25 @@ TEST_CASE("a sample is the same on both sides") {
     CHECK(seen.fingers[1].force == 0.2);
     CHECK(seen.fingers[1].state == motor_limited);
 }
+
+TEST_CASE("where a hand is wanted comes through shared memory whole, and is none when it is no pose or no force") {
+    const haptic::PulledHand hand{{Vec3(1.0, 2.0, 3.0), Quat(0.0, 1.0, 0.0, 0.0)},
+                                  {Vec3(4.0, 5.0, 6.0), Quat(0.0, 0.0, 1.0, 0.0)},
+                                  {Vec3(7.0, 8.0, 9.0), Vec3(10.0, 11.0, 12.0)},
+                                  13};
+    const PullRecord record = pack(hand);
+    const auto told = unpack(record);
+    REQUIRE(told);
+    CHECK(told->pose.position == hand.pose.position);
+    CHECK(told->pose.orientation == hand.pose.orientation);
+    CHECK(told->wanted.position == hand.wanted.position);
+    CHECK(told->wanted.orientation == hand.wanted.orientation);
+    CHECK(told->force.force == hand.force.force);
+    CHECK(told->force.torque == hand.force.torque);
+    CHECK(told->at_ns == 13);
+    PullRecord lost = record, shapeless = record, endless = record;
+    lost.wanted_position[1] = std::nan("");
+    for (double& part : shapeless.orientation) part = 0.0;
+    endless.force[2] = INFINITY;
+    for (const PullRecord& broken : {lost, shapeless, endless}) CHECK_FALSE(unpack(broken));
+}

@@ -129,7 +129,7 @@ TEST_CASE("a sub-patch may stand without its wires like any node") {
     CHECK((part.outputs.size() == 1 && part.outputs[0].name == "out"));
     REQUIRE(bench.connect("tone.signal", "part.sound"));
     CHECK(bench.unfinished().empty());
-    CHECK(bench.paste(bench.copy({"part"}), {30.0, 30.0}) == std::vector<std::string>{"part_2"});
+    CHECK(bench.paste(bench.copy({"part"}), {30.0, 30.0}).nodes == std::vector<std::string>{"part_2"});
     CHECK(bench.unfinished().names() == std::vector<std::string>{"part_2"});
     // What feeds it goes; a parameter that it offers can do without.
     REQUIRE(bench.add_node("constant", "60 Hz") == "constant");

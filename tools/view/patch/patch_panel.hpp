@@ -32,7 +32,7 @@ public:
     std::string wants_scope;  ///< a port to show in a scope
     bool is_read_only = false;
     void fit() { fits_ = false; }
-    // What menus and keys do with the chosen nodes.
+    // What menus and keys do with the chosen nodes and comments.
     void copy() const;
     /// At the pointer when it is over the canvas, or at a point; else beside what was copied.
     void paste(std::optional<Point> at = std::nullopt);
@@ -146,7 +146,7 @@ private:
     const PictureComment* comment_at(Point world) const;
     std::vector<std::string> chosen_nodes() const;  ///< of the patch's text, once each
     std::vector<std::string> whole_nodes() const;  ///< those that are chosen and stand in the patch's text
-    void choose_these(const std::vector<std::string>& nodes);
+    void choose_these(const Workbench::Pasted& made);
     std::string copied_text() const;
     void move_chosen(Point by, bool is_alone);
     /// Size of text at this zoom; none: there is no room for readable letters.

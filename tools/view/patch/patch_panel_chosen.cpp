@@ -4,6 +4,7 @@
 #include "tools/view/patch/patch_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
+#include "tools/view/workbench/clipboard_lane.hpp"
 
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
@@ -20,13 +21,13 @@ std::vector<std::string> PatchPanel::chosen_nodes() const {
     return {names.begin(), names.end()};
 }
 
-/// With places of all, so that they stand to each other where they are pasted as they do here.
 void PatchPanel::copy() const {
-    if (chosen.empty()) return;
+    if (!has_chosen()) return;
     ImGui::SetClipboardText(copied_text().c_str());
     pastes_ = 0;
 }
 
+/// With places of all, so that they stand to each other where they are pasted as they do here.
 std::string PatchPanel::copied_text() const {
     const PatchPicture& picture = bench_.picture();
     const std::vector<std::string> nodes = chosen_nodes();
@@ -36,26 +37,31 @@ std::string PatchPanel::copied_text() const {
             const PictureNode& node = picture.nodes[static_cast<std::size_t>(index)];
             places[name] = place_in_lane(picture, node, {node.box.left, node.box.top});
         }
-    return bench_.copy(nodes, places);
+    return bench_.copy(nodes, places, {chosen_comments.begin(), chosen_comments.end()});
 }
 
 namespace {
 
-/// How far a copy moves so that its upper left corner stands at a point; vertically by the nodes of the lane there.
+/// How far a copy moves so that its upper left corner stands at a point; vertically by what stands in the lane there.
 patch::PatchPlace way_to(const PatchPicture& picture, const std::string& text, Point at, patch::PatchPlace otherwise) {
-    const std::map<std::string, patch::PatchPlace> places = patch::window_of(text).places;
-    if (places.empty()) return otherwise;
+    const patch::PatchWindow window = patch::window_of(text);
     patch::Problems ignored;
     const patch::Patch copy = patch::read_patch(text, "clipboard", ignored);
-    const PictureLane* lane = lane_at(picture, at);
+    const PictureLane* lane = copy.nodes.empty() ? nullptr : lane_at(picture, at);
     double left = 1e9, top = 1e9;
     for (const patch::PatchNode& node : copy.nodes) {
-        const auto place = places.find(node.name);
-        if (place == places.end()) continue;
+        const auto place = window.places.find(node.name);
+        if (place == window.places.end()) continue;
         left = std::min(left, place->second.x);
-        if (lane && (node.group.empty() ? node.rate : node.group) == lane->name) top = std::min(top, place->second.y);
+        if (lane && lane_of(node) == lane->name) top = std::min(top, place->second.y);
+    }
+    const std::string of_comments = lane_of_comments(copy);
+    for (const patch::PatchComment& comment : window.comments) {
+        left = std::min(left, comment.place.x);
+        if (copy.nodes.empty() || (lane && of_comments == lane->name)) top = std::min(top, comment.place.y);
     }
     if (left >= 1e9) return otherwise;
+    if (copy.nodes.empty()) return {at.x - left, at.y - top};
     return {at.x - left, top >= 1e9 ? otherwise.y : std::max(at.y - lane->top, lane_head_height) - top};
 }
 
@@ -72,19 +78,19 @@ void PatchPanel::paste(std::optional<Point> at) {
 }
 
 void PatchPanel::duplicate() {
-    if (chosen.empty() || is_read_only) return;
+    if (!has_chosen() || is_read_only) return;
     choose_these(bench_.paste(copied_text(), {40.0, 40.0}));
 }
 
-void PatchPanel::choose_these(const std::vector<std::string>& nodes) {
-    if (nodes.empty()) return;
-    choose_only(nodes.front());
-    chosen = {nodes.begin(), nodes.end()};
+void PatchPanel::choose_these(const Workbench::Pasted& made) {
+    if (made.nodes.empty() && made.comments.empty()) return;
+    choose_only(made.nodes.empty() ? "" : made.nodes.front());
+    chosen = {made.nodes.begin(), made.nodes.end()};
+    chosen_comments = {made.comments.begin(), made.comments.end()};
 }
 
 void PatchPanel::cut() {
     copy();
-    chosen_comments.clear();
     remove_chosen();
 }
 
@@ -229,6 +235,10 @@ void PatchPanel::canvas_menu() {
     const bool may = !is_read_only;
     const PictureComment* comment = comment_at(menu_at_);
     if (comment && ImGui::MenuItem("Change the comment...", nullptr, false, may)) commented_ = comment->name;
+    if (comment && ImGui::MenuItem("Copy the comment", "Ctrl+C")) {
+        if (!chosen_comments.contains(comment->name)) choose_these({{}, {comment->name}});
+        copy();
+    }
     if (comment && ImGui::MenuItem("Remove the comment", nullptr, false, may)) bench_.remove_comment(comment->name);
     if (ImGui::MenuItem("Add a node...", "Tab", false, may)) open_palette();
     if (ImGui::MenuItem("Add a comment", nullptr, false, may)) add_comment(menu_at_);

@@ -35,12 +35,15 @@ const PictureLane* lane_at(const PatchPicture& picture, Point at) {
     return found == picture.lanes.end() ? nullptr : &*found;
 }
 
-patch::PatchPlace place_for(const PatchPicture& picture, const std::string& lane, Point at) {
-    const auto shown = std::ranges::find(picture.lanes, lane, &PictureLane::name);
+double lane_top(const PatchPicture& picture, const std::string& lane) {
+    if (lane.empty() || picture.lanes.empty()) return 0.0;
     constexpr double lane_gap = 14.0;
-    const double below = picture.lanes.empty() ? 0.0 : picture.bounds.bottom + lane_gap;
-    const double top = shown == picture.lanes.end() ? below : shown->top;
-    return {at.x, std::max(at.y - top, lane_head_height)};
+    const auto shown = std::ranges::find(picture.lanes, lane, &PictureLane::name);
+    return shown == picture.lanes.end() ? picture.lanes.back().bottom + lane_gap : shown->top;
+}
+
+patch::PatchPlace place_for(const PatchPicture& picture, const std::string& lane, Point at) {
+    return {at.x, std::max(at.y - lane_top(picture, lane), lane_head_height)};
 }
 
 Hit hit(const PatchPicture& picture, Point at, double reach) {

@@ -94,6 +94,8 @@ patch::PatchPlace place_in_lane(const PatchPicture& picture, const PictureNode& 
 
 /// The lane at a height; null: none is there.
 const PictureLane* lane_at(const PatchPicture& picture, Point at);
+/// The top of a lane, which may be new; 0: of no lane.
+double lane_top(const PatchPicture& picture, const std::string& lane);
 /// Where a node that is added at a point stands within a lane, which may be new.
 patch::PatchPlace place_for(const PatchPicture& picture, const std::string& lane, Point at);
 

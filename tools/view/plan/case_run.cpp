@@ -4,7 +4,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/arrangement/history.hpp"
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 
 #include <fmt/format.h>
 

@@ -151,6 +151,7 @@ void ScenePanel::rest() {
     watched_.clear();
     forget_model();
     hand_.forget();
+    pulled_.forget();
     observer_.reset();
     motion_.forget();
     plan_version_ = -1;
@@ -181,6 +182,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             model_->compare(compared_, compared_name_);
             sight_.follow(model_->outline());
             hand_.follow(observer_, model_->outline());
+            pulled_.follow(observer_, model_->outline(), *bench_.plan());
             plan_version_ = bench_.plan_version();
             needs_picture_ = true;
         }

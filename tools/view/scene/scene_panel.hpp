@@ -9,8 +9,9 @@
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
 #include "tools/view/frame/commands.hpp"
+#include "tools/view/hand/pulled_hands.hpp"
+#include "tools/view/hand/scene_hand.hpp"
 #include "tools/view/painter.hpp"
-#include "tools/view/scene/scene_hand.hpp"
 #include "tools/view/scene/scene_motion.hpp"
 #include "tools/view/scene/scene_screens.hpp"
 #include "tools/view/workbench.hpp"
@@ -151,6 +152,7 @@ private:
     SceneMotion motion_;
     MotionGrain grain_;
     SceneHand hand_;
+    PulledHands pulled_;
     enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
     std::int64_t plan_version_ = -1, judged_version_ = -1;

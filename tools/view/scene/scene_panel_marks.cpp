@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlays of the scene: measured points and the legend.
-#include "tools/view/hand_of_patch.hpp"
+#include "devices/hosted/clocks.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
@@ -133,11 +135,20 @@ void ScenePanel::draw_measured(const picture::Measurement& measured, ImU32 ink, 
 
 /// Over the first view of the first screen.
 void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, double pixel) {
-    if (!hand_.is_there() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
+    pulled_.look(*bench_.status(), hosted::steady_ns());
+    std::vector<HandSight> sights = pulled_.sights();
+    const double limit = bench_.plan() ? largest_force(*bench_.plan()) : most_of_device_N;
+    if (auto own = hand_.sight(limit)) sights.insert(sights.begin(), std::move(*own));
+    if (sights.empty() || screens_.tiles().empty() || screens_.tiles().front().views.empty()) return;
     const SceneScreens::Tile& tile = screens_.tiles().front();
     const auto seen = [&](const Vec3& in_scene) { return place_in(tile, tile.views.front(), in_scene, corner, pixel); };
-    const double limit = bench_.plan() ? largest_force(*bench_.plan()) : most_of_device_N;
-    hand_.draw(paint, {corner.x, corner.y, corner.x + size.x, corner.y + size.y}, seen, limit);
+    Box free{corner.x, corner.y, corner.x + size.x, corner.y + size.y};
+    hand_.draw_silence(paint, free);
+    for (HandSight& sight : sights) {
+        if (sights.size() == 1) sight.name.clear();
+        draw_spring(paint, seen, sight);
+        free.right = draw_force_bar(paint, free, sight);
+    }
 }
 
 display::Legend ScenePanel::legend() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/view/frame/commands.hpp"
+#include "tools/view/frame/value_dialog.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/signal/feed.hpp"
 #include "tools/view/signal/plot.hpp"
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -53,6 +55,12 @@ public:
     void add(const std::string& port, bool is_spectrum = false);
     /// What can be done to scopes, and what they can show.
     void add_commands(std::vector<Command>& all);
+    /// Asks a person for a value; null: nobody is there.
+    std::function<void(ValueQuestion)> ask_value;
+    /// The level of the trigger, "12 mm"; without a trigger one where the wave rises. Throws Error.
+    void set_level(Scope& scope, const std::string& text) const;
+    /// Cursor 0 or 1, across or up, within what is shown: "120 ms". One that is not there yet is put there. Throws Error.
+    static void set_cursor(Scope& scope, std::size_t index, bool is_up, const std::string& text);
     /// The take that is looked at: files go beside it.
     std::filesystem::path folder_of_take;
     /// A new file: in the folder of the run, beside the take, or in the current folder.
@@ -73,6 +81,9 @@ public:
     std::vector<Scope>& list() { return scopes_; }
 
 private:
+    static constexpr const char* view_names[] = {"wave", "spectrum", "waterfall", "histogram", "x-y"};
+
+    void add_value_commands(std::vector<Command>& all, std::size_t index);
     void refresh(Scope& scope, const Feed& feed, int pixels);
     void refresh_wave(Scope& scope, const Trace& trace, const Feed& feed, double now, int pixels);
     void refresh_held(Scope& scope, const Feed& feed);

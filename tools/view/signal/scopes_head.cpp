@@ -14,8 +14,6 @@ namespace tactus::view {
 
 namespace {
 
-constexpr const char* views[] = {"wave", "spectrum", "waterfall", "histogram", "x-y"};
-
 float button_width(const char* label) { return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x; }
 
 }  // namespace
@@ -64,12 +62,13 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
     }
     ImGui::SameLine();
     const auto shown = static_cast<std::size_t>(scope.view);
-    if (ImGui::Button(views[shown], ImVec2(kind, 0)))
-        set_view(scope, static_cast<Scope::View>((shown + 1) % std::size(views)));
+    if (ImGui::Button(view_names[shown], ImVec2(kind, 0)))
+        set_view(scope, static_cast<Scope::View>((shown + 1) % std::size(view_names)));
     mark("kind");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("next: %s; right click: back", views[(shown + 1) % std::size(views)]);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("next: %s; right click: back", view_names[(shown + 1) % std::size(view_names)]);
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right))
-        set_view(scope, static_cast<Scope::View>((shown + std::size(views) - 1) % std::size(views)));
+        set_view(scope, static_cast<Scope::View>((shown + std::size(view_names) - 1) % std::size(view_names)));
     ImGui::SameLine();
     options(scope, index, has_freeze, has_files);
     ImGui::SameLine();
@@ -142,41 +141,6 @@ void Scopes::options(Scope& scope, std::size_t index, bool has_freeze, bool has_
             scope.trigger->level = static_cast<double>(level);
     }
     ImGui::EndPopup();
-}
-
-void Scopes::add_commands(std::vector<Command>& all) {
-    for (const Feed::Port& port : ports_)
-        all.push_back({"scope", fmt::format("Show {} in a scope", port.name), "", "signal wave curve",
-                       [this, name = port.name] { add(name); }});
-    for (std::size_t i = 0; i < scopes_.size(); ++i) {
-        const auto on_scope = [&](const std::string& what, const std::string& about, auto&& change) {
-            all.push_back({"scope", fmt::format("Scope {}: {}", i + 1, what), "", scopes_[i].port + " " + about,
-                           [this, i, change] {
-                               if (i < scopes_.size()) change(scopes_[i]);
-                           }});
-        };
-        for (std::size_t view = 0; view < std::size(views); ++view)
-            on_scope(views[view], "view show",
-                     [view](Scope& scope) { set_view(scope, static_cast<Scope::View>(view)); });
-        on_scope(scopes_[i].is_frozen ? "go on" : "freeze", "hold stand",
-                 [](Scope& scope) { scope.is_frozen = !scope.is_frozen; });
-        on_scope("CSV", "save export table", [](Scope& scope) { scope.wants_file = ".csv"; });
-        on_scope("PNG", "save export picture", [](Scope& scope) { scope.wants_file = ".png"; });
-        on_scope("close", "remove", [](Scope& scope) { scope.wants_close = true; });
-        on_scope("no trigger", "", [](Scope& scope) { scope.trigger.reset(); });
-        for (const bool is_rising : {true, false})
-            on_scope(is_rising ? "trigger where it rises" : "trigger where it falls", "level middle",
-                     [is_rising](Scope& scope) {
-                         // In the middle of what is shown, where a wave crosses.
-                         scope.trigger = Trigger{0.5 * (scope.y.low + scope.y.high), is_rising};
-                     });
-        if (display(scopes_[i].port).columns == 3)
-            for (const auto& [name, column] :
-                 {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2), std::pair("magnitude", -1)})
-                on_scope(fmt::format("measure {}", name), "column level trigger", [column = column](Scope& scope) {
-                    set_column(scope, static_cast<std::size_t>(std::max(column, 0)), column < 0);
-                });
-    }
 }
 
 }  // namespace tactus::view

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hand of the patch: that of the window in place of the patch's own.
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/plan/case_run.hpp"
 #include "tools/view/workbench.hpp"
 

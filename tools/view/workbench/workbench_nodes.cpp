@@ -8,6 +8,7 @@
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/workbench/thing_count.hpp"
 
 #include <fmt/format.h>
 
@@ -34,8 +35,6 @@ bool carries_signal(const std::string& type) {
     const auto is_signal = [](const PicturePort& port) { return port.type == &value::signal; };
     return ports && (std::ranges::any_of(ports->inputs, is_signal) || std::ranges::any_of(ports->outputs, is_signal));
 }
-
-std::string count_of(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
 
 fs::path folder_of(const fs::path& patch) { return fs::absolute(patch).parent_path(); }
 
@@ -65,12 +64,6 @@ NamedAsset asset_for(const fs::path& file, const patch::Patch& patch, const fs::
     });
     if (known != patch.assets.end()) return {known->name, path.string(), {}, false};
     return {asset_name_of(path, patch), path.string(), edit::path_from(folder, path), true};
-}
-
-std::string count_of(std::size_t nodes, std::size_t comments) {
-    if (comments == 0) return count_of(nodes);
-    const std::string all = fmt::format("{} comment{}", comments, comments == 1 ? "" : "s");
-    return nodes == 0 ? all : count_of(nodes) + " and " + all;
 }
 
 }  // namespace
@@ -231,47 +224,6 @@ bool Workbench::place_automatically(const std::vector<std::string>& nodes) {
 bool Workbench::colour(const std::vector<std::string>& nodes, const std::string& name) {
     return edit([&](std::string_view text) { return edit::with_colours(text, nodes, name); },
                 fmt::format("coloured {}", count_of(nodes.size())));
-}
-
-std::string Workbench::copy(const std::vector<std::string>& nodes,
-                            const std::map<std::string, patch::PatchPlace>& places) const {
-    try {
-        std::map<std::string, patch::PatchPlace> unplaced = places;
-        for (const auto& [node, place] : window_.places) unplaced.erase(node);
-        return edit::with_places(edit::copied(editor_->text(), nodes, fs::absolute(editor_->file()).parent_path()),
-                                 unplaced);
-    } catch (const Error&) {
-        return {};
-    }
-}
-
-std::vector<std::string> Workbench::paste(const std::string& copied, patch::PatchPlace by) {
-    patch::Problems problems;
-    const patch::Patch patch = patch::read_patch(copied, "clipboard", problems);
-    if (patch.nodes.empty() || !problems.empty()) {
-        tell("the clipboard holds no nodes of a patch", true);
-        return {};
-    }
-    std::map<std::string, std::string> names;
-    std::set<std::string> taken;
-    for (const patch::PatchNode& node : written_.nodes) taken.insert(node.name);
-    for (const patch::PatchNode& node : patch.nodes) {
-        // "gain_2" becomes "gain_3".
-        std::string stem = node.name;
-        if (const std::size_t bar = stem.rfind('_'); bar != std::string::npos && bar > 0 && bar + 1 < stem.size() &&
-                                                     stem.find_first_not_of("0123456789", bar + 1) == std::string::npos)
-            stem.resize(bar);
-        std::string name = node.name;
-        for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
-        names[node.name] = name;
-    }
-    const fs::path folder = fs::absolute(editor_->file()).parent_path();
-    if (!edit([&](std::string_view text) { return edit::with_pasted(text, copied, names, by, folder); },
-              fmt::format("added {}", count_of(names.size()))))
-        return {};
-    std::vector<std::string> made;
-    for (const auto& [from, to] : names) made.push_back(to);
-    return made;
 }
 
 bool Workbench::make_sub_patch(const std::vector<std::string>& nodes, const std::string& name) {

@@ -14,6 +14,9 @@ struct HandPlace {
     Vec3 handle{0.0};  ///< where the hand is, scene
 };
 
+/// A point of the device's frame in the scene, for a hand at `hand` in the device frame.
+Vec3 in_scene(const Vec3& at, const Vec3& hand, const HandPlace& place);
+
 class HandCursor {
 public:
     /// Farthest from the hand that the cursor gets while the hand feels a force: more would only stretch the spring, m of
@@ -30,8 +33,6 @@ public:
     void stay_near(const Pose& felt, double force_N);
 
     const Pose& wanted() const { return wanted_; }  ///< device frame
-    /// The cursor in the scene, for a hand at `felt` in the device frame.
-    Vec3 in_scene(const Pose& felt, const HandPlace& place) const;
 
 private:
     Pose wanted_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/scene/hand_pulse.hpp"
+#include "tools/view/hand/hand_pulse.hpp"
 
 #include <chrono>
 #include <system_error>

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/scene/hand_cursor.hpp"
+#include "tools/view/hand/hand_cursor.hpp"
 
 #include "dsp/core/rotation.hpp"
 
 #include <glm/geometric.hpp>
 
 namespace tactus::view {
+
+Vec3 in_scene(const Vec3& at, const Vec3& hand, const HandPlace& place) {
+    return place.handle + place.to_scene * (at - hand) * place.scale;
+}
 
 void HandCursor::begin(const Pose& hand) { wanted_ = hand; }
 
@@ -24,10 +28,6 @@ void HandCursor::stay_near(const Pose& felt, double force_N) {
     const double far = glm::length(away);
     if (force_N > least_force && far > longest_spring_m)
         wanted_.position = felt.position + away * (longest_spring_m / far);
-}
-
-Vec3 HandCursor::in_scene(const Pose& felt, const HandPlace& place) const {
-    return place.handle + place.to_scene * (wanted_.position - felt.position) * place.scale;
 }
 
 }  // namespace tactus::view

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the window says for its hand while it draws.
-#include "tools/view/scene/hand_pulse.hpp"
+#include "tools/view/hand/hand_pulse.hpp"
 
 #include "devices/haptic/mouse.hpp"
 #include "devices/haptic/window_hand.hpp"

@@ -6,15 +6,15 @@
 #include "dsp/display/camera.hpp"
 #include "engine/observe/observer.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
+#include "tools/view/hand/hand_cursor.hpp"
+#include "tools/view/hand/hand_pulse.hpp"
+#include "tools/view/hand/hand_sight.hpp"
+#include "tools/view/hand/place_watch.hpp"
 #include "tools/view/painter.hpp"
-#include "tools/view/scene/hand_cursor.hpp"
-#include "tools/view/scene/hand_pulse.hpp"
 
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace tactus::view {
 
@@ -39,7 +39,7 @@ public:
 
     /// Watches where the device lies in the scene; null: no run.
     void follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline);
-    void forget();
+    void forget() { place_.forget(); }
     /// The buttons above the scene; without a hand of the window, `offer`.
     void tools();
     std::function<void()> offer;
@@ -48,23 +48,23 @@ public:
     /// Holds one until it is let go, as a click on its button above the scene.
     void hold(std::size_t button, bool wanted);
     /// The hand goes to a point of the scene, as fast as the driver lets it.
-    void go_to(const Vec3& in_scene);
+    void go_to(const Vec3& to);
     /// Mouse and keys over the scene, whose picture is so high, pixels. True when the mouse is the hand's.
     bool steer(const display::OrbitCamera& camera, int height);
-    /// Cursor, spring and the bar of the force. `seen`: where a point of the scene is on the screen.
-    void draw(const Painter& paint, const Box& picture, const std::function<std::optional<Point>(const Vec3&)>& seen,
-              double limit_N) const;
+    /// What is seen of it; none: it is not there.
+    std::optional<HandSight> sight(double limit_N) const;
+    /// Says that the driver has let go, because pictures came too late.
+    void draw_silence(const Painter& paint, const Box& picture) const;
 
 private:
-    HandPlace place() const;
+    Vec3 cursor_in_scene(const HandPlace& place) const;
     std::int64_t held_buttons() const;
     void press_keys();
     void drop_keys();
     void step_by_keys(const Vec3& right, const Vec3& up, const Vec3& forward, const HandPlace& place);
 
     HandPulse pulse_;
-    std::shared_ptr<observe::Observer> observer_;
-    std::string frame_port_, scale_port_;
+    PlaceWatch place_;
     haptic::FeltHand felt_;
     HandCursor cursor_;
     std::int64_t run_ = 0, picture_ns_ = 0, interval_ns_ = 0, ticked_ns_ = 0, first_ns_ = 0;

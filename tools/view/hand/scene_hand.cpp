@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/scene/scene_hand.hpp"
+#include "tools/view/hand/scene_hand.hpp"
 
 #include "devices/hosted/clocks.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -104,33 +103,12 @@ std::int64_t SceneHand::held_buttons() const {
 }
 
 void SceneHand::follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline) {
-    forget();
-    observer_ = observer;
-    if (outline.places.empty()) return;
-    frame_port_ = outline.places.front().frame;
-    scale_port_ = outline.places.front().scale;
-    for (const std::string& port : {frame_port_, scale_port_}) observer_->watch(port, observe::Watch::latest, this);
+    place_.forget();
+    if (!outline.places.empty()) place_.follow(observer, outline.places.front());
 }
 
-void SceneHand::forget() {
-    if (observer_)
-        for (const std::string& port : {frame_port_, scale_port_})
-            if (!port.empty()) observer_->watch(port, observe::Watch::nothing, this);
-    observer_.reset();
-    frame_port_.clear();
-    scale_port_.clear();
-}
-
-HandPlace SceneHand::place() const {
-    HandPlace place{{1.0, 0.0, 0.0, 0.0}, 1.0, felt_.pose.position};
-    if (!observer_ || frame_port_.empty()) return place;
-    if (const auto frame = observer_->latest<Pose>(frame_port_); frame && is_valid(frame->value)) {
-        place.to_scene = glm::normalize(frame->value.orientation);
-        place.handle = frame->value.position;
-    }
-    if (const auto scale = observer_->latest<double>(scale_port_); scale && scale->value > 0.0)
-        place.scale = scale->value;
-    return place;
+Vec3 SceneHand::cursor_in_scene(const HandPlace& place) const {
+    return in_scene(cursor_.wanted().position, felt_.pose.position, place);
 }
 
 void SceneHand::tools() {
@@ -165,10 +143,10 @@ void SceneHand::hold(std::size_t button, bool wanted) {
     else latched_ &= ~(1u << button);
 }
 
-void SceneHand::go_to(const Vec3& in_scene) {
+void SceneHand::go_to(const Vec3& to) {
     if (!is_there_) return;
-    const HandPlace place = this->place();
-    cursor_.move(in_scene - cursor_.in_scene(felt_.pose, place), place);
+    const HandPlace place = place_.of(felt_.pose);
+    cursor_.move(to - cursor_in_scene(place), place);
 }
 
 void SceneHand::press_keys() {
@@ -197,7 +175,7 @@ bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
     is_hovered_ = ImGui::IsItemHovered() || ImGui::IsItemActive();
     if (!is_on_) return false;
     const ImGuiIO& io = ImGui::GetIO();
-    const HandPlace place = this->place();
+    const HandPlace place = place_.of(felt_.pose);
     const Vec3 right = camera.orientation * Vec3(1.0, 0.0, 0.0), up = camera.orientation * Vec3(0.0, 1.0, 0.0),
                forward = camera.orientation * Vec3(0.0, 0.0, -1.0);
     step_by_keys(right, up, forward, place);
@@ -236,48 +214,17 @@ void SceneHand::step_by_keys(const Vec3& right, const Vec3& up, const Vec3& forw
     step(ImGuiKey_PageDown, -forward, -forward);
 }
 
-void SceneHand::draw(const Painter& paint, const Box& picture,
-                     const std::function<std::optional<Point>(const Vec3&)>& seen, double limit_N) const {
-    if (!is_there_) return;
-    const HandPlace place = this->place();
-    const auto hand = seen(place.handle), cursor = seen(cursor_.in_scene(felt_.pose, place));
-    const double force = glm::length(felt_.force.force);
-    const double share = std::clamp(force / std::max(limit_N, 0.1), 0.0, 1.0);
-    const ImU32 ink = share > 0.8 ? tone::bad : share > 0.4 ? tone::warm : tone::good;
-    // As the letters, so that a dense screen shows them in the same size.
-    constexpr double usual_letters = 14.0;
-    const double s = static_cast<double>(ImGui::GetFontSize()) / usual_letters;
-    if (hand && cursor) {
-        // A spring of eight turns, which its stretch makes flat.
-        constexpr int turns = 16;
-        const Point along = *cursor - *hand;
-        const double length = std::hypot(along.x, along.y);
-        Point before = *hand;
-        for (int i = 1; i <= turns && length > 3.0 * s; ++i) {
-            const double side = i == turns ? 0.0 : (i % 2 == 0 ? -4.0 : 4.0) * s;
-            const Point at = *hand + along * (i / static_cast<double>(turns)) +
-                             Point{-along.y / length * side, along.x / length * side};
-            paint.line(before, at, ink, 2.0 * s);
-            before = at;
-        }
-        paint.dot(*cursor, 6.0 * s, ink);
-        paint.dot(*hand, 3.0 * s, colour(0x1e293b));
-    }
-    const double high = 0.4 * picture.height(), wide = 14.0 * s, right = picture.right - 14.0 * s;
-    const Box bar{right - wide, picture.bottom - 34.0 * s - high, right, picture.bottom - 34.0 * s};
-    paint.box({bar.left - 4.0 * s, bar.top - 4.0 * s, bar.right + 4.0 * s, picture.bottom - 8.0 * s},
-              colour(0xffffff, 215), 4.0 * s);
-    paint.frame(bar, colour(0x1e293b), 2.0 * s);
-    paint.box({bar.left, bar.bottom - share * high, bar.right, bar.bottom}, ink, 2.0 * s);
-    const double size = 0.85 * usual_letters * s;
-    const std::string text = fmt::format("{:.1f} N", force);
-    const double text_wide = paint.width_of(text, size);
-    paint.box({right - text_wide - 6.0 * s, picture.bottom - 30.0 * s, right + 4.0 * s, picture.bottom - 8.0 * s},
-              colour(0xffffff, 215), 4.0 * s);
-    paint.text({right - text_wide, picture.bottom - 28.0 * s}, size, colour(0x1e293b), text);
-    if (felt_.is_silent != 0)
-        paint.text({picture.left + 12.0 * s, picture.top + 12.0 * s}, size, tone::bad,
-                   "the hand was let go: pictures came too late");
+std::optional<HandSight> SceneHand::sight(double limit_N) const {
+    if (!is_there_) return std::nullopt;
+    const HandPlace place = place_.of(felt_.pose);
+    return HandSight{place.handle, cursor_in_scene(place), glm::length(felt_.force.force), limit_N, {}};
+}
+
+void SceneHand::draw_silence(const Painter& paint, const Box& picture) const {
+    if (!is_there_ || felt_.is_silent == 0) return;
+    const double size = 0.85 * static_cast<double>(ImGui::GetFontSize());
+    paint.text({picture.left + size, picture.top + size}, size, tone::bad,
+               "the hand was let go: pictures came too late");
 }
 
 }  // namespace tactus::view

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 
 #include "devices/haptic/window_hand.hpp"
 #include "tests/support/catch.hpp"

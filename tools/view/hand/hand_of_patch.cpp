@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
@@ -21,13 +21,17 @@ bool HandOfPatch::moves_by_itself() const {
     return driver == "simulated" || driver == "scripted" || driver == "replay";
 }
 
+std::string device_of(const compile::Plan& plan, const compile::PlanNode& node) {
+    const std::string named = device_named_by(node);
+    return named.empty() && plan.patch.devices.size() == 1 ? plan.patch.devices.front().name : named;
+}
+
 std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
     const auto source = std::ranges::find_if(
         plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::hand_source; });
     if (source == plan.nodes.end()) return std::nullopt;
     const auto& devices = plan.patch.devices;
-    HandOfPatch hand{source->name, device_named_by(*source), {}, {}};
-    if (hand.device.empty() && devices.size() == 1) hand.device = devices.front().name;
+    HandOfPatch hand{source->name, device_of(plan, *source), {}, {}};
     // A driver that the patch does not declare can be named as well.
     const auto declared = std::ranges::find(devices, hand.device, &patch::PatchDevice::name);
     hand.driver = declared == devices.end() ? hand.device : declared->driver;
@@ -41,12 +45,11 @@ std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
     return hand;
 }
 
-double largest_force(const compile::Plan& plan) {
-    const std::optional<HandOfPatch> hand = hand_of(plan);
+double largest_force(const compile::Plan& plan, const std::string& device) {
     double most = most_of_device_N;
-    for (const patch::PatchDevice& device : plan.patch.devices)
-        for (const OptionText& setting : device.settings)
-            if (hand && device.name == hand->device && setting.name == "max_force") try {
+    for (const patch::PatchDevice& declared : plan.patch.devices)
+        for (const OptionText& setting : declared.settings)
+            if (declared.name == device && setting.name == "max_force") try {
                     most = parse_quantity(setting.text).value;
                 } catch (const Error&) {
                     continue;  // the run says what is wrong
@@ -56,10 +59,15 @@ double largest_force(const compile::Plan& plan) {
         if (node.type->role != NodeRole::hand_sink) continue;
         const std::string named = device_named_by(node);
         const auto limit = node.params.find("max_force");
-        if (limit != node.params.end() && (!hand || named.empty() || named == hand->device))
+        if (limit != node.params.end() && (device.empty() || named.empty() || named == device))
             most = std::min(most, limit->second->value);
     }
     return most;
+}
+
+double largest_force(const compile::Plan& plan) {
+    const std::optional<HandOfPatch> hand = hand_of(plan);
+    return largest_force(plan, hand ? hand->device : std::string());
 }
 
 }  // namespace tactus::view

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/scene/hand_offer.hpp"
+#include "tools/view/hand/hand_offer.hpp"
 
-#include "tools/view/hand_of_patch.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/spots.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // When the window begins to move the hand of a run.
-#include "tools/view/scene/scene_hand.hpp"
+#include "tools/view/hand/scene_hand.hpp"
 
 #include "devices/haptic/window_hand.hpp"
 #include "devices/hosted/clocks.hpp"

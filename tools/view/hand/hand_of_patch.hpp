@@ -20,7 +20,11 @@ struct HandOfPatch {
 };
 /// Of a hand on a simulated device whose table does not say it.
 inline constexpr double most_of_device_N = 20.0;
-/// The largest force that the hand of the patch can get: the lower one of the limits of its output and of its device, N.
+/// The device that a node of a hand means; empty: that cannot be said.
+std::string device_of(const compile::Plan& plan, const compile::PlanNode& node);
+/// The largest force that a hand on this device can get: the lower one of the limits of its output and of the device, N.
+double largest_force(const compile::Plan& plan, const std::string& device);
+/// The same for the hand of the patch.
 double largest_force(const compile::Plan& plan);
 
 /// None: no node reads a hand.
