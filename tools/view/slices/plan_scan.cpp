@@ -4,6 +4,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "tools/picture/scene/section_grey.hpp"
 
 #include <fmt/format.h>
@@ -66,7 +67,8 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
                 nearest[axis].push_back(
                     std::clamp(static_cast<int>(std::lround((n - offset) * step)), 0, grid.size[axis] - 1));
         }
-        for (int k = first[2]; k <= last[2]; ++k)
+        for (int k = first[2]; k <= last[2]; ++k) {
+            leave_if_stopped();
             for (int j = first[1]; j <= last[1]; ++j)
                 for (int i = first[0]; i <= last[0]; ++i) {
                     const auto of = [&](std::size_t axis, int n) {
@@ -75,6 +77,7 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
                     float& value = joined.at(i, j, k);
                     value = std::max(value, grid.at(of(0, i), of(1, j), of(2, k)));
                 }
+        }
     }
     return joined;
 }
