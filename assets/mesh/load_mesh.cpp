@@ -42,8 +42,11 @@ std::size_t join_equal_points(geometry::TriangleSurface& mesh) {
         const Vec3& v = mesh.vertices[static_cast<std::size_t>(n)];
         return std::tuple(v.x, v.y, v.z);
     };
-    leave_if_stopped();
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+    unsigned compared = 0;
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        if (++compared % (1 << 16) == 0) leave_if_stopped();
+        return key(a) < key(b);
+    });
     leave_if_stopped();
     std::vector<int> renamed(mesh.vertices.size());
     std::vector<Vec3> kept;

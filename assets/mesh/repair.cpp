@@ -37,7 +37,11 @@ std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
             sides.push_back({std::min(a, b), std::max(a, b), a < b, static_cast<int>(t)});
         }
     leave_if_stopped();
-    std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge() < b.edge(); });
+    unsigned compared = 0;
+    std::stable_sort(sides.begin(), sides.end(), [&compared](const Side& a, const Side& b) {
+        if (++compared % (1 << 16) == 0) leave_if_stopped();
+        return a.edge() < b.edge();
+    });
     return sides;
 }
 
