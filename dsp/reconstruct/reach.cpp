@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/reach.hpp"
 
-#include "dsp/core/stop.hpp"
 #include "dsp/reconstruct/margin_wall.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/rope/measure.hpp"
@@ -68,7 +67,6 @@ rope::ShortestPath path_of(const Vec3& from, const Vec3& to, double radius, cons
     const double aside = std::max(0.25 * chord, 25.0 * mm);
     for (const Vec3& side : {Vec3(0.0), u, -u, v, -v}) {
         const std::array<Vec3, 3> start{from, 0.5 * (from + to) + aside * side, to};
-        leave_if_stopped();
         rope::ShortestPath found = rope::shortest_path(start, bone, radius, path_points / 2 + 1);
         const bool off = keeps_off(found.points, radius, bone);
         if (best.points.empty() || (off && !is_off) || (off == is_off && found.length < best.length))
