@@ -2,8 +2,6 @@
 // Computations beside the pictures of a window: they read, and nobody waits for one that is wanted no longer.
 #pragma once
 
-#include "dsp/core/stop.hpp"
-
 #include <chrono>
 #include <concepts>
 #include <cstddef>
@@ -35,8 +33,7 @@ std::size_t jobs_waiting(Lane lane);
 /// before what a job may use is gone.
 void end_beside();
 
-/// The result of one computation that only reads. Its end asks the computation to stop, and does not wait for it:
-/// what it calls looks whether it is to stop, see StopScope.
+/// The result of one computation that only reads. Its end asks the computation to stop, and does not wait for it.
 template <class T>
 class Beside {
 public:
@@ -61,12 +58,9 @@ public:
         auto kept = std::make_shared<Work>(std::move(work));
         do_beside(lane, [result, kept, stop = stop_.get_token()] {
             if (stop.stop_requested()) return;
-            const StopScope scope(stop);
             try {
                 if constexpr (std::invocable<Work&, std::stop_token>) result->set_value((*kept)(stop));
                 else result->set_value((*kept)());
-            } catch (const Stopped&) {
-                // Nobody takes it.
             } catch (...) {
                 result->set_exception(std::current_exception());
             }

@@ -4,6 +4,7 @@
 #include "dsp/core/stop.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/held_lane.hpp"
+#include "tools/study/leaving.hpp"
 #include "tools/study/workers.hpp"
 
 #include <sys/resource.h>
@@ -56,24 +57,24 @@ TEST_CASE("a computation beside the pictures that is let go leaves at its next l
     const auto begun = std::make_shared<std::atomic<bool>>(false), is_gone = std::make_shared<std::atomic<bool>>(false);
     {
         Beside<int> result;
-        result.begin(Lane::studies, [begun, is_gone] {
-            const Gone gone{is_gone};
+        result.begin(Lane::studies, leaving([begun, is_gone] {
+                         const Gone gone{is_gone};
             // Nothing in between knows of a token.
-            on_threads(3)(3, [&](int) {
-                *begun = true;
-                begun->notify_all();
-                for (;;) tactus::leave_if_stopped();
-            });
-            return 1;
-        });
+                         on_threads(3)(3, [&](int) {
+                             *begun = true;
+                             begun->notify_all();
+                             for (;;) tactus::leave_if_stopped();
+                         });
+                         return 1;
+                     }));
         begun->wait(false);
     }
     is_gone->wait(false);
     Beside<int> next;
-    next.begin(Lane::studies, [] {
-        tactus::leave_if_stopped();
-        return 2;
-    });
+    next.begin(Lane::studies, leaving([] {
+                   tactus::leave_if_stopped();
+                   return 2;
+               }));
     CHECK(next.take() == 2);
 }
 

@@ -16,7 +16,7 @@ namespace tactus::view {
 class ScanImport {
 public:
     ScanImport() = default;
-    /// Stops, and waits until the import has noticed it, which is soon: it writes a file.
+    /// Stops, and waits until the import has noticed it: it writes a file.
     ~ScanImport();
     ScanImport(const ScanImport&) = delete;
     ScanImport& operator=(const ScanImport&) = delete;

@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 #include "tools/picture/scene/section_grey.hpp"
+#include "tools/study/leaving.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -103,11 +104,11 @@ bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::p
 }
 
 void PlanScan::read(const std::filesystem::path& scan) {
-    reading_.begin(study::Lane::studies, [scan] { return read_plan_scan(scan); });
+    reading_.begin(study::Lane::studies, study::leaving([scan] { return read_plan_scan(scan); }));
 }
 
 void PlanScan::read_fragments(const std::filesystem::path& plan) {
-    reading_.begin(study::Lane::studies, [plan] { return scan_of_fragments(plan); });
+    reading_.begin(study::Lane::studies, study::leaving([plan] { return scan_of_fragments(plan); }));
 }
 
 bool PlanScan::tend() {
