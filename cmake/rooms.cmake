@@ -47,6 +47,16 @@ if(MOLD)
   target_link_options(tactus_flags INTERFACE -fuse-ld=mold)
 endif()
 
+# tactus_precompile(TARGET [HEADER ...])
+function(tactus_precompile target)
+  if(NOT TACTUS_PCH)
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE ${TACTUS_PCH_HEADERS} ${ARGN})
+  # gcc 12 no longer knows precompiled code as that of a system header, and finds faults in std::string that are none.
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>)
+endfunction()
+
 # PRECOMPILE: headers that most files of the room include, beside those of TACTUS_PCH_HEADERS. A file still names what it uses:
 # builds with clang or sanitizers have no precompiled headers and check that.
 function(tactus_room name)
@@ -65,11 +75,7 @@ function(tactus_room name)
   if(ROOM_OPTIMISE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_options(tactus_${name} PRIVATE -O3)
   endif()
-  if(TACTUS_PCH)
-    target_precompile_headers(tactus_${name} PRIVATE ${TACTUS_PCH_HEADERS} ${ROOM_PRECOMPILE})
-    # gcc 12 no longer knows precompiled code as that of a system header, and finds faults in std::string that are none.
-    target_compile_options(tactus_${name} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
-  endif()
+  tactus_precompile(tactus_${name} ${ROOM_PRECOMPILE})
 endfunction()
 
 # Sources whose speed does not matter: a sixth of their compile time goes into -O2. Numbers are the same at any level.

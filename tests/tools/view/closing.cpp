@@ -24,6 +24,19 @@ Outcome edit_and(const Display& display, const Folder& folder, const std::string
     return done;
 }
 
+/// Starts the window beside the test.
+pid_t start(const Display& display, const Folder& folder) {
+    const std::string line =
+        fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state exec {2} {3} >out.txt 2>err.txt", folder.path.string(),
+                    display.environment(), tactus::test::command(), run_voice);
+    const pid_t process = ::fork();
+    if (process == 0) {
+        ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+        ::_exit(127);
+    }
+    return process;
+}
+
 bool is_edited(const fs::path& file) { return slurp(file).find("\"220 Hz\"") != std::string::npos; }
 
 }  // namespace
@@ -74,14 +87,7 @@ TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the ed
     CHECK(is_edited(folder.path / "voice.unsaved.toml"));
 
     folder.write("script", "set tone.frequency \"330 Hz\"\nuntil 0.1\nscreenshot ready.png\n");
-    const std::string line =
-        fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state exec {2} {3} >out.txt 2>err.txt", folder.path.string(),
-                    display.environment(), tactus::test::command(), run_voice);
-    const pid_t process = ::fork();
-    if (process == 0) {
-        ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
-        ::_exit(127);
-    }
+    const pid_t process = start(display, folder);
     CHECK(wait_for([&] { return fs::exists(folder.path / "ready.png"); }));
     ::kill(process, SIGTERM);
     int status = 0;
@@ -89,6 +95,27 @@ TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the ed
     CHECK(WEXITSTATUS(status) == 0);
     CHECK(slurp(folder.path / "voice.unsaved-2.toml").find("\"330 Hz\"") != std::string::npos);
     CHECK(slurp(folder.path / "err.txt").find("are kept in") != std::string::npos);
+}
+
+TEST_CASE("a window that is killed has kept its edits and the next window restores them", "[display]") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
+    folder.write("script", "set tone.frequency \"220 Hz\"\nwait 60\n");
+    const pid_t process = start(display, folder);
+    CHECK(wait_for([&] { return fs::exists(kept) && is_edited(kept); }));
+    ::kill(process, SIGKILL);
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    CHECK(WIFSIGNALED(status));
+    CHECK(slurp(patch) == voice);
+
+    folder.write("script", "frames 3\npress \"restore edits\"\nframes 3\nsave\nclose\n");
+    const Outcome next = on(display, folder, run_voice);
+    INFO(next.err);
+    CHECK(next.code == 0);
+    CHECK(is_edited(patch));
+    CHECK_FALSE(fs::exists(kept));
 }
 
 TEST_CASE("a patch of the library that is saved in the window gets a name, and the library stays as it is",
@@ -110,7 +137,7 @@ TEST_CASE("a patch of the library that is saved in the window gets a name, and t
     CHECK_FALSE(fs::exists(patches / "touch-sphere.unsaved.toml"));
 }
 
-TEST_CASE("what is being typed is in the file that is saved, and is asked about when the window closes", "[display]") {
+TEST_CASE("what is being typed is in the file that is saved and is asked about when the window closes", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     const std::string type_name = "stop\nuntil over\nframes 3\npress tone\npress name\nkey ctrl+a\ntype lead\n";
