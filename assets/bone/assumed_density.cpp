@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/assumed_density.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <algorithm>
 
 namespace tactus::bone {
@@ -21,7 +23,10 @@ float density_at(double depth) {
 volume::Grid assumed_density(const volume::Grid& distance) {
     volume::Grid density{distance.size, distance.origin, distance.spacing, {}};
     density.values.reserve(distance.count());
-    for (const float d : distance.values) density.values.push_back(density_at(-double(d)));
+    for (const float d : distance.values) {
+        if (density.values.size() % (1 << 20) == 0) leave_if_stopped();
+        density.values.push_back(density_at(-double(d)));
+    }
     return density;
 }
 

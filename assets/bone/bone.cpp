@@ -8,6 +8,7 @@
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -38,10 +39,12 @@ template <typename Visit>
 void for_each_block(const std::array<int, 3>& size, Visit visit) {
     constexpr int side = openvdb::FloatTree::LeafNodeType::DIM;
     for (int k = 0; k < size[2]; k += side)
-        for (int j = 0; j < size[1]; j += side)
+        for (int j = 0; j < size[1]; j += side) {
+            leave_if_stopped();
             for (int i = 0; i < size[0]; i += side)
                 visit(openvdb::Coord(i, j, k), openvdb::Coord(std::min(i + side, size[0]), std::min(j + side, size[1]),
                                                               std::min(k + side, size[2])));
+        }
 }
 
 openvdb::FloatGrid::Ptr empty_vdb(const volume::Grid& grid, const std::string& name, float background) {
@@ -80,7 +83,8 @@ VdbPair to_vdb(SparseBone& bone) {
     static_assert(side == openvdb::FloatTree::LeafNodeType::DIM);
     const auto [nx, ny, nz] = bone.blocks_per_axis();
     for (int bz = 0; bz < nz; ++bz)
-        for (int by = 0; by < ny; ++by)
+        for (int by = 0; by < ny; ++by) {
+            leave_if_stopped();
             for (int bx = 0; bx < nx; ++bx) {
                 std::unique_ptr<SparseBone::Block> block = std::move(bone.blocks[bone.block_index(bx, by, bz)]);
                 if (!block) continue;
@@ -95,6 +99,7 @@ VdbPair to_vdb(SparseBone& bone) {
                             density->setValueOn(at, block->density[n]);
                         }
             }
+        }
     return vdb;
 }
 
@@ -169,7 +174,8 @@ std::string identifier_of(std::span<const Bone> bones) {
         hash.add_text(bone.name);
         for (const volume::Grid* grid : {&bone.distance, &bone.density}) {
             add_place(hash, *grid);
-            hash.add_bytes(grid->values.data(), grid->values.size() * sizeof(float));
+            add_in_pieces(hash,
+                          {reinterpret_cast<const char*>(grid->values.data()), grid->values.size() * sizeof(float)});
         }
     }
     return identifier_of(hash);
@@ -179,8 +185,11 @@ std::string identifier_of(const SparseBone& bone, const Bone& about) {
     Hash hash;
     hash.add_text(about.name);
     add_place(hash, bone.layout);
-    for (const auto& block : bone.blocks)
-        if (block) hash.add_bytes(block.get(), sizeof *block);
+    for (const auto& block : bone.blocks) {
+        if (!block) continue;
+        leave_if_stopped();
+        hash.add_bytes(block.get(), sizeof *block);
+    }
     return identifier_of(hash);
 }
 
@@ -220,8 +229,23 @@ void read_provenance(const openvdb::MetaMap& meta, Bone& bone) {
             bone.provenance[it->first.substr(provenance_prefix.size())] = text->value();
 }
 
+/// OpenVDB reads a bone in one call, a few samples at a time.
+class HeldBytes final : public std::stringbuf {
+public:
+    using std::stringbuf::stringbuf;
+
+protected:
+    std::streamsize xsgetn(char* to, std::streamsize size) override {
+        leave_if_stopped();
+        return std::stringbuf::xsgetn(to, size);
+    }
+};
+
 std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
-    std::istringstream in(std::move(bytes), std::ios::binary);
+    HeldBytes held(std::move(bytes), std::ios::in | std::ios::binary);
+    std::istream in(&held);
+    // What its bytes throw must reach the caller unchanged.
+    in.exceptions(std::ios::badbit);
     openvdb::io::Stream stream(in, /*delayLoad=*/false);
     const auto grids = stream.getGrids();
     const auto meta = stream.getMetadata();

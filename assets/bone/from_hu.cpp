@@ -2,6 +2,7 @@
 #include "assets/bone/from_hu.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/volume/compact_slice.hpp"
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/grid_part.hpp"
@@ -57,7 +58,8 @@ volume::Components moved_into(const volume::Components& components, const Box& r
     volume::RunRows& rows = moved.rows;
     for (std::size_t a = 0; a < 3; ++a) rows.size[a] = room.last[a] - room.first[a] + 1;
     const auto& from = components.rows;
-    for (int k = room.first[2]; k <= room.last[2]; ++k)
+    for (int k = room.first[2]; k <= room.last[2]; ++k) {
+        leave_if_stopped();
         for (int j = room.first[1]; j <= room.last[1]; ++j) {
             if (j >= 0 && k >= 0 && j < from.size[1] && k < from.size[2])
                 for (volume::SampleRun run : from.row(j, k)) {
@@ -67,6 +69,7 @@ volume::Components moved_into(const volume::Components& components, const Box& r
                 }
             rows.start.push_back(rows.runs.size());
         }
+    }
     return moved;
 }
 
@@ -233,6 +236,7 @@ struct Room {
         for (int n = first; n < first + count; ++n) {
             const int z = n + box.first[2];
             if (z < inner[2] || z > inner_end[2]) continue;
+            leave_if_stopped();
             values.clear();
             for (int j = 0; j <= inner_end[1] - inner[1]; ++j) {
                 const float* row = &part.values[part.index(at[0], at[1] + j, z - part_first)];

@@ -2,6 +2,9 @@
 #include "assets/bone/import.hpp"
 
 #include "assets/bone/import_steps.hpp"
+#include "dsp/core/stop.hpp"
+
+#include <utility>
 
 namespace tactus::bone {
 
@@ -19,6 +22,12 @@ void describe(Bone& bone, const ImportOptions& options, const ImportSummary& fou
     bone.provenance["component"] = options.component.empty() ? "largest" : options.component;
     bone.provenance["fill"] = options.fill ? "true" : "false";
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
+}
+
+/// With jobs that look whether the bone is still wanted.
+ImportOptions may_stop(ImportOptions options) {
+    options.run = stoppable(std::move(options.run));
+    return options;
 }
 
 SparseImport import_scan(const ImportOptions& options, const ImportReport& report, ImportSummary& found) {
@@ -46,8 +55,9 @@ Bone import_surface(const ImportOptions& options, const ImportReport& report, Im
 
 }  // namespace
 
-Bone import_bone(const ImportOptions& options, const ImportProgress& progress, ImportSummary* summary) {
-    check_options(options);
+Bone import_bone(const ImportOptions& given, const ImportProgress& progress, ImportSummary* summary) {
+    check_options(given);
+    const ImportOptions options = may_stop(given);
     const ImportReport report{progress};
     ImportSummary found;
     Bone bone;
@@ -65,9 +75,10 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     return bone;
 }
 
-ImportSummary import_bone_file(const ImportOptions& options, const std::filesystem::path& out,
+ImportSummary import_bone_file(const ImportOptions& given, const std::filesystem::path& out,
                                const ImportProgress& progress) {
-    check_options(options);
+    check_options(given);
+    const ImportOptions options = may_stop(given);
     check_output(options, out);
     const ImportReport report{progress};
     ImportSummary found;

@@ -7,6 +7,7 @@
 #include "assets/volume/length_unit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -97,6 +98,7 @@ void measure(const Bone& bone, ImportSummary& summary) {
     double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = 0.0;
     std::size_t inside = 0;
     for (std::size_t n = 0; n < bone.distance.values.size(); ++n) {
+        if (n % (1 << 20) == 0) leave_if_stopped();
         if (bone.distance.values[n] >= 0.0f) continue;
         const double density = bone.density.values[n];
         sum += density;

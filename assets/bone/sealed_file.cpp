@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -70,6 +71,7 @@ void SealedFile::fail() const {
 }
 
 void SealedFile::flush_block() {
+    leave_if_stopped();
     const auto count = static_cast<std::size_t>(pptr() - pbase());
     if (written_ == 0) {
         if (count < identifier_offset + identifier_size) throw Error("OpenVDB wrote no header");
@@ -83,6 +85,14 @@ void SealedFile::flush_block() {
     setp(block_.data(), block_.data() + block_.size());
 }
 
+void add_in_pieces(Hash& hash, std::string_view bytes) {
+    for (std::size_t at = 0; at < bytes.size(); at += block_size) {
+        leave_if_stopped();
+        const std::string_view piece = bytes.substr(at, block_size);
+        hash.add_bytes(piece.data(), piece.size());
+    }
+}
+
 std::string read_sealed(const std::filesystem::path& path) {
     std::string bytes = file::read_whole_file(path);
     if (bytes.size() < seal_size || bytes.compare(bytes.size() - seal_size, seal_mark.size(), seal_mark) != 0)
@@ -91,7 +101,7 @@ std::string read_sealed(const std::filesystem::path& path) {
     std::memcpy(&stated, bytes.data() + bytes.size() - sizeof stated, sizeof stated);
     bytes.resize(bytes.size() - seal_size);
     Hash hash;
-    hash.add_bytes(bytes.data(), bytes.size());
+    add_in_pieces(hash, bytes);
     if (hash.value() != stated)
         throw Error(
             fmt::format("{}: damaged (its checksum differs); make it again with 'tactus import'", path.string()));

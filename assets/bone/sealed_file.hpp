@@ -9,6 +9,7 @@
 #include <fstream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::bone {
@@ -43,6 +44,9 @@ private:
     std::size_t written_ = 0;
     bool sealed_ = false;
 };
+
+/// The same as adding them at once; in between it looks whether they are still wanted.
+void add_in_pieces(Hash& hash, std::string_view bytes);
 
 /// The content before the seal. OpenVDB trusts the sizes that it reads, so it only gets verified bytes. Throws Error
 /// when the seal is missing or the checksum differs.

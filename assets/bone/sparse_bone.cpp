@@ -2,6 +2,7 @@
 #include "assets/bone/sparse_bone.hpp"
 
 #include "assets/mesh/mesh.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -24,7 +25,8 @@ volume::Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
     const auto [nx, ny, nz] = sparse.blocks_per_axis();
     const auto& size = grid.size;
     for (int bz = 0; bz < nz; ++bz)
-        for (int by = 0; by < ny; ++by)
+        for (int by = 0; by < ny; ++by) {
+            leave_if_stopped();
             for (int bx = 0; bx < nx; ++bx) {
                 const SparseBone::Block* block = sparse.blocks[sparse.block_index(bx, by, bz)].get();
                 if (!block) continue;
@@ -34,6 +36,7 @@ volume::Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
                         std::copy_n(values(*block) + sample_index(0, y - by * side, z - bz * side), width,
                                     &grid.values[grid.index(bx * side, y, z)]);
             }
+        }
     return grid;
 }
 

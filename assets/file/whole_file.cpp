@@ -4,6 +4,7 @@
 #include "assets/file/part_lock.hpp"
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -57,8 +58,13 @@ std::string read_whole_file(const std::filesystem::path& path) {
     const auto [file, size] = open_regular(path);
     require_room(static_cast<double>(size), path, "its bytes");
     std::string bytes(size, '\0');
-    if (std::fread(bytes.data(), 1, size, file.get()) != size)
-        throw Error(fmt::format("{}: cannot be read to its end", path.string()));
+    constexpr std::size_t at_once = std::size_t{1} << 24;
+    for (std::size_t at = 0; at < size; at += at_once) {
+        leave_if_stopped();
+        const std::size_t wanted = std::min(at_once, static_cast<std::size_t>(size) - at);
+        if (std::fread(&bytes[at], 1, wanted, file.get()) != wanted)
+            throw Error(fmt::format("{}: cannot be read to its end", path.string()));
+    }
     return bytes;
 }
 
@@ -67,6 +73,7 @@ void add_file(Hash& hash, const std::filesystem::path& path) {
     // A multiple of the hash's word size: only the last block may end within a word.
     std::vector<char> block(std::size_t{1} << 16);
     for (std::uintmax_t left = size; left > 0;) {
+        leave_if_stopped();
         const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(left, block.size()));
         if (std::fread(block.data(), 1, wanted, file.get()) != wanted)
             throw Error(fmt::format("{}: cannot be read to its end", path.string()));

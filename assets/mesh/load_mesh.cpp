@@ -4,6 +4,7 @@
 #include "assets/mesh/mesh_readers.hpp"
 #include "assets/volume/length_unit.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -41,7 +42,12 @@ std::size_t join_equal_points(geometry::TriangleSurface& mesh) {
         const Vec3& v = mesh.vertices[static_cast<std::size_t>(n)];
         return std::tuple(v.x, v.y, v.z);
     };
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+    unsigned compared = 0;
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        if (++compared % (1 << 16) == 0) leave_if_stopped();
+        return key(a) < key(b);
+    });
+    leave_if_stopped();
     std::vector<int> renamed(mesh.vertices.size());
     std::vector<Vec3> kept;
     for (std::size_t n = 0; n < order.size(); ++n) {

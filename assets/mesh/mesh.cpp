@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/mesh.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -91,7 +93,9 @@ MeshTopology topology_of(const geometry::TriangleSurface& mesh) {
             edges.push_back({std::min(a, b), std::max(a, b), a < b});
             parent[static_cast<std::size_t>(root(a))] = root(b);
         }
+    leave_if_stopped();
     std::sort(edges.begin(), edges.end());
+    leave_if_stopped();
     MeshTopology found;
     for (std::size_t n = 0; n < edges.size();) {
         std::size_t count = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -26,6 +27,7 @@ int index_of(std::string_view word, std::size_t points, const std::string& file)
 MeshText read_obj(const std::string& bytes, const std::string& file) {
     MeshText mesh;
     for (std::size_t at = 0; at < bytes.size();) {
+        leave_if_stopped();
         const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
         const std::string_view line = std::string_view(bytes).substr(at, end - at);
         at = end + 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -131,6 +132,7 @@ void read_element(Body& body, const Element& element, const std::string& file, g
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
     if (element.properties.empty()) return;
     for (double n = 0.0; n < element.count; n += 1.0) {
+        leave_if_stopped();
         Vec3 point(0.0);
         for (const Property& property : element.properties) {
             if (property.count_type.empty()) {

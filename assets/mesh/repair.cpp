@@ -3,6 +3,7 @@
 
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +36,12 @@ std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
             const int a = triangles[t][c], b = triangles[t][(c + 1) % 3];
             sides.push_back({std::min(a, b), std::max(a, b), a < b, static_cast<int>(t)});
         }
-    std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge() < b.edge(); });
+    leave_if_stopped();
+    unsigned compared = 0;
+    std::stable_sort(sides.begin(), sides.end(), [&compared](const Side& a, const Side& b) {
+        if (++compared % (1 << 16) == 0) leave_if_stopped();
+        return a.edge() < b.edge();
+    });
     return sides;
 }
 
@@ -52,11 +58,13 @@ void for_each_edge(const std::vector<Side>& sides, Visit visit) {
 std::size_t drop_duplicates(std::vector<Triangle>& triangles) {
     std::map<Triangle, std::vector<int>> groups;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (t % 4096 == 0) leave_if_stopped();
         Triangle key = triangles[t];
         std::sort(key.begin(), key.end());
         groups[key].push_back(static_cast<int>(t));
     }
     std::vector<bool> dropped(triangles.size(), false);
+    leave_if_stopped();
     for (const auto& [key, members] : groups) {
         if (members.size() == 1) continue;
         int net = 0;
@@ -92,6 +100,7 @@ std::size_t orient(std::vector<Triangle>& triangles) {
         links[static_cast<std::size_t>(a.triangle)].push_back({b.triangle, a.forward == b.forward});
         links[static_cast<std::size_t>(b.triangle)].push_back({a.triangle, a.forward == b.forward});
     });
+    leave_if_stopped();
     std::vector<signed char> turn(triangles.size(), -1);
     std::size_t turned = 0;
     for (std::size_t start = 0; start < triangles.size(); ++start) {

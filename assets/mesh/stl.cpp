@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -30,6 +31,7 @@ void read_text(const std::string& bytes, const std::string& file, geometry::Tria
             ++corner;
         } else if (word == "endfacet") {
             if (corner != 3) throw Error(fmt::format("{}: a facet with {} points", file, corner));
+            leave_if_stopped();
             add_triangle(surface, corners);
             corner = 0;
         }
@@ -58,6 +60,7 @@ MeshText read_stl(const std::string& bytes, const std::string& file) {
                         file, triangles, bytes.size()));
     if (triangles > 500'000'000) throw Error(fmt::format("{}: {} triangles are too many", file, triangles));
     for (std::uint32_t n = 0; n < triangles; ++n) {
+        if (n % 4096 == 0) leave_if_stopped();
         std::array<float, 9> numbers;  // the corners; the stored normal is skipped
         std::memcpy(numbers.data(), bytes.data() + 84 + std::size_t{50} * n + 12, sizeof numbers);
         std::array<Vec3, 3> corners;

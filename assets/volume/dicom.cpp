@@ -3,6 +3,7 @@
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/volume/compact_slice.hpp"
 
 #include <glm/geometric.hpp>
@@ -75,6 +76,7 @@ Images collect(const std::filesystem::path& path) {
         const auto folder = std::filesystem::absolute(path).parent_path();
         Images all;
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            leave_if_stopped();
             if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path()))
                 continue;
             Images found = dicom_images(entry.path());
@@ -86,6 +88,7 @@ Images collect(const std::filesystem::path& path) {
     }
     Images all;
     for (const auto& file : files_in(path)) {
+        leave_if_stopped();
         Images found = dicom_images(file);
         all.insert(all.end(), found.begin(), found.end());
     }

@@ -5,6 +5,7 @@
 #include "assets/volume/readers.hpp"
 #include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <teem/nrrd.h>
 
@@ -220,6 +221,7 @@ void check_text(const std::filesystem::path& path, std::uint64_t start) {
     std::array<char, 1 << 16> block;
     std::size_t length = 0;
     do {
+        leave_if_stopped();
         file.read(block.data(), block.size());
         for (const char c : std::span(block).first(static_cast<std::size_t>(file.gcount()))) {
             length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
@@ -323,7 +325,10 @@ private:
         if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
         const auto lookup = nrrdFLookup[nrrd->type];
         whole_.resize(about.count() * layers_);
-        for (std::size_t n = 0; n < whole_.size(); ++n) whole_[n] = lookup(nrrd->data, n);
+        for (std::size_t n = 0; n < whole_.size(); ++n) {
+            if (n % (1 << 20) == 0) leave_if_stopped();
+            whole_[n] = lookup(nrrd->data, n);
+        }
     }
 
     void take(std::size_t first, std::span<float> values) {

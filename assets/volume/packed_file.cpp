@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -103,6 +104,7 @@ void PackedFile::read(std::span<char> out) {
 void PackedFile::skip(std::uint64_t bytes) {
     std::array<char, 1 << 16> rest;
     while (bytes > 0) {
+        leave_if_stopped();
         const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, rest.size()));
         read(std::span(rest).first(part));
         bytes -= part;
@@ -112,8 +114,7 @@ void PackedFile::skip(std::uint64_t bytes) {
 void PackedFile::finish() {
     if (!file_) return;
     std::array<char, 1 << 16> rest;
-    while (is_packed() && read_some(rest) > 0) {
-    }
+    while (is_packed() && read_some(rest) > 0) leave_if_stopped();
     int code = Z_OK;
     gzerror(handle(file_), &code);
     if (code != Z_OK && code != Z_STREAM_END) throw Error(fmt::format("{}: cut short; copy the file again", name_));
@@ -128,6 +129,7 @@ void read_samples(PackedFile& file, SampleType type, bool swapped, std::span<flo
     constexpr std::size_t at_once = 1 << 16;
     std::vector<char> bytes(at_once * type.bytes());
     for (std::size_t done = 0; done < values.size(); done += at_once) {
+        leave_if_stopped();
         const std::size_t count = std::min(at_once, values.size() - done);
         const auto part = std::span(bytes).first(count * type.bytes());
         file.read(part);

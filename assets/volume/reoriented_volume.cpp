@@ -3,6 +3,7 @@
 
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -73,7 +74,7 @@ private:
 
 ReorientedVolume::ReorientedVolume(SliceReader& reader, RunJobs run)
     : reader_(reader),
-      run_(std::move(run)),
+      run_(stoppable(std::move(run))),
       width_(static_cast<std::size_t>(reader.about.size[0])),
       slices_(static_cast<std::size_t>(reader.about.size[2])),
       is_counted_(slices_.size()) {
@@ -124,7 +125,10 @@ void ReorientedVolume::read(const std::vector<int>& slices, bool keep) {
     std::vector<std::vector<float>> values(std::min(at_once, slices.size()), std::vector<float>(reader_.slice_size()));
     for (std::size_t start = 0; start < slices.size(); start += at_once) {
         const std::size_t count = std::min(at_once, slices.size() - start);
-        for (std::size_t n = 0; n < count; ++n) reader_.read(slices[start + n], values[n]);
+        for (std::size_t n = 0; n < count; ++n) {
+            leave_if_stopped();
+            reader_.read(slices[start + n], values[n]);
+        }
         std::vector<Tally> tallies(count);
         run_(static_cast<int>(count), [&](int job) {
             const auto n = static_cast<std::size_t>(job);
@@ -254,6 +258,7 @@ Grid ReorientedVolume::layers(int first, int count, const Window& window) {
             if (!turned_) {
                 sorted_row(i0, j0 + j, first + layer, row);
             } else {
+                leave_if_stopped();
                 int i = i0;
                 for (float& value : row) {
                     const Vec3 u = back_ * (layout_.position(i++, j0 + j, first + layer) - reader_.about.map.origin);

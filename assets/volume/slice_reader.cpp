@@ -2,6 +2,7 @@
 #include "assets/volume/slice_reader.hpp"
 
 #include "assets/file/room.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/volume/value_range.hpp"
 
 #include <algorithm>
@@ -61,6 +62,7 @@ ScanVolume read_all(SliceReader& reader) {
     Tally tally;
     const std::size_t each = reader.slice_size();
     for (int k = 0; k < reader.about.size[2]; ++k) {
+        leave_if_stopped();
         const auto slice = std::span(values).subspan(static_cast<std::size_t>(k) * each, each);
         reader.read(k, slice);
         tally.add(slice, k, reader.about.size);

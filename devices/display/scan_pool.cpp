@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/display/scan_pool.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
@@ -30,13 +32,15 @@ GreyImage grey_image(const volume::Grid& grid, const GreyScale& scale) {
     std::vector<std::uint8_t>& grey = image.grey;
     grey.reserve(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
                  static_cast<std::size_t>(size[2]));
-    for (int k = 0; k < size[2]; ++k)
+    for (int k = 0; k < size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < size[1]; ++j)
             for (int i = 0; i < size[0]; ++i) {
                 const double value = static_cast<double>(grid.at(i * step[0], j * step[1], k * step[2]));
                 const double share = (value - scale.black) / (scale.white - scale.black);
                 grey.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0))));
             }
+    }
     // Samples lie at the middle of texels.
     const Vec3 texels(size[0], size[1], size[2]), spacing = grid.spacing * Vec3(step[0], step[1], step[2]);
     image.to_texture = glm::translate(glm::scale(Mat4(1.0), 1.0 / (texels * spacing)), 0.5 * spacing - grid.origin);

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/point_cubes.hpp"
 
 #include <fmt/format.h>
@@ -173,6 +174,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     const double radius2 = sampling.spacing * sampling.spacing;
     geometry::PackedCubes::Block block;
     for (std::size_t i = 0; i < count; ++i) {
+        if (i % 1024 == 0) leave_if_stopped();
         double nearest = std::numeric_limits<double>::infinity();
         std::uint32_t owner = 0;
         owners.around(all.position[i], block);

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/large_pages.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/volume/interpolation.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +37,8 @@ double steepness_of(const volume::Grid& grid) {
     // A row of maxima, because a compiler may not reorder a single one.
     constexpr int lanes = 16;
     std::array<std::array<float, lanes>, 13> steepest{};
-    for (int k = 0; k < grid.size[2]; ++k)
+    for (int k = 0; k < grid.size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < grid.size[1]; ++j)
             for (std::size_t s = 0; s < steps.size(); ++s) {
                 const Step& step = steps[s];
@@ -54,6 +56,7 @@ double steepness_of(const volume::Grid& grid) {
                 for (; i < end; ++i) row[0] = std::max(row[0], std::abs(there[i] - here[i]));
                 steepest[s] = row;
             }
+    }
     double most = 0.0;
     for (std::size_t s = 0; s < steps.size(); ++s)
         most = std::max(most, static_cast<double>(*std::ranges::max_element(steepest[s])) * steps[s].inverse_length);

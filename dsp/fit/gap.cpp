@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/gap.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "dsp/core/weighted_quantile.hpp"
 
 #include <glm/geometric.hpp>
@@ -18,6 +19,7 @@ SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose
     gap.distance.assign(points.size(), std::numeric_limits<float>::infinity());
     std::vector<double> values, weights;
     for (std::size_t n = 0; n < points.size(); ++n) {
+        if (n % 4096 == 0) leave_if_stopped();
         const volume::Sample here = other.sample(into.apply(points[n].position));
         if (!here.inside) continue;
         if (here.value < 0.0) gap.deepest = std::max(gap.deepest, -here.value);
@@ -61,7 +63,8 @@ double overlap_volume(const volume::Grid& first, const Pose& pose, const contact
     const double edge = (first.spacing.x + first.spacing.y + first.spacing.z) / 3.0;
     double voxels = 0.0;
     std::size_t n = 0;
-    for (int k = 0; k < first.size[2]; ++k)
+    for (int k = 0; k < first.size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < first.size[1]; ++j)
             for (int i = 0; i < first.size[0]; ++i, ++n) {
                 const double mine = std::clamp(0.5 - first.values[n] / edge, 0.0, 1.0);
@@ -79,6 +82,7 @@ double overlap_volume(const volume::Grid& first, const Pose& pose, const contact
                 const double alike = size > 0.0 ? 0.5 * (1.0 + glm::dot(a, b) / size) : 0.5;
                 voxels += least + alike * (most - least);
             }
+    }
     return voxels * first.spacing.x * first.spacing.y * first.spacing.z;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/geometry/iso_surface.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/tetrahedra.hpp"
 
 #include <algorithm>
@@ -37,6 +38,7 @@ struct Marcher {
         const std::size_t layer = 7 * static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
         edges = {std::vector<int>(layer, -1), std::vector<int>(layer, -1)};
         for (int k = 0; k + 1 < grid.size[2]; ++k) {
+            leave_if_stopped();
             auto& next = edges[static_cast<std::size_t>((k + 1) & 1)];
             std::fill(next.begin(), next.end(), -1);
             for (int j = 0; j + 1 < grid.size[1]; ++j)

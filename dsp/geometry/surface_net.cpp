@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/geometry/surface_net.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -146,6 +148,7 @@ struct Netter {
         const std::size_t layer = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
         vertex = {std::vector<int>(layer, -1), std::vector<int>(layer, -1)};
         for (int k = 0; k + 1 < grid.size[2]; ++k) {
+            leave_if_stopped();
             for (int j = 0; j + 1 < grid.size[1]; ++j)
                 for (int i = 0; i + 1 < grid.size[0]; ++i) make_vertices(i, j, k);
             for (int j = 0; j + 1 < grid.size[1]; ++j)

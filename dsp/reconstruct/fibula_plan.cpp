@@ -2,6 +2,7 @@
 #include "dsp/reconstruct/fibula_plan.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/jaw_side.hpp"
 #include "dsp/reconstruct/plan_frame.hpp"
@@ -142,6 +143,7 @@ FibulaPlan plan_fibula(const FibulaInputs& inputs, const DonorBone& donor) {
     Extent used;
     Cuts cuts;
     for (std::size_t n = 0; n < count; ++n) {
+        leave_if_stopped();
         const double start = !places.empty()       ? places[n]
                              : donor.has_surface() ? start_for(inputs, jaw, donor, n, free_from)
                                                    : free_from;

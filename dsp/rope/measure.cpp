@@ -2,6 +2,7 @@
 #include "dsp/rope/measure.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/rope/rope.hpp"
 
 #include <glm/geometric.hpp>
@@ -108,6 +109,7 @@ ShortestPath shortest_path(std::span<const Vec3> start, const Obstacle* obstacle
     rope.hold(path.points.size() - 1, path.points.back());
     path.length = whole;
     for (int round = 0; round < 300; ++round) {
+        leave_if_stopped();
         const double before = rope.length();
         rope.step(1.0, obstacle);
         path.length = rope.length();

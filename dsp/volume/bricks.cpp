@@ -2,6 +2,7 @@
 #include "dsp/volume/bricks.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/volume/interpolation.hpp"
 
 #include <algorithm>
@@ -102,6 +103,7 @@ BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEdit
     std::size_t needed = 0;
     std::array<float, brick_samples> brick;
     for (std::size_t b = 0; b < count; ++b) {
+        if (b % 4096 == 0) leave_if_stopped();
         gather(distance, b, brick.data());
         stored[b] = std::ranges::any_of(brick, [&](float d) { return static_cast<double>(d) < options.band; });
         needed += stored[b];

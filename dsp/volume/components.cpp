@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/components.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,7 +48,8 @@ struct Joined {
     Joined(const RunRows& all, bool faces_only) : rows(all) {
         std::iota(parent.begin(), parent.end(), std::int32_t{0});
         const auto width = static_cast<std::size_t>(rows.size[1]);
-        for (int k = 0; k < rows.size[2]; ++k)
+        for (int k = 0; k < rows.size[2]; ++k) {
+            leave_if_stopped();
             for (int j = 0; j < rows.size[1]; ++j) {
                 const std::size_t row = static_cast<std::size_t>(k) * width + static_cast<std::size_t>(j);
                 const auto with = [&](std::size_t other) { join_rows(other, row, faces_only ? 0 : 1); };
@@ -57,6 +60,7 @@ struct Joined {
                 if (j > 0) with(row - width - 1);
                 if (j + 1 < rows.size[1]) with(row - width + 1);
             }
+        }
     }
 };
 
@@ -65,18 +69,21 @@ float below(float iso) { return std::nextafter(iso, -std::numeric_limits<float>:
 // visit(run, its samples in a row of values) for the runs of the layers in `grey`.
 template <typename Visit>
 void for_each_run(Grid& grey, const RunRows& rows, int first, Visit visit) {
-    for (int k = 0; k < grey.size[2]; ++k)
+    for (int k = 0; k < grey.size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < grey.size[1]; ++j) {
             float* row = &grey.values[grey.index(0, j, k)];
             for (const SampleRun& run : rows.row(j, first + k)) visit(run, std::span(row + run.begin, row + run.end));
         }
+    }
 }
 
 // The complement of `components` in each row.
 RunRows complement(const Components& components, std::size_t keep) {
     RunRows out{components.rows.size, {0}, {}};
     out.start.reserve(components.rows.start.size());
-    for (int k = 0; k < out.size[2]; ++k)
+    for (int k = 0; k < out.size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < out.size[1]; ++j) {
             int begin = 0;
             for (const SampleRun& run : components.rows.row(j, k)) {
@@ -87,6 +94,7 @@ RunRows complement(const Components& components, std::size_t keep) {
             if (begin < out.size[0]) out.runs.push_back({begin, out.size[0]});
             out.start.push_back(out.runs.size());
         }
+    }
     return out;
 }
 
@@ -125,7 +133,8 @@ Components components_of(RunRows rows) {
     Joined joined(rows, false);
     std::vector<std::size_t> sizes;
     std::vector<Components::Box> boxes;
-    for (int k = 0; k < rows.size[2]; ++k)
+    for (int k = 0; k < rows.size[2]; ++k) {
+        leave_if_stopped();
         for (int j = 0; j < rows.size[1]; ++j) {
             const std::size_t row =
                 static_cast<std::size_t>(k) * static_cast<std::size_t>(rows.size[1]) + static_cast<std::size_t>(j);
@@ -146,6 +155,7 @@ Components components_of(RunRows rows) {
                 high = {std::max(high[0], run.end - 1), std::max(high[1], j), std::max(high[2], k)};
             }
         }
+    }
     std::vector<std::size_t> order(sizes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
@@ -176,7 +186,8 @@ RunRows hollows_of(const Components& components, std::size_t keep) {
             return static_cast<std::size_t>(joined.root(static_cast<std::int32_t>(n)));
         };
         std::size_t row = 0;
-        for (int k = 0; k < size[2]; ++k)
+        for (int k = 0; k < size[2]; ++k) {
+            leave_if_stopped();
             for (int j = 0; j < size[1]; ++j, ++row)
                 for (std::size_t n = outside.start[row]; n < outside.start[row + 1]; ++n) {
                     const SampleRun& run = outside.runs[n];
@@ -184,6 +195,7 @@ RunRows hollows_of(const Components& components, std::size_t keep) {
                         k == size[2] - 1)
                         open[root_of(n)] = 1;
                 }
+        }
         for (std::size_t n = 0; n < open.size(); ++n) open[n] = open[root_of(n)];
     }
     RunRows hollows{size, {0}, {}};

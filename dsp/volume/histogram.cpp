@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/histogram.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <algorithm>
 
 namespace tactus::volume {
@@ -23,9 +25,13 @@ void add_values(Histogram& histogram, std::span<const float> values) {
     const std::size_t bins = histogram.counts.size();
     const double scale =
         histogram.high > histogram.low ? static_cast<double>(bins) / (histogram.high - histogram.low) : 0.0;
-    for (const float value : values)
-        ++histogram.counts[std::min(bins - 1,
-                                    static_cast<std::size_t>(std::max(0.0, (double(value) - histogram.low) * scale)))];
+    constexpr std::size_t at_once = std::size_t{1} << 20;
+    for (std::size_t at = 0; at < values.size(); at += at_once) {
+        leave_if_stopped();
+        for (const float value : values.subspan(at, std::min(at_once, values.size() - at)))
+            ++histogram.counts[std::min(
+                bins - 1, static_cast<std::size_t>(std::max(0.0, (double(value) - histogram.low) * scale)))];
+    }
 }
 
 std::size_t otsu(const Histogram& histogram, std::size_t first) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/iso_distance.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/nearest_points.hpp"
 #include "dsp/volume/iso_surface.hpp"
 
@@ -109,7 +110,8 @@ struct Field {
     // Distances of layer k; false when more layers around it are needed.
     bool layer(int k, float* out) const {
         const Grid& grid = finder.grey;
-        for (int j = 0; j < grid.size[1]; ++j)
+        for (int j = 0; j < grid.size[1]; ++j) {
+            leave_if_stopped();
             for (int i = 0; i < grid.size[0]; ++i, ++out) {
                 const glm::vec3 at(i, j, k);
                 const bool inside = grid.at(i, j, k - finder.first) >= finder.iso;
@@ -134,6 +136,7 @@ struct Field {
                     if (const double d = exact(at, found); std::isfinite(d)) value = static_cast<float>(d);
                 *out = inside ? -value : std::min(value, static_cast<float>(reach));
             }
+        }
         return true;
     }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/surface_distance.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/closest_point.hpp"
 #include "dsp/geometry/nearest_points.hpp"
 #include "dsp/volume/surface_cells.hpp"
@@ -178,8 +179,10 @@ void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, 
 
 void turn_inside(Grid& distance, const geometry::TriangleSurface& surface, const RunJobs& run) {
     const auto winding = winding_numbers(distance, surface, run);
-    for (std::size_t n = 0; n < winding.size(); ++n)
+    for (std::size_t n = 0; n < winding.size(); ++n) {
+        if (n % (1 << 20) == 0) leave_if_stopped();
         if (winding[n] != 0) distance.values[n] = -distance.values[n];
+    }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/workers.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -16,9 +18,14 @@ RunJobs on_threads(int threads) {
         std::atomic<int> next{0};
         std::exception_ptr failure;
         std::mutex failing;
+        const IsStopped is_stopped = stop_of_this_thread();
         const auto work = [&] {
+            const StopScope scope(is_stopped);
             try {
-                for (int n = next++; n < count; n = next++) job(n);
+                for (int n = next++; n < count; n = next++) {
+                    leave_if_stopped();
+                    job(n);
+                }
             } catch (...) {
                 next = count;
                 const std::lock_guard lock(failing);

@@ -60,6 +60,7 @@ void Desk::follow_run() {
         return;
     }
     bench_.tend();
+    scene_.hand().stand(bench_.status()->state == RunStatus::State::stands);
     if (runs_ != bench_.runs()) {
         runs_ = bench_.runs();
         live_ = bench_.observer() ? std::make_unique<LiveFeed>(bench_.observer()) : nullptr;
@@ -133,7 +134,6 @@ void Desk::ask_farewell() {
 void Desk::draw() {
     plan_.begin_again();
     follow_run();
-    scene_.hand().stand(!take_ && bench_.status()->state == RunStatus::State::stands);
     scene_.hand().begin_picture();
     looked_at_.clear();
     fonts_ = {window_.body, window_.bold, window_.large, window_.scale(), window_.small};

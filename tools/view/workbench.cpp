@@ -190,11 +190,12 @@ bool Workbench::cut_at(const Vec3& site) {
         return false;
     }
     // What the command line said about the site does not hold any more.
+    const std::vector<std::string> before = choice_.overrides.settings;
     std::erase_if(choice_.overrides.settings, [&](const std::string& given) {
         return std::ranges::any_of(settings,
                                    [&](const auto& s) { return given.starts_with(s.node + "." + s.param + "="); });
     });
-    return edit(
+    const bool is_made = edit(
         [&](std::string_view text) {
             std::string changed(text);
             for (const session::SiteSetting& s : settings)
@@ -202,6 +203,10 @@ bool Workbench::cut_at(const Vec3& site) {
             return changed;
         },
         fmt::format("the saw works at {:g}, {:g}, {:g} mm", mm.x, mm.y, mm.z));
+    if (!is_made) choice_.overrides.settings = before;
+    // The text may have named this site already, and the override hid it.
+    else if (before.size() != choice_.overrides.settings.size()) adopt_text();
+    return is_made;
 }
 
 bool Workbench::can_cut() const {

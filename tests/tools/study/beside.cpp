@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/beside.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/held_lane.hpp"
+#include "tools/study/leaving.hpp"
+#include "tools/study/workers.hpp"
 
 #include <sys/resource.h>
 
@@ -35,6 +38,44 @@ TEST_CASE("what is computed beside the pictures is let go at once and told to st
     }
     was_told->wait(false);
     CHECK(*was_told);
+}
+
+namespace {
+
+/// Tells when what holds it is gone.
+struct Gone {
+    std::shared_ptr<std::atomic<bool>> is_gone;
+    ~Gone() {
+        *is_gone = true;
+        is_gone->notify_all();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a computation beside the pictures that is let go leaves at its next look on all of its threads") {
+    const auto begun = std::make_shared<std::atomic<bool>>(false), is_gone = std::make_shared<std::atomic<bool>>(false);
+    {
+        Beside<int> result;
+        result.begin(Lane::studies, leaving([begun, is_gone] {
+                         const Gone gone{is_gone};
+            // Nothing in between knows of a token.
+                         on_threads(3)(3, [&](int) {
+                             *begun = true;
+                             begun->notify_all();
+                             for (;;) tactus::leave_if_stopped();
+                         });
+                         return 1;
+                     }));
+        begun->wait(false);
+    }
+    is_gone->wait(false);
+    Beside<int> next;
+    next.begin(Lane::studies, leaving([] {
+                   tactus::leave_if_stopped();
+                   return 2;
+               }));
+    CHECK(next.take() == 2);
 }
 
 TEST_CASE("what waits to be computed and is wanted no longer is not computed") {

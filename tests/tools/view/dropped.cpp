@@ -96,6 +96,24 @@ TEST_CASE("an import that is stopped or cannot be made writes no file and says w
     for (const auto& entry : fs::directory_iterator(folder.path)) CHECK(entry.path().extension() == ".nrrd");
 }
 
+TEST_CASE("an import that is stopped while it writes has made the whole bone or no file") {
+    const Folder folder;
+    bone::ImportOptions options;
+    options.input = folder.write("ball.nrrd", scan_of_a_ball());
+    for (int n = 0; n < 20; ++n) {
+        const fs::path out = folder.path / fmt::format("ball-{}.vdb", n);
+        view::ScanImport import;
+        import.begin(options, out);
+        while (import.progress().share < 0.92) std::this_thread::yield();
+        import.stop();
+        const auto ended = result_of(import);
+        INFO(ended.text);
+        CHECK(fs::exists(out) == !ended.bone.empty());
+        CHECK_FALSE(fs::exists(out.string() + ".part"));
+        if (fs::exists(out)) CHECK_NOTHROW(bone::load_bone(out));
+    }
+}
+
 TEST_CASE("files that a file manager drops go to the node below the pointer or open", "[display]") {
     Walk walk({1000, 700, 1.0}, "drop");
     if (!walk.is_possible()) return;

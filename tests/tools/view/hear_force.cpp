@@ -48,3 +48,35 @@ TEST_CASE("a patch without a hand has no force to hear") {
     CHECK_FALSE(bench.can_hear_force());
     CHECK_FALSE(bench.hear_force(true));
 }
+
+TEST_CASE("a tone that feeds an output twice goes with it, and an output that plays something else stays") {
+    const Folder folder;
+    folder.write("both.toml",
+                 "[inputs]\nleft = \"left.signal\"\nright = \"right.signal\"\n[nodes.left]\ntype = \"audio_output\"\n"
+                 "rate = \"48 kHz\"\n[nodes.right]\ntype = \"audio_output\"\nrate = \"48 kHz\"\n");
+    const auto with_tone = [](const std::string& right) {
+        std::string text = test::touch;
+        text.insert(text.find("]\n[nodes.hand]"),
+                    "  \"out.applied -> force_tone.wrench\",\n  \"force_tone.signal -> "
+                    "force_sound.left\",\n  \"" +
+                        right + " -> force_sound.right\",\n");
+        return text +
+               "[nodes.force_tone]\ntype = \"force_tone\"\nrate = \"48 kHz\"\n[nodes.force_sound]\ntype = "
+               "\"patch:both.toml\"\n";
+    };
+    session::RunChoice choice;
+    choice.patch = folder.write("twice.toml", with_tone("force_tone.signal")).string();
+    Workbench twice(choice);
+    REQUIRE(twice.plan());
+    REQUIRE(twice.hears_force());
+    REQUIRE(twice.hear_force(false));
+    CHECK(twice.editor().text().find("force_") == std::string::npos);
+    CHECK(twice.plan());
+
+    choice.patch = folder.write("other.toml", with_tone("loud.out")).string();
+    Workbench other(choice);
+    REQUIRE(other.plan());
+    REQUIRE(other.hear_force(false));
+    CHECK(other.editor().text().find("force_tone") == std::string::npos);
+    CHECK(other.editor().text().find("loud.out -> force_sound.right") != std::string::npos);
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/body_surface.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/surface_net.hpp"
 #include "tools/picture/scene/painted_points.hpp"
 
@@ -21,6 +22,7 @@ BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxm
     surface.has_paint = !paint.empty();
     geometry::SurfacePatch& patch = surface.patch;
     for (const Vec3& vertex : net.vertices) {
+        if (patch.vertices.size() % 1024 == 0) leave_if_stopped();
         const volume::Sample rough = field.sample(vertex);
         const double steep = glm::dot(rough.gradient, rough.gradient);
         const Vec3 at = steep > 0.25 ? vertex - rough.gradient * (rough.value / steep) : vertex;

@@ -4,6 +4,7 @@
 #include "assets/bone/bone.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/section_grey.hpp"
 
@@ -27,6 +28,7 @@ geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
 }
 
 StillSurface still_surface(const std::string& path, const std::string& name, const std::stop_token& stop) {
+    const StopScope scope(stop);
     StillSurface made;
     try {
         const bone::Bone loaded = bone::load_bone(path);

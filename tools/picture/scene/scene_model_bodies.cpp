@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
+#include "tools/study/leaving.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -132,7 +133,8 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, const Vec3& col
         }
     else if (!making_.is_busy()) {
         made_body_ = content;
-        making_.begin(study::Lane::scene, [look = std::move(look)]() mutable { return make_body(std::move(look)); });
+        making_.begin(study::Lane::scene,
+                      study::leaving([look = std::move(look)]() mutable { return make_body(std::move(look)); }));
     }
     const auto now = bodies_.find(content);
     return now == bodies_.end() ? nullptr : &now->second;

@@ -2,6 +2,7 @@
 // What sections of bones and bodies show: their density.
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/section_grey.hpp"
+#include "tools/study/leaving.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -22,12 +23,12 @@ std::span<const display::GreyImage> SceneModel::densities_of(const std::string& 
     Densities& known = densities_[path];
     if (known.is_read) return known.images;
     if (!known.reading.is_busy())
-        known.reading.begin(study::Lane::scene, [path] {
-            std::vector<display::GreyImage> images;
-            for (const volume::Grid& grid : read_densities(path))
-                images.push_back(display::grey_image(grid, section_grey));
-            return images;
-        });
+        known.reading.begin(study::Lane::scene, study::leaving([path] {
+                                std::vector<display::GreyImage> images;
+                                for (const volume::Grid& grid : read_densities(path))
+                                    images.push_back(display::grey_image(grid, section_grey));
+                                return images;
+                            }));
     if (!waits_for_files_ && !known.reading.is_ready()) return {};
     // Not again with each picture, where it fails.
     known.is_read = true;
@@ -59,7 +60,7 @@ void SceneModel::find_scan(BoneMesh& bone, const observe::SeenBone& seen) {
     while (!bone.density.add_layer(seen.snapshot()))
         if (!has_time()) return;
     auto grey = [copy = std::exchange(bone.density, {})] { return display::grey_image(copy.grid, section_grey); };
-    if (is_spread_) bone.greying.begin(study::Lane::scene, std::move(grey));
+    if (is_spread_) bone.greying.begin(study::Lane::scene, study::leaving(std::move(grey)));
     else make_scan(bone.scan, grey());
 }
 

@@ -11,6 +11,7 @@
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/triangle_patch.hpp"
+#include "tools/study/leaving.hpp"
 #include "tools/study/planning/flap_study.hpp"
 
 #include <fmt/format.h>
@@ -135,7 +136,8 @@ void SceneModel::take_vessels(const std::string& name, const std::filesystem::pa
     taken = {};
     taken.of = std::move(of);
     if (state.reconstruction)
-        taken.making.begin(study::Lane::studies, [file, plan, courses] { return flap_tubes(file, plan, courses); });
+        taken.making.begin(study::Lane::studies,
+                           study::leaving([file, plan, courses] { return flap_tubes(file, plan, courses); }));
     else if (state.vessels) put_vessels(taken, scanned_tubes(*state.vessels));
 }
 

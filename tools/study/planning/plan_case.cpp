@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_case.hpp"
 
+#include "dsp/core/stop.hpp"
 #include "tools/study/workers.hpp"
 
 #include <cmath>
@@ -18,8 +19,10 @@ std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std:
                                          cases::Paint paint) {
     cases::check_files(plan, folder);
     std::vector<CaseFragment> all;
-    for (const cases::PlanFragment& fragment : cases::fragments_of(plan))
+    for (const cases::PlanFragment& fragment : cases::fragments_of(plan)) {
+        leave_if_stopped();
         all.push_back(load_fragment(fragment, folder, paint));
+    }
     return all;
 }
 

@@ -2,6 +2,7 @@
 #include "tools/study/planning/plan_matching.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/fit/arrangement/assemblies.hpp"
 #include "dsp/fit/as_scanned.hpp"
 #include "dsp/fit/overlap.hpp"
@@ -211,6 +212,7 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
     const cases::PlanState state = cases::state_of(plan);
     std::vector<PlanGap> found;
     const auto look = [&](int i, int j) {
+        leave_if_stopped();
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
         const fit::MutualGap gap = fit::mutual_gap(placed_bone(a, at), placed_bone(b, bt));

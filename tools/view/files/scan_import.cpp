@@ -2,6 +2,7 @@
 #include "tools/view/files/scan_import.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -16,8 +17,6 @@ namespace tactus::view {
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Stopped {};
 
 std::string words_for(const bone::ImportSummary& made, const fs::path& out) {
     std::string text = fmt::format("{}: {:.0f} mm³ of bone in {} x {} x {} voxels", out.filename().string(),
@@ -44,13 +43,13 @@ ScanImport::Result ScanImport::import(const bone::ImportOptions& options, const 
     // A run goes first. On Linux the priority is a value of the thread.
     constexpr int nice = 10;
     ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
+    const StopScope scope([this] { return stops_.load(); });
     try {
         std::error_code ignored;
         if (fs::exists(out, ignored))
             throw Error(fmt::format("{} is there already; choose another name", out.string()));
         const bone::ImportSummary made =
             bone::import_bone_file(options, out, [this](double share, std::string_view doing) {
-                if (stops_) throw Stopped{};
                 const std::lock_guard lock(mutex_);
                 progress_ = {share, std::string(doing)};
             });

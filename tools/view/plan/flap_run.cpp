@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
+#include "tools/study/leaving.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/flap_words.hpp"
 
@@ -66,9 +67,10 @@ void FlapRun::tend(bool measures) {
     if (!measures || measured_ == of_ || measuring_.is_busy()) return;
     measured_ = of_;
     if (now_)
-        measuring_.begin(study::Lane::studies, [plan = *run_.plan(), folder = run_.file().parent_path()] {
-            return verdicts_of(plan, folder);
-        });
+        measuring_.begin(study::Lane::studies,
+                         study::leaving([plan = *run_.plan(), folder = run_.file().parent_path()] {
+                             return verdicts_of(plan, folder);
+                         }));
 }
 
 void FlapRun::tend_change() {

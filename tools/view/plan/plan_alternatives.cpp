@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/study/leaving.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -57,9 +58,10 @@ void PlanAlternatives::tend() {
     std::vector<Vec3> middles;
     for (const auto& body : scene_.plan_bodies()) middles.push_back(body ? body->home.position : Vec3(0.0));
     differences_ = differences(*plan, plan->current, other, middles);
-    counting_.begin(study::Lane::studies, [plan = *plan, other, folder = run_.file().parent_path()] {
-        return Numbers{numbers_of_alternative(plan, plan.current, folder), numbers_of_alternative(plan, other, folder)};
-    });
+    counting_.begin(study::Lane::studies, study::leaving([plan = *plan, other, folder = run_.file().parent_path()] {
+                        return Numbers{numbers_of_alternative(plan, plan.current, folder),
+                                       numbers_of_alternative(plan, other, folder)};
+                    }));
 }
 
 void PlanAlternatives::ask_name() {

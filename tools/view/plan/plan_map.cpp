@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/plan/plan_map.hpp"
 
+#include "dsp/core/stop.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -54,6 +56,7 @@ void PlanMap::tend() {
     of_ = run_.written();
     making_.begin(study::Lane::studies, [kind = *kind_, plan = *run_.plan(), folder = run_.file().parent_path(),
                                          bodies = std::move(bodies)](std::stop_token stop) {
+        const StopScope scope(stop);
         return picture::make_surface_map(kind, plan, folder, bodies, std::move(stop));
     });
 }

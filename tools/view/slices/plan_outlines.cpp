@@ -2,6 +2,7 @@
 #include "tools/view/slices/plan_outlines.hpp"
 
 #include "dsp/reconstruct/section.hpp"
+#include "tools/study/leaving.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -70,7 +71,8 @@ const PlanOutlines::Surface* PlanOutlines::surface_of(const std::shared_ptr<cons
     if (surface.is_made) return &surface;
     if (!surface.making.is_busy()) {
         surface.body = body;
-        surface.making.begin(study::Lane::scene, [body] { return geometry::iso_surface(body->distance, 0.0f, false); });
+        surface.making.begin(study::Lane::scene,
+                             study::leaving([body] { return geometry::iso_surface(body->distance, 0.0f, false); }));
     }
     if (!surface.making.is_ready()) return nullptr;
     surface.triangles = surface.making.take();

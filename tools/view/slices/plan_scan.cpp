@@ -4,7 +4,9 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "tools/picture/scene/section_grey.hpp"
+#include "tools/study/leaving.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -66,7 +68,8 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
                 nearest[axis].push_back(
                     std::clamp(static_cast<int>(std::lround((n - offset) * step)), 0, grid.size[axis] - 1));
         }
-        for (int k = first[2]; k <= last[2]; ++k)
+        for (int k = first[2]; k <= last[2]; ++k) {
+            leave_if_stopped();
             for (int j = first[1]; j <= last[1]; ++j)
                 for (int i = first[0]; i <= last[0]; ++i) {
                     const auto of = [&](std::size_t axis, int n) {
@@ -75,6 +78,7 @@ volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t mo
                     float& value = joined.at(i, j, k);
                     value = std::max(value, grid.at(of(0, i), of(1, j), of(2, k)));
                 }
+        }
     }
     return joined;
 }
@@ -100,11 +104,11 @@ bool are_of_one_case(const std::filesystem::path& plan, const std::filesystem::p
 }
 
 void PlanScan::read(const std::filesystem::path& scan) {
-    reading_.begin(study::Lane::studies, [scan] { return read_plan_scan(scan); });
+    reading_.begin(study::Lane::studies, study::leaving([scan] { return read_plan_scan(scan); }));
 }
 
 void PlanScan::read_fragments(const std::filesystem::path& plan) {
-    reading_.begin(study::Lane::studies, [plan] { return scan_of_fragments(plan); });
+    reading_.begin(study::Lane::studies, study::leaving([plan] { return scan_of_fragments(plan); }));
 }
 
 bool PlanScan::tend() {

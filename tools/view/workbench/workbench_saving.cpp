@@ -4,9 +4,11 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "graph/edit/patch_arrange.hpp"
 #include "graph/edit/patch_paths.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/files/start_list.hpp"
 #include "tools/view/unsaved.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +29,23 @@ fs::path untitled_file(int number) {
     std::error_code ignored;
     const fs::path folder = fs::current_path(ignored);
     return folder / (number == 1 ? std::string("untitled.toml") : fmt::format("untitled-{}.toml", number));
+}
+
+struct GivenPlan {
+    std::string asset;
+    fs::path file;
+};
+
+/// The plans of cases that the patch was opened for.
+std::vector<GivenPlan> plans_among(const std::vector<std::string>& assets) {
+    std::vector<GivenPlan> plans;
+    for (const std::string& given : assets) {
+        const std::size_t sign = given.find('=');
+        if (sign == std::string::npos) continue;
+        const fs::path file = fs::absolute(given.substr(sign + 1));
+        if (kind_of_file(file) == FileKind::plan) plans.push_back({given.substr(0, sign), file});
+    }
+    return plans;
 }
 
 }  // namespace
@@ -105,9 +124,18 @@ bool Workbench::save_as(const std::string& name, Existing existing) {
             throw Error(fmt::format("{}: this is a folder; choose another name", file.string()));
         const fs::path from = fs::absolute(editor_->file()), folder = from.parent_path(), to = file.parent_path();
         const bool is_of_library = session::is_of_library(from);
+        const std::vector<GivenPlan> plans = plans_among(choice_.overrides.assets);
         editor_->save_as(file, [&](std::string_view text) {
-            return is_of_library ? edit::with_absolute_paths(text, folder) : edit::with_paths_moved(text, folder, to);
+            std::string moved =
+                is_of_library ? edit::with_absolute_paths(text, folder) : edit::with_paths_moved(text, folder, to);
+            for (const GivenPlan& plan : plans)
+                moved = edit::with_asset(moved, plan.asset, edit::path_from(to, plan.file));
+            return moved;
         });
+        // The text says it now.
+        for (const GivenPlan& plan : plans)
+            std::erase_if(choice_.overrides.assets,
+                          [&](const std::string& given) { return given.starts_with(plan.asset + "="); });
         was_never_saved_ = false;
         if (run_) run_->move_to(file);
         written_at_.clear();

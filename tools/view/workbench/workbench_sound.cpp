@@ -6,6 +6,8 @@
 #include "nodes/catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 namespace tactus::view {
 
@@ -37,13 +39,15 @@ bool Workbench::hears_force() const {
 bool Workbench::hear_force(bool wanted) {
     if (wanted == hears_force()) return true;
     if (!wanted) {
-        std::vector<std::string> made;
+        std::set<std::string> tones, played, others;
         for (const patch::PatchNode& node : written_.nodes)
-            if (node.type == tone) made.push_back(node.name);
-        // What plays only that tone.
+            if (node.type == tone) tones.insert(node.name);
         for (const patch::PatchWire& wire : written_.wires)
-            if (std::ranges::find(made, wire.from_node) != made.end() && wire.to_node.starts_with(sound))
-                made.push_back(wire.to_node);
+            if (wire.to_node.starts_with(sound))
+                (tones.contains(wire.from_node) ? played : others).insert(wire.to_node);
+        // With the outputs that play nothing else, each once.
+        std::vector<std::string> made(tones.begin(), tones.end());
+        std::ranges::set_difference(played, others, std::back_inserter(made));
         return edit([&](std::string_view text) { return edit::without_nodes(text, made); }, "the force is not heard");
     }
     const std::string force = force_of(written_);
