@@ -45,7 +45,8 @@ TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives
         walk.person.button(1, false);
         const std::vector<double> after = walk.eyes.last_row("out-2/pose.csv");
         REQUIRE(after.size() >= 4);
-        CHECK(std::hypot(after[1] - before[1], after[2] - before[2], after[3] - before[3]) > 1e-3);
+        // Half a newton against 1 N/mm.
+        CHECK(std::hypot(after[1] - before[1], after[2] - before[2], after[3] - before[3]) > 0.3e-3);
         CHECK(most_N > 0.5);
 
         walk.press("Give the hand back");
