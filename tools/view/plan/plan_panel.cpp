@@ -22,7 +22,14 @@ bool button(const char* label, bool can, const char* tip, bool is_first = false)
     const bool pressed = ImGui::Button(label);
     ImGui::EndDisabled();
     mark_spot(label);
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        ImGui::BeginTooltip();
+        // A line would be cut in a small window.
+        ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
+        ImGui::TextUnformatted(tip);
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
     return pressed;
 }
 
