@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/run_bar.hpp"
 
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/take_bench.hpp"
 #include "tools/view/theme.hpp"
@@ -36,7 +37,7 @@ bool sign_button(const char* id, Sign sign, ImU32 ink, bool is_on, const char* t
         list->AddRectFilled({c.x + 0.3f * r, c.y - r}, {c.x + r, c.y + r}, ink, 1.0f);
     }
     mark_spot(id + 2);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+    if (ImGui::IsItemHovered()) show_tooltip(tip);
     ImGui::SameLine();
     return pressed;
 }
@@ -184,7 +185,7 @@ void take_line(Workbench& bench, TakeBench& take) {
     std::size_t end = std::min(room, note.size());
     while (end < note.size() && end > 0 && (static_cast<unsigned char>(note[end]) & 0xC0) == 0x80) --end;
     words(end < note.size() ? note.substr(0, end) + "..." : note, tone::dim);
-    if (note.size() > room && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", note.c_str());
+    if (note.size() > room && ImGui::IsItemHovered()) show_tooltip(note);
     ImGui::NewLine();
 }
 

@@ -2,6 +2,7 @@
 #include "tools/view/files/file_dialog.hpp"
 
 #include "tools/session/load_plan.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -79,7 +80,7 @@ void FileDialog::tools() {
     if (ImGui::Checkbox("hidden files", &hidden)) chooser_->show_hidden(hidden);
     else if (is_toggled) chooser_->show_hidden(!chooser_->shows_hidden());
     mark_spot("hidden files");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("also those that begin with a dot (Ctrl+H)");
+    if (ImGui::IsItemHovered()) show_tooltip("also those that begin with a dot (Ctrl+H)");
     ImGui::SameLine();
     bool by_date = chooser_->order() == FileChooser::Order::newest;
     if (ImGui::Checkbox("newest first", &by_date))
@@ -135,7 +136,7 @@ void FileDialog::places() {
             !chooser_->replaced && ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed('0' + number, false);
         if (ImGui::Selectable(name) || is_pressed) chooser_->go_to(folder);
         mark_spot(std::string("place ") + name);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", folder.c_str());
+        if (ImGui::IsItemHovered()) show_tooltip(folder);
         const std::string keys = fmt::format("Alt+{}", number);
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(keys.c_str()).x);
         ImGui::TextDisabled("%s", keys.c_str());
@@ -231,7 +232,7 @@ void FileDialog::draw(const Fonts& fonts) {
     if (makes_folder_ && pressed(ImGuiKey_Escape)) makes_folder_ = false;
     if (ImGui::SmallButton("up")) chooser_->go_up();
     mark_spot("folder up");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the folder above (Alt+Up)");
+    if (ImGui::IsItemHovered()) show_tooltip("the folder above (Alt+Up)");
     if (ImGui::GetIO().KeyAlt && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow), false))
         chooser_->go_to(chooser_->folder().parent_path());
     ImGui::SameLine();
@@ -262,7 +263,7 @@ void FileDialog::draw(const Fonts& fonts) {
         ImGui::SameLine();
         is_folder = ImGui::Button("Open this folder");
         mark_spot("accept folder");
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("the slices of a scan: a folder of DICOM files");
+        if (ImGui::IsItemHovered()) show_tooltip("the slices of a scan: a folder of DICOM files");
     }
     if (cancelled) {
         chooser_.reset();

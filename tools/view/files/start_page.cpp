@@ -7,6 +7,7 @@
 
 #include "devices/display/read_png.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -92,7 +93,7 @@ void StartPage::list(const char* title, const std::vector<StartItem>& items) {
         ImGui::PushID(i++);
         if (ImGui::Selectable(item.title.c_str())) chosen = item.path;
         mark_spot(std::string(title) + " " + item.title);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", item.path.c_str());
+        if (ImGui::IsItemHovered()) show_tooltip(item.path);
         ImGui::PopID();
         ImGui::PopID();
     }
@@ -105,11 +106,10 @@ void StartPage::lists(const Fonts& fonts) {
     const ImVec2 wide(-1.0f, 1.6f * ImGui::GetFrameHeight());
     if (ImGui::Button("New patch", wide)) wants_new = true;
     mark_spot("New patch");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("an empty canvas (Ctrl+N)");
+    if (ImGui::IsItemHovered()) show_tooltip("an empty canvas (Ctrl+N)");
     if (ImGui::Button("Open...", wide)) wants_dialog = true;
     mark_spot("Open...");
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("a patch or a take (Ctrl+O); a file may also be dropped on the window");
+    if (ImGui::IsItemHovered()) show_tooltip("a patch or a take (Ctrl+O); a file may also be dropped on the window");
     list("opened last", all_.recent);
     list("takes here", all_.takes);
     list("plans here", all_.plans);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/hand/hand_offer.hpp"
 
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/spots.hpp"
 
@@ -28,7 +29,7 @@ void draw_hand_offer(Workbench& bench) {
         is_taken ? "the device of the patch moves the hand again; the run begins again"
                  : fmt::format("mouse and keys move the hand in place of the driver '{}'; the run begins again",
                                hand_of(*bench.plan())->driver);
-    ImGui::SetTooltip("%s", text.c_str());
+    show_tooltip(text);
 }
 
 void add_hand_commands(Workbench& bench, std::vector<Command>& all) {

@@ -2,6 +2,7 @@
 #include "tools/view/hand/scene_hand.hpp"
 
 #include "devices/hosted/clocks.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -119,7 +120,7 @@ void SceneHand::tools() {
     if (ImGui::SmallButton(is_on_ ? "mouse: hand (H)" : "mouse: view (H)")) is_on_ = !is_on_;
     mark_spot("mouse");
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(
+        show_tooltip(
             "left button: move; with Shift, or the wheel: nearer and farther\nright button: turn; with Shift: roll\n"
             "middle button: turn the view\narrows, Page Up, Page Down: small steps; with Shift: turns\nH: mouse for "
             "the hand or the view");
@@ -132,8 +133,7 @@ void SceneHand::tools() {
         if (ImGui::SmallButton(hand_buttons[i].name)) latched_ ^= 1u << i;
         if (is_held) ImGui::PopStyleColor();
         mark_spot(hand_buttons[i].name);
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("press: stays held until pressed again; the key: while it is held");
+        if (ImGui::IsItemHovered()) show_tooltip("press: stays held until pressed again; the key: while it is held");
     }
     if (offer) offer();
 }

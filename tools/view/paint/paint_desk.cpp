@@ -2,6 +2,7 @@
 #include "tools/view/paint/paint_desk.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/frame/whole_window.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -77,12 +78,11 @@ void PaintDesk::draw_tools() {
     if (button("Redo")) painting.redo();
     ImGui::SameLine();
     if (button("Look here")) bench_.look_here();
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("the slices go to the largest region that is not sure: paint there next");
+    if (ImGui::IsItemHovered()) show_tooltip("the slices go to the largest region that is not sure: paint there next");
     if (const LiveLabelling* const found = bench_.labels().get(); found && !found->islands.empty()) {
         if (button("Next island")) bench_.look_at_island();
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("the slices go to the next piece of bone without a seed; it has no label");
+            show_tooltip("the slices go to the next piece of bone without a seed; it has no label");
         ImGui::SameLine();
         ImGui::TextDisabled("%zu without a seed", found->islands.size());
     }
@@ -136,8 +136,7 @@ void PaintDesk::draw_labels() {
                 }
             }
             mark_spot("label " + label.name);
-            if (ImGui::IsItemHovered())
-                ImGui::SetTooltip("%s\ndouble click: another name; right click: merge", label.name.c_str());
+            if (ImGui::IsItemHovered()) show_tooltip(label.name + "\ndouble click: another name; right click: merge");
             if (ImGui::BeginPopupContextItem("merge")) {
                 for (std::size_t into = 0; into < painting.labels().size(); ++into)
                     if (into != l &&
@@ -174,7 +173,7 @@ void PaintDesk::draw_vessels() {
                             &is_taken))
             bench_.take_vessel(n, is_taken);
         mark_spot(name);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\nchecked: a plan that is made gets it", vessel.words.c_str());
+        if (ImGui::IsItemHovered()) show_tooltip(vessel.words + "\nchecked: a plan that is made gets it");
     }
     if (!vessels.empty()) ImGui::Separator();
 }
@@ -205,7 +204,7 @@ void PaintDesk::draw_window() {
     ImGui::Spacing();
     if (button("Make a plan") && !bench_.makes_plan()) bench_.make_plan();
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("writes a bone per fragment, and a plan of them and of the vessels, beside the seeds");
+        show_tooltip("writes a bone per fragment, and a plan of them and of the vessels, beside the seeds");
     ImGui::Spacing();
     ImGui::PushStyleColor(ImGuiCol_Text, tone::dim);
     ImGui::TextWrapped(

@@ -4,6 +4,7 @@
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/view/frame/elide.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/patch/type_search.hpp"
 #include "tools/view/ports/part_ports.hpp"
 #include "tools/view/spots.hpp"
@@ -23,12 +24,7 @@ namespace {
 using Kind = ParameterField::Kind;
 
 void tip(const std::string& text) {
-    if (text.empty() || !ImGui::IsItemHovered()) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
+    if (!text.empty() && ImGui::IsItemHovered()) show_tooltip(text);
 }
 
 void dim(const std::string& text) {
@@ -101,9 +97,12 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     if (!speed) mark_default(field);
     if (ended && turning_ == id) {
         turning_.clear();
-        // A value that is refused does not stay in the run.
-        if (!bench_.set(node, field.name, turned_) && field.is_live) bench_.turn(node, field.name, field.text);
+        set_turned(field, node);
     }
+}
+
+void NodePanel::set_turned(const ParameterField& field, const std::string& node) {
+    if (!bench_.set(node, field.name, turned_) && field.is_live) bench_.turn(node, field.name, field.text);
 }
 
 void NodePanel::field(const ParameterField& field, const std::string& node) {
@@ -155,8 +154,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
         }
     }
     ImGui::EndDisabled();
-    if (!refused.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        ImGui::SetTooltip("%s", refused.c_str());
+    if (!refused.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) show_tooltip(refused);
     ImGui::TableNextColumn();
     if (field.kind == Kind::quantity) {
         ImGui::AlignTextToFramePadding();
@@ -205,11 +203,8 @@ void NodePanel::end_typing(std::string& selected) {
     if (is_read_only || bench_.picture().find(node) < 0) return;
     constexpr std::string_view device = "device ";
     if (param.starts_with(node + ".")) {
-        const std::string name = param.substr(node.size() + 1);
-        const auto field = std::ranges::find(fields_, name, &ParameterField::name);
-        // A value that is refused does not stay in the run.
-        if (!bench_.set(node, name, turned_) && field != fields_.end() && field->is_live)
-            bench_.turn(node, name, field->text);
+        const auto field = std::ranges::find(fields_, param.substr(node.size() + 1), &ParameterField::name);
+        if (field != fields_.end()) set_turned(*field, node);
     } else if (param.starts_with(device)) {
         const std::size_t dot = param.find('.');
         bench_.set_device(param.substr(device.size(), dot - device.size()), param.substr(dot + 1), turned_);

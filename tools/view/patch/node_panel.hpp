@@ -30,7 +30,7 @@ public:
                        std::function<void(const std::filesystem::path&)>)>
         ask_file;
     bool is_read_only = false;
-    std::string search;      ///< of the catalogue
+    std::string search;  ///< of the catalogue
     bool wants_catalogue = false;  ///< show the catalogue
 
 private:
@@ -42,15 +42,17 @@ private:
     /// Why a parameter cannot be set here; empty: it can.
     std::string refusal(const ParameterField& field, const std::string& node) const;
     void quantity(const ParameterField& field, const std::string& node);
+    /// Sets what was turned. A value that is refused does not stay in the run.
+    void set_turned(const ParameterField& field, const std::string& node);
 
     Workbench& bench_;
     std::vector<ParameterField> fields_;
     std::string shown_, typed_, renaming_;
     std::int64_t version_ = -1;
-    std::string lane_;         ///< where new nodes go; empty: their usual one
-    std::string typed_rate_;   ///< of the node
+    std::string lane_;  ///< where new nodes go; empty: their usual one
+    std::string typed_rate_;  ///< of the node
     std::string turning_;  ///< the parameter being dragged or typed, "node.param"
-    std::string turned_;   ///< its value so far, as it would be set
+    std::string turned_;  ///< its value so far, as it would be set
     double turned_to_ = 0.0;
     bool is_renaming_ = false;
     std::string device_option_, device_value_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assets and devices of the selected node.
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/patch/node_panel.hpp"
 
 #include "devices/haptic/catalogue.hpp"
@@ -32,7 +33,7 @@ void NodePanel::asset(const ParameterField& field, const std::string& node) {
         ImGui::EndCombo();
     }
     mark_spot(field.name);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", field.about.c_str());
+    if (ImGui::IsItemHovered()) show_tooltip(field.about);
 }
 
 void NodePanel::draw_device(const PictureNode& node) {
@@ -55,7 +56,7 @@ void NodePanel::draw_device(const PictureNode& node) {
         for (const haptic::HapticDriver& driver : haptic::haptic_drivers()) {
             if (ImGui::Selectable(driver.name.c_str(), driver.name == device.driver))
                 bench_.set_driver(device.name, driver.name);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", driver.summary.c_str());
+            if (ImGui::IsItemHovered()) show_tooltip(driver.summary);
         }
         ImGui::EndCombo();
     }

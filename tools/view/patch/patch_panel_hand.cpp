@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mouse interaction with the picture of the patch.
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/patch/patch_panel.hpp"
 
 #include "tools/view/spots.hpp"
@@ -174,9 +175,9 @@ void PatchPanel::explain(const Hit& over) {
         const PictureNode &from = picture.nodes[static_cast<std::size_t>(wire.from)],
                           &to = picture.nodes[static_cast<std::size_t>(wire.to)];
         const PicturePort& output = from.outputs[static_cast<std::size_t>(wire.output)];
-        ImGui::SetTooltip("%s.%s -> %s.%s\n%s, %s", from.name.c_str(), output.name.c_str(), to.name.c_str(),
-                          to.inputs[static_cast<std::size_t>(wire.input)].name.c_str(),
-                          output.type ? std::string(output.type->name).c_str() : "any", describe(wire).c_str());
+        show_tooltip(fmt::format("{}.{} -> {}.{}\n{}, {}", from.name, output.name, to.name,
+                                 to.inputs[static_cast<std::size_t>(wire.input)].name,
+                                 output.type ? std::string(output.type->name) : "any", describe(wire)));
     } else if (over.what == Hit::What::input || over.what == Hit::What::output) {
         const PictureNode& node = picture.nodes[static_cast<std::size_t>(over.index)];
         const PicturePort& port =
@@ -196,7 +197,7 @@ void PatchPanel::explain(const Hit& over) {
             }
             if (!wiring_.objection.empty()) text = wiring_.objection;
         }
-        ImGui::SetTooltip("%s", text.c_str());
+        show_tooltip(text);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/study/planning/flap_study.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -42,7 +43,7 @@ void FlapPanel::line(const char* what, const Named& one, Form form, std::vector<
             std::erase_if(all.flap.*list, [&](const Named& known) { return known.name == name; });
         });
     mark_spot(fmt::format("remove {} {}", what, one.name));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("a step of the plan; 'undo step' brings it back");
+    if (ImGui::IsItemHovered()) show_tooltip("a step of the plan; 'undo step' brings it back");
     ImGui::SameLine();
     form.name = one.name;
     if (ImGui::Selectable(fmt::format("{} {}", what, one.name).c_str())) open(std::move(form));
@@ -117,7 +118,7 @@ void FlapPanel::places() {
     mark_spot("at the measured point");
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        ImGui::SetTooltip(
+        show_tooltip(
             "press 'measure' in the scene and click a place; for an implant a second one, towards which it "
             "goes");
 }

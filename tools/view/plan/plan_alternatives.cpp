@@ -4,6 +4,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/study/leaving.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -158,18 +159,18 @@ void PlanAlternatives::list(const cases::CasePlan& plan) {
         mark_spot("alternative " + name);
         if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) ask_name(n, name);
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s: %s; double click: another name, with which the run begins again", name.c_str(),
-                              is_current ? "the scene shows this one" : "the scene goes to this one");
+            show_tooltip(fmt::format("{}: {}; double click: another name, with which the run begins again", name,
+                                     is_current ? "the scene shows this one" : "the scene goes to this one"));
         if (!is_current) {
             continue_line("compare");
             bool is_compared = compared_ == name;
             if (ImGui::Checkbox("compare", &is_compared)) compared_ = is_compared ? name : "";
             mark_spot("compare " + name);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("drawn through the current one, in a second colour");
+            if (ImGui::IsItemHovered()) show_tooltip("drawn through the current one, in a second colour");
             continue_line("drop");
             if (ImGui::SmallButton("drop")) run_.drop_alternative(n);
             mark_spot("drop " + name);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("its steps stay in the file; 'undrop' brings it back");
+            if (ImGui::IsItemHovered()) show_tooltip("its steps stay in the file; 'undrop' brings it back");
         }
         ImGui::PopID();
     }
@@ -181,11 +182,11 @@ void PlanAlternatives::draw() {
     ImGui::BeginDisabled(!run_.is_live());
     if (ImGui::Button("new from here")) run_.go_to_alternative(static_cast<int>(plan.alternatives.size()));
     mark_spot("new from here");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("begins an alternative at the plan as it is now");
+    if (ImGui::IsItemHovered()) show_tooltip("begins an alternative at the plan as it is now");
     ImGui::SameLine();
     if (ImGui::Button("undrop")) run_.drop_alternative(-2);
     mark_spot("undrop");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("brings the alternative that was dropped last back");
+    if (ImGui::IsItemHovered()) show_tooltip("brings the alternative that was dropped last back");
     list(plan);
     ImGui::EndDisabled();
     if (shown_.empty()) return;

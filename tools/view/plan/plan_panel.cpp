@@ -2,6 +2,7 @@
 #include "tools/view/plan/plan_panel.hpp"
 
 #include "dsp/fit/fit.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -22,14 +23,7 @@ bool button(const char* label, bool can, const char* tip, bool is_first = false)
     const bool pressed = ImGui::Button(label);
     ImGui::EndDisabled();
     mark_spot(label);
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-        ImGui::BeginTooltip();
-        // A line would be cut in a small window.
-        ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
-        ImGui::TextUnformatted(tip);
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
-    }
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) show_tooltip(tip);
     return pressed;
 }
 
@@ -136,7 +130,7 @@ void PlanPanel::maps() {
     if (ImGui::DragFloat("##range", &range, 0.02f, 0.1f, 20.0f, "up to %.2f mm", ImGuiSliderFlags_AlwaysClamp))
         map_.set_range(1e-3 * static_cast<double>(range));
     mark_spot("map range");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("distance of the fullest colour; drag, or Ctrl and click to type");
+    if (ImGui::IsItemHovered()) show_tooltip("distance of the fullest colour; drag, or Ctrl and click to type");
     if (map_.is_busy()) {
         ImGui::SameLine();
         ImGui::TextDisabled("...");

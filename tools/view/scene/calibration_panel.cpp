@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/scene/calibration_panel.hpp"
 
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -90,7 +91,7 @@ void CalibrationPanel::choose_source(const Feed& feed) {
     list("tracker", source_.tracker, "none: the device is the world",
          [&](const TouchSource& one) { source_.tracker = one.pose; });
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("a tracked marker held to the tip: measures the device's pose in the viewer's world");
+        show_tooltip("a tracked marker held to the tip: measures the device's pose in the viewer's world");
 }
 
 void CalibrationPanel::choose(const Feed& feed) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buttons above the scene's picture.
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/scene/clip_place.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
+#include <fmt/format.h>
 #include <array>
 #include <cstdio>
 
@@ -26,12 +28,12 @@ void ScenePanel::tools() {
         const std::string name(display::view_names[i]);
         if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str()))
             look_from(static_cast<display::NamedView>(i));
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
+        if (ImGui::IsItemHovered()) show_tooltip(fmt::format("key {}", i + 1));
     }
     if (next_button("fit")) fit();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
+    if (ImGui::IsItemHovered()) show_tooltip("key F");
     if (next_button("reset")) reset();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: iso view, all visible, no clipping");
+    if (ImGui::IsItemHovered()) show_tooltip("key R: iso view, all visible, no clipping");
     if (has_few_tools) return hand_.tools();
     const bool measures = is_measuring;
     if (measures) ImGui::PushStyleColor(ImGuiCol_Button, faded(tone::chosen, 0.45));
@@ -43,7 +45,7 @@ void ScenePanel::tools() {
         needs_picture_ = true;
     }
     mark_spot("measure");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
+    if (ImGui::IsItemHovered()) show_tooltip("two clicks: distance; three: angle at the second");
     sight_tools();
     const float unit = ImGui::GetFontSize();
     stay_on_line(6.0f * unit);
@@ -53,7 +55,7 @@ void ScenePanel::tools() {
     if (ImGui::Combo("##axis", &axis, axes, 6)) clip(axis - 1, clip_share_);
     mark_spot("clip");
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("view: across the line of sight as it is now; plane: through three measured points");
+        show_tooltip("view: across the line of sight as it is now; plane: through three measured points");
     if (clip_axis_ >= 0) {
         ImGui::SameLine();
         ImGui::SetNextItemWidth(-1.0f);
@@ -64,8 +66,7 @@ void ScenePanel::tools() {
                                "%.1f mm") &&
             high > low)
             clip(clip_axis_, (1e-3 * static_cast<double>(place) - low) / (high - low));
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("place along the direction of the clip, in the axes of the scene");
+        if (ImGui::IsItemHovered()) show_tooltip("place along the direction of the clip, in the axes of the scene");
     }
     hand_.tools();
 }
@@ -91,7 +92,7 @@ void ScenePanel::sight_tools() {
                     use_head(port.name);
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("pose output of the viewer's head; the picture follows it");
+    if (ImGui::IsItemHovered()) show_tooltip("pose output of the viewer's head; the picture follows it");
     if (next_button("screens...")) ImGui::OpenPopup("screens");
     mark_spot("screens...");
     if (!ImGui::BeginPopup("screens")) return;
@@ -115,7 +116,7 @@ void ScenePanel::sight_tools() {
                 if (ImGui::Selectable(name, offset_ == name)) use_offset(name);
             ImGui::EndCombo();
         }
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("study: 0.3 m to the right");
+        if (ImGui::IsItemHovered()) show_tooltip("study: 0.3 m to the right");
     }
     bool open = screens_.are_open();
     if (ImGui::Checkbox("separate windows", &open)) show_screens(open);

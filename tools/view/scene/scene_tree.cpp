@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/terminal.hpp"
 #include "tools/view/frame/elide.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 
@@ -21,7 +22,7 @@ void ScenePanel::draw_tree() {
         needs_picture_ = true;
     };
     const auto tell = [] {
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("in the picture only: the run goes on with all");
+        if (ImGui::IsItemHovered()) show_tooltip("in the picture only: the run goes on with all");
     };
     if (ImGui::SmallButton("show all")) show_all(true);
     mark_spot("show all");
@@ -32,8 +33,7 @@ void ScenePanel::draw_tree() {
     tell();
     if (bench_.can_cut()) {
         if (ImGui::SmallButton(is_siting ? "click on the bone" : "cut here...")) is_siting = !is_siting;
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("the next click on the bone moves the saw there; it can be undone");
+        if (ImGui::IsItemHovered()) show_tooltip("the next click on the bone moves the saw there; it can be undone");
         mark_spot("cut here");
     }
     // What is drawn may change the list.
@@ -74,7 +74,7 @@ void ScenePanel::draw_tree() {
             needs_picture_ = true;
         }
         mark_spot("part " + part.name);
-        if (shown != label && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", label.c_str());
+        if (shown != label && ImGui::IsItemHovered()) show_tooltip(label);
         ImGui::PopID();
     }
     draw_measurements();
@@ -136,7 +136,7 @@ void ScenePanel::draw_measurements() {
     if (measurements_.empty()) return;
     if (ImGui::SmallButton("save for Slicer")) save_measurements();
     mark_spot("save for Slicer");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("as .mrk.json in the folder of the run; when the window closes, too");
+    if (ImGui::IsItemHovered()) show_tooltip("as .mrk.json in the folder of the run; when the window closes, too");
 }
 
 }  // namespace tactus::view

@@ -118,7 +118,7 @@ void Scopes::add_commands(std::vector<Command>& all) {
             on_scope(is_rising ? "trigger where it rises" : "trigger where it falls", "level middle",
                      [is_rising](Scope& scope) {
                          // In the middle of what is shown, where a wave crosses.
-                         scope.trigger = Trigger{0.5 * (scope.y.low + scope.y.high), is_rising};
+                         scope.trigger = Trigger{middle(scope.y, false), is_rising};
                      });
         add_value_commands(all, i);
         if (display(scopes_[i].port).columns == 3)

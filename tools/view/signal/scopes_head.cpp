@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line above a scope: its signal, what is shown of it, files, options.
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/signal/scopes.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -66,7 +67,7 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
         set_view(scope, static_cast<Scope::View>((shown + 1) % std::size(view_names)));
     mark("kind");
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("next: %s; right click: back", view_names[(shown + 1) % std::size(view_names)]);
+        show_tooltip(fmt::format("next: {}; right click: back", view_names[(shown + 1) % std::size(view_names)]));
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right))
         set_view(scope, static_cast<Scope::View>((shown + std::size(view_names) - 1) % std::size(view_names)));
     ImGui::SameLine();

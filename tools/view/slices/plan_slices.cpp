@@ -2,6 +2,7 @@
 #include "tools/view/slices/plan_slices.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -177,7 +178,7 @@ void PlanSlices::head(const Fonts&) {
     const auto button = [](const char* label, const char* tip) {
         const bool is_pressed = ImGui::Button(label);
         mark_spot(label);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+        if (ImGui::IsItemHovered()) show_tooltip(tip);
         ImGui::SameLine();
         return is_pressed;
     };
@@ -205,7 +206,7 @@ void PlanSlices::head(const Fonts&) {
     }
     ImGui::TextDisabled("%s", words.c_str());
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(
+        show_tooltip(
             "left: the cursor, also of the scene; wheel: the next slice; Ctrl + wheel: zoom; right: grey values; "
             "middle, "
             "or Shift + left: move. Thick: where a fragment is; thin: where it was scanned");
