@@ -229,23 +229,9 @@ void read_provenance(const openvdb::MetaMap& meta, Bone& bone) {
             bone.provenance[it->first.substr(provenance_prefix.size())] = text->value();
 }
 
-/// OpenVDB reads a bone in one call, a few samples at a time.
-class HeldBytes final : public std::stringbuf {
-public:
-    using std::stringbuf::stringbuf;
-
-protected:
-    std::streamsize xsgetn(char* to, std::streamsize size) override {
-        leave_if_stopped();
-        return std::stringbuf::xsgetn(to, size);
-    }
-};
-
 std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
-    HeldBytes held(std::move(bytes), std::ios::in | std::ios::binary);
-    std::istream in(&held);
-    // What its bytes throw must reach the caller unchanged.
-    in.exceptions(std::ios::badbit);
+    // In one call, which cannot be left: what OpenVDB has read by then would be lost.
+    std::istringstream in(std::move(bytes), std::ios::binary);
     openvdb::io::Stream stream(in, /*delayLoad=*/false);
     const auto grids = stream.getGrids();
     const auto meta = stream.getMetadata();

@@ -20,8 +20,8 @@ RunJobs on_threads(int threads) {
         std::mutex failing;
         const IsStopped is_stopped = stop_of_this_thread();
         const auto work = [&] {
-            const StopScope scope(is_stopped);
             try {
+                const StopScope scope(is_stopped);
                 for (int n = next++; n < count; n = next++) {
                     leave_if_stopped();
                     job(n);

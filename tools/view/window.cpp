@@ -106,7 +106,9 @@ void Window::listen() {
         const char* const name = KeyLetters::is_printable(key) ? glfwGetKeyName(key, scancode) : nullptr;
         auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(w));
         const bool is_down = action == GLFW_PRESS;
-        if (!listener.held.takes(scancode, is_down)) return;
+        // Modifiers are not repeated: a press of one is always new.
+        const bool is_modifier = key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
+        if (!is_modifier && !listener.held.takes(scancode, is_down)) return;
         queue(w, {Kind::key, 0.0, 0.0, listener.letters.code(key, scancode, name, is_down), is_down});
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned letter) {

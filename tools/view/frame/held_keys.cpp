@@ -29,6 +29,11 @@ void HeldKeys::tend() {
     for (std::size_t i = 0; i < down_.size(); ++i) down_[i] = static_cast<char>(down_[i] & still[i]);
 }
 
-bool HeldKeys::takes(int number, bool is_down) { return !is_down || !is_in(down_, number); }
+bool HeldKeys::takes(int number, bool is_down) {
+    if (!is_in(down_, number)) return true;
+    // Once it is released, its next press counts.
+    if (!is_down) down_[static_cast<std::size_t>(number / 8)] &= static_cast<char>(~(1 << (number % 8)));
+    return !is_down;
+}
 
 }  // namespace tactus::view

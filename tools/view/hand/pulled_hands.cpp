@@ -62,7 +62,9 @@ void PulledHands::look(const RunStatus& status, std::int64_t now_ns) {
         if (!hand->link->read(hand->told, number)) continue;
         // The device of a run that stands still is not read.
         const bool stands = status.state == RunStatus::State::stands && hand->is_there;
-        hand->is_there = number != 0 && (now_ns - hand->told.at_ns < forgotten_ns || stands);
+        // The time is that of another process, which may be broken.
+        const bool is_time = hand->told.at_ns > 0 && hand->told.at_ns < now_ns + forgotten_ns;
+        hand->is_there = number != 0 && is_time && (now_ns - hand->told.at_ns < forgotten_ns || stands);
     }
 }
 

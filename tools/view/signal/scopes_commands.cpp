@@ -21,7 +21,9 @@ std::string with_unit(double value, const std::string& unit) {
 
 /// What is typed, in the unit that is shown.
 double typed_as(const std::string& text, const std::string& unit) {
-    return parse_as(text, unit) / parse_unit(unit).factor;
+    const double value = parse_as(text, unit) / parse_unit(unit).factor;
+    if (!std::isfinite(value)) throw Error(fmt::format("{} is too large", text));
+    return value;
 }
 
 bool is_flat(Scopes::Scope::View view) {

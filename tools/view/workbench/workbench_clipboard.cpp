@@ -63,6 +63,12 @@ Workbench::Pasted Workbench::paste(const std::string& copied, patch::PatchPlace 
         tell("the clipboard holds no nodes or comments of a patch", true);
         return {};
     }
+    // Each is an edit of the whole text.
+    constexpr std::size_t most_comments = 500;
+    if (comments.size() > most_comments) {
+        tell(fmt::format("the clipboard holds {} comments; paste {} at most", comments.size(), most_comments), true);
+        return {};
+    }
     std::map<std::string, std::string> names;
     std::set<std::string> taken;
     for (const patch::PatchNode& node : written_.nodes) taken.insert(node.name);

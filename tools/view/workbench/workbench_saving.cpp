@@ -140,7 +140,9 @@ bool Workbench::save_as(const std::string& name, Existing existing) {
         if (run_) run_->move_to(file);
         written_at_.clear();
         wants_name = false;
-        tell(fmt::format("saved {}", file.string()));
+        std::string said = fmt::format("saved {}", file.string());
+        for (const GivenPlan& plan : plans) said += fmt::format(", with the plan {}", plan.file.string());
+        tell(std::move(said));
         kept_.remove();
         // The same patch in another folder: nothing to apply to the run.
         if (const auto problem = check(editor_->text())) tell(*problem, true);

@@ -10,6 +10,7 @@
 
 #include <imgui.h>
 
+#include <limits>
 #include <memory>
 
 using namespace tactus;
@@ -75,6 +76,14 @@ TEST_CASE("a pulled hand that nobody reads any more is gone, but not in a pause"
     CHECK(rig.shown(9 * second_ns) == 1);
     rig.status.state = RunStatus::State::runs;
     CHECK(rig.shown(9 * second_ns) == 0);
+    rig.tell(9 * second_ns);
+    CHECK(rig.shown(9 * second_ns) == 1);
+    // Times of a process that is broken.
+    for (const std::int64_t at_ns : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1},
+                                     std::numeric_limits<std::int64_t>::max(), 99 * second_ns}) {
+        rig.tell(at_ns);
+        CHECK(rig.shown(9 * second_ns) == 0);
+    }
     rig.tell(9 * second_ns);
     CHECK(rig.shown(9 * second_ns) == 1);
     rig.status = {};

@@ -107,6 +107,7 @@ TEST_CASE("the level of a trigger is typed with its unit and a wrong one is refu
     CHECK_THROWS_WITH(it.asked.take("12 N"), ContainsSubstring("wrong kind of unit"));
     CHECK_THROWS_WITH(it.asked.take("much"), ContainsSubstring("is not a number with a unit"));
     CHECK_THROWS_AS(it.asked.take("nan mm"), Error);
+    CHECK_THROWS_WITH(it.asked.take("1e308 m"), ContainsSubstring("is too large"));
     CHECK(it.scope().trigger->level == Approx(300.0));
     // Only waves have one.
     it.shows(Scopes::Scope::View::spectrum);
