@@ -1,9 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 # Flags that every target shares, and tactus_room(): one static library per room.
+option(TACTUS_PCH "precompile the headers that most files of a room include (gcc, without sanitizers)" ON)
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU OR TACTUS_SANITIZE OR TACTUS_COVERAGE)
+  set(TACTUS_PCH OFF)
+endif()
+option(TACTUS_UNITY "compile several files of a room together (gcc, Release)" ON)
+if(NOT TACTUS_PCH OR NOT CMAKE_BUILD_TYPE STREQUAL Release)
+  set(TACTUS_UNITY OFF)
+endif()
 add_library(tactus_flags INTERFACE)
 target_compile_options(tactus_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Woverloaded-virtual
   -ffp-contract=off -fno-omit-frame-pointer)
+if(TACTUS_UNITY)
+  # A class of one .cpp may have a member of a type of its unnamed namespace (gcc takes the .cpp for a header), and names
+  # of one .cpp may be local ones of another. Builds with clang or sanitizers warn of both within a file.
+  target_compile_options(tactus_flags INTERFACE -Wno-subobject-linkage -Wshadow=local)
+else()
+  target_compile_options(tactus_flags INTERFACE -Wshadow)
+endif()
 if(TACTUS_WERROR)
   target_compile_options(tactus_flags INTERFACE -Werror)
 endif()
@@ -35,10 +50,6 @@ if(CCACHE)
   # Precompiled headers are part of what ccache compares; it asks to be told that this is wanted.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
-option(TACTUS_PCH "precompile the headers that most files of a room include (gcc, without sanitizers)" ON)
-if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU OR TACTUS_SANITIZE OR TACTUS_COVERAGE)
-  set(TACTUS_PCH OFF)
-endif()
 # Reading the standard library, fmt and GLM takes as long as compiling what a file of ours says.
 set(TACTUS_PCH_HEADERS <algorithm> <array> <cmath> <cstring> <memory> <numbers> <optional> <span> <string> <string_view> <vector>
   ${PROJECT_SOURCE_DIR}/dsp/core/error.hpp ${PROJECT_SOURCE_DIR}/dsp/core/types.hpp)
@@ -57,10 +68,23 @@ function(tactus_precompile target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>)
 endfunction()
 
+# tactus_unite(TARGET [FOLDER ...]): up to eight files are compiled as one. Reading headers and instantiating templates is most of the
+# time of each, and is done once for all of them. Neighbours must not give one name to two things, not even in unnamed
+# namespaces. Files of the folders are compiled alone.
+function(tactus_unite target)
+  if(TACTUS_UNITY)
+    foreach(folder ${ARGN})
+      file(GLOB_RECURSE alone CONFIGURE_DEPENDS ${folder}/*.cpp)
+      set_property(SOURCE ${alone} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    endforeach()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # PRECOMPILE: headers that most files of the room include, beside those of TACTUS_PCH_HEADERS. A file still names what it uses:
-# builds with clang or sanitizers have no precompiled headers and check that.
+# builds with clang or sanitizers have no precompiled headers and check that. ALONE: folders of tactus_unite().
 function(tactus_room name)
-  cmake_parse_arguments(ROOM "OPTIMISE" "" "LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ROOM "OPTIMISE" "" "LINKS;PRIVATE_LINKS;PRECOMPILE;ALONE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.cpp)
   # Programs of their own.
   list(FILTER sources EXCLUDE REGEX "/(main|make_library)\\.cpp$")
@@ -76,15 +100,5 @@ function(tactus_room name)
     target_compile_options(tactus_${name} PRIVATE -O3)
   endif()
   tactus_precompile(tactus_${name} ${ROOM_PRECOMPILE})
-endfunction()
-
-# Sources whose speed does not matter: a sixth of their compile time goes into -O2. Numbers are the same at any level.
-function(tactus_compile_fast)
-  if(CMAKE_BUILD_TYPE STREQUAL "Debug")
-    return()
-  endif()
-  foreach(folder ${ARGN})
-    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
-    set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS -O1)
-  endforeach()
+  tactus_unite(tactus_${name} ${ROOM_ALONE})
 endfunction()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/from_hu.hpp"
 
+#include "assets/bone/air_around.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 #include "dsp/volume/compact_slice.hpp"
@@ -22,7 +23,6 @@ namespace tactus::bone {
 namespace {
 
 constexpr int margin = 4;
-constexpr double air_around = 5e-3;  // m
 constexpr double density_slope = 1.067, density_offset = 131.0;
 
 using Box = volume::Components::Box;

@@ -3,6 +3,7 @@
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/import_steps.hpp"
 #include "assets/volume/reoriented_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/grid_part.hpp"
 #include "dsp/volume/resample.hpp"
@@ -21,7 +22,6 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr double most_ct_voxels = 4e9;  // read in layers, never all in memory
 
 double volume_mm3(const Vec3& spacing) { return spacing.x * spacing.y * spacing.z / (mm * mm * mm); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/air_around.hpp"
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
 #include "assets/volume/reoriented_volume.hpp"
@@ -58,8 +59,6 @@ std::size_t keep_parts(volume::Grid& map, int label, std::size_t keep) {
                     for (int i = run.begin; i < run.end; ++i) map.at(i, j, k) = 0.0f;
     return parts.voxels.size();
 }
-
-constexpr double air_around = 5e-3;  // m
 
 // Bounding box of each label, in samples.
 std::map<int, volume::Components::Box> boxes_of(volume::ReorientedVolume& source) {

@@ -5,6 +5,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
 #include "assets/volume/length_unit.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/surface_distance.hpp"
 
@@ -20,7 +21,6 @@ namespace tactus::bone {
 
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr double most_mesh_voxels = 4e8;
 
 struct Unit {

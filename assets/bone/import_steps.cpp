@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/volume/length_unit.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 #include "dsp/core/stop.hpp"
@@ -20,8 +21,6 @@
 namespace tactus::bone {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 // A file, or the files of a folder in order of their names.
 std::vector<std::filesystem::path> source_files(const std::filesystem::path& input) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/labels.hpp"
 
+#include "assets/bone/air_around.hpp"
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/thin_sheets.hpp"
@@ -24,7 +25,6 @@ namespace tactus::bone {
 namespace {
 
 constexpr int relax_passes = 40;
-constexpr double air_around = 5e-3;  // m
 
 // Colours that people with red-green colour blindness can distinguish (Okabe and Ito 2008), after the colour of bone.
 const std::array<Vec3, 8> colours{Vec3(0.90, 0.86, 0.76), Vec3(0.34, 0.71, 0.91), Vec3(0.90, 0.62, 0.00),

@@ -11,6 +11,8 @@
 
 namespace tactus::file {
 
+inline Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
 /// A list of three numbers whose magnitude is at most `farthest`; none for anything else.
 inline std::optional<Vec3> vector_of(const Json& json, double farthest) {
     if (!json.is_array() || json.size() != 3) return {};

@@ -2,6 +2,8 @@
 #include "assets/library/fibula.hpp"
 
 #include "assets/bone/from_hu.hpp"
+#include "assets/library/smooth_step.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/volume/iso_distance.hpp"
 
 #include <algorithm>
@@ -11,13 +13,8 @@ namespace tactus::library {
 
 namespace {
 
-constexpr double mm = 1e-3, voxel = 0.3 * mm, half_length = 30.0 * mm;
-constexpr float soft_tissue = 40.0f, cortical = 1600.0f, marrow = 20.0f;
-
-double smooth_step(double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3.0 - 2.0 * x);
-}
+constexpr double fibula_voxel = 0.3 * mm, fibula_half_length = 30.0 * mm;
+constexpr float fibula_soft_tissue = 40.0f, fibula_cortical = 1600.0f, marrow = 20.0f;
 
 /// The middle of the shaft at a height, m: bowed towards lateral.
 double bow(double z) { return -z * z / (2.0 * 0.5); }
@@ -39,17 +36,17 @@ float hu_at(const Vec3& p) {
     const double slope = (radius(angle + step, p.z) - radius(angle - step, p.z)) / (2.0 * step);
     // First-order distance to the section's outline.
     const double side = (r - edge) / std::sqrt(1.0 + slope * slope / (edge * edge));
-    const double outside = std::max(side, std::abs(p.z) - half_length);
+    const double outside = std::max(side, std::abs(p.z) - fibula_half_length);
     const double cortex = (3.4 + 0.4 * std::cos(angle - 0.4) + 0.1 * std::sin(p.z / (8.0 * mm))) * mm;
     double hu = marrow;
-    hu += smooth_step((side + cortex) / (1.0 * mm) + 0.5) * (cortical + 30.0 * std::sin(p.z / (6.0 * mm)) - hu);
-    hu += smooth_step(outside / voxel + 0.5) * (soft_tissue - hu);
+    hu += smooth_step((side + cortex) / (1.0 * mm) + 0.5) * (fibula_cortical + 30.0 * std::sin(p.z / (6.0 * mm)) - hu);
+    hu += smooth_step(outside / fibula_voxel + 0.5) * (fibula_soft_tissue - hu);
     return static_cast<float>(hu);
 }
 
-volume::Grid layout() {
-    volume::Grid grid{{70, 70, 206}, {}, Vec3(voxel), {}};
-    for (int a = 0; a < 3; ++a) grid.origin[a] = -0.5 * (grid.size[static_cast<std::size_t>(a)] - 1) * voxel;
+volume::Grid fibula_layout() {
+    volume::Grid grid{{70, 70, 206}, {}, Vec3(fibula_voxel), {}};
+    for (int a = 0; a < 3; ++a) grid.origin[a] = -0.5 * (grid.size[static_cast<std::size_t>(a)] - 1) * fibula_voxel;
     return grid;
 }
 
@@ -64,7 +61,7 @@ volume::Grid filled(volume::Grid grid, const Value& value) {
 
 }  // namespace
 
-volume::Grid fibula_hu() { return volume::smoothed(filled(layout(), hu_at)); }
+volume::Grid fibula_hu() { return volume::smoothed(filled(fibula_layout(), hu_at)); }
 
 bone::Bone make_fibula() {
     bone::Bone bone = bone::bone_from_hu(fibula_hu(), {.threshold = 300.0f, .keep = 1, .fill = true}).bone;
@@ -75,7 +72,7 @@ bone::Bone make_fibula() {
 }
 
 volume::Grid fibula_vessels() {
-    volume::Grid grid = layout();
+    volume::Grid grid = fibula_layout();
     grid.size = {20, 30, grid.size[2]};
     grid.origin.x = 7.0 * mm;
     grid.origin.y = -3.0 * mm;

@@ -2,6 +2,7 @@
 #include "assets/library/flap_bones.hpp"
 
 #include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/volume/grid.hpp"
 
 #include <glm/geometric.hpp>
@@ -18,7 +19,7 @@ namespace tactus::library {
 
 namespace {
 
-constexpr double mm = 1e-3, half_arch = 44.0 * mm, arch_depth = 62.0 * mm, arch_back = 20.0 * mm;
+constexpr double half_arch = 44.0 * mm, arch_depth = 62.0 * mm, arch_back = 20.0 * mm;
 
 /// Smooth union: where both are within `k`, a fillet (polynomial smooth minimum; Quilez 2013).
 double join(double a, double b, double k) {

@@ -2,6 +2,7 @@
 #include "assets/library/flap_case.hpp"
 
 #include "assets/library/flap_bones.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
@@ -24,7 +25,7 @@ namespace {
 using geometry::TriangleSurface;
 using reconstruct::Leg;
 
-constexpr double mm = 1e-3, artery_radius = 1.5 * mm, vein_radius = 1.8 * mm;
+constexpr double artery_radius = 1.5 * mm, vein_radius = 1.8 * mm;
 constexpr double beside_bone = 2.0 * mm;  // between vessel and bone
 
 /// A long bone along z, as seen by whoever follows it.

@@ -5,6 +5,7 @@
 #include "assets/library/flap_bones.hpp"
 #include "assets/library/hand_script.hpp"
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/reconstruct/cut.hpp"
@@ -27,7 +28,7 @@ namespace {
 using geometry::TriangleSurface;
 using reconstruct::Plane;
 
-constexpr double mm = 1e-3, voxel = 0.6 * mm;
+constexpr double plan_voxel = 0.6 * mm;
 const Quat upright{1.0, 0.0, 0.0, 0.0};
 
 bone::Bone bone_of(const TriangleSurface& surface, const std::string& name, double spacing, std::span<const Plane> cuts,
@@ -37,10 +38,10 @@ bone::Bone bone_of(const TriangleSurface& surface, const std::string& name, doub
     for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     volume::Grid layout;
     layout.origin = low - margin;
-    layout.spacing = Vec3(voxel);
+    layout.spacing = Vec3(plan_voxel);
     for (int a = 0; a < 3; ++a)
         layout.size[static_cast<std::size_t>(a)] =
-            static_cast<int>(std::ceil((high[a] - low[a] + 2.0 * margin) / voxel)) + 1;
+            static_cast<int>(std::ceil((high[a] - low[a] + 2.0 * margin) / plan_voxel)) + 1;
     bone::Bone bone;
     bone.distance = volume::signed_distance(layout, surface);
     // Contact and pictures look at what is near the surface; the rest would only fill the file.

@@ -2,6 +2,8 @@
 #include "assets/library/mandible.hpp"
 
 #include "assets/bone/from_hu.hpp"
+#include "assets/library/smooth_step.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/volume/iso_distance.hpp"
 
@@ -14,17 +16,11 @@ namespace tactus::library {
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double voxel = 0.3 * mm;
+constexpr double jaw_voxel = 0.3 * mm;
 constexpr double half_length = 27.2 * mm;   // along the arch
 constexpr double curvature = 1.0 / 0.055;   // of the arch at its middle, 1/m
 constexpr double half_width = 5.7 * mm, half_height = 13.7 * mm;  // the surface lies 0.3 mm outside
 constexpr float soft_tissue = 40.0f, cortical = 1520.0f, cancellous = 290.0f, canal = 190.0f;
-
-double smooth_step(double x) {
-    x = std::clamp(x, 0.0, 1.0);
-    return x * x * (3.0 - 2.0 * x);
-}
 
 // Value noise: random values at integers, interpolated smoothly; in [-1, 1].
 double value_noise(const Random& random, const Vec3& at) {
@@ -82,13 +78,13 @@ float hu_at(const Vec3& p, const Random& random) {
     const double wall = smooth_step(1.0 - std::abs(bore - 0.4 * mm) / (0.6 * mm));
     hu += wall * std::max(0.0, 900.0 - hu);
     hu += smooth_step(0.5 - bore / (0.4 * mm)) * (canal - hu);
-    hu += smooth_step(outside / voxel + 0.5) * (soft_tissue - hu);
+    hu += smooth_step(outside / jaw_voxel + 0.5) * (soft_tissue - hu);
     return static_cast<float>(hu);
 }
 
 volume::Grid layout() {
-    volume::Grid grid{{178, 84, 104}, {}, Vec3(voxel), {}};
-    grid.origin = Vec3(-0.5 * (grid.size[0] - 1) * voxel, -8.5 * mm, -0.5 * (grid.size[2] - 1) * voxel);
+    volume::Grid grid{{178, 84, 104}, {}, Vec3(jaw_voxel), {}};
+    grid.origin = Vec3(-0.5 * (grid.size[0] - 1) * jaw_voxel, -8.5 * mm, -0.5 * (grid.size[2] - 1) * jaw_voxel);
     return grid;
 }
 
@@ -118,7 +114,7 @@ volume::Grid mandible_canal() {
     volume::Grid labels = layout();
     // The layers that hold it.
     constexpr int first = 26, last = 44;
-    labels.origin.z += first * voxel;
+    labels.origin.z += first * jaw_voxel;
     labels.size[2] = last - first + 1;
     labels.values.reserve(labels.count());
     for (int k = 0; k < labels.size[2]; ++k)

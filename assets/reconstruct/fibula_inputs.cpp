@@ -5,6 +5,7 @@
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +21,6 @@ namespace tactus::reconstruct {
 namespace {
 
 using file::Json;
-
-constexpr double mm = 1e-3, farthest_mm = 1e5;
-constexpr std::size_t most_planes = 6;
 
 Vec3 vector_of(const Json& json, const char* key, const std::string& where) {
     const Json* found = json.find(key);

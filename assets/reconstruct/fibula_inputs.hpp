@@ -4,11 +4,15 @@
 
 #include "dsp/reconstruct/fibula_plan.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace tactus::reconstruct {
+
+inline constexpr double farthest_mm = 1e5;  // of a coordinate in a file
+inline constexpr std::size_t most_planes = 6;
 
 /// Reads
 ///     {"units": "mm", "mandible_planes": [{"name": "left", "origin": [x, y, z], "normal": [...], "y": [...]}, ...],

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/reconstruct/fibula_inputs.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -22,8 +23,6 @@ namespace fs = std::filesystem;
 using file::Json;
 
 namespace {
-
-constexpr double mm = 1e-3, farthest_mm = 1e5;
 
 Json parsed(std::string_view text, const std::string& file) {
     try {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/reconstruct/flap_json.hpp"
 
+#include "assets/file/json_vector.hpp"
 #include "assets/table/log_lines.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -18,10 +20,10 @@ using file::Json;
 
 namespace {
 
+using file::json_of;
+
 constexpr double farthest = 100.0;  // m
 constexpr std::size_t most_points = 10000, most_things = 100;
-
-Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 Json json_of(const std::vector<Vec3>& all) {
     Json list = Json::array();
@@ -80,7 +82,6 @@ FlapLimits limits_of(const Members& item) {
     limits.perforator_to_cut = not_negative(item, "perforator_to_cut", usual.perforator_to_cut);
     limits.over_in_situ = share_of(item, "over_in_situ", usual.over_in_situ, 1.0);
     limits.kink = share_of(item, "kink_radii", usual.kink, 100.0);
-    constexpr double degree = std::numbers::pi / 180.0;
     limits.twist = item.has("twist_deg") ? share_of(item, "twist_deg", 0.0, 180.0) * degree
                                          : share_of(item, "twist_rad", usual.twist, std::numbers::pi + 1e-9);
     return limits;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/reconstruct/reconstruction.hpp"
 
+#include "assets/file/json_vector.hpp"
+#include "assets/reconstruct/fibula_inputs.hpp"
 #include "assets/reconstruct/flap_json.hpp"
 #include "dsp/core/error.hpp"
 
@@ -18,11 +20,10 @@ using file::Json;
 
 namespace {
 
-constexpr std::size_t most_planes = 6;
+using file::json_of;
+
 constexpr Resection resections[] = {Resection::between, Resection::after_first, Resection::before_last,
                                     Resection::none};
-
-Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 Json json_of(const MeshFile& mesh) { return {{"file", mesh.file}, {"hash", fmt::format("{:016x}", mesh.hash)}}; }
 

@@ -5,6 +5,7 @@
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/table/log_lines.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,6 @@ namespace {
 
 using file::Json;
 
-constexpr double mm = 1e-3;
 constexpr double farthest_mm = farthest_seed / mm, widest_mm = widest_brush / mm;
 constexpr std::size_t most_points = 1'000'000;
 

@@ -47,9 +47,9 @@ std::span<const double> heard(const std::array<double, SawModelSize::most_orders
     return {orders.data(), count};
 }
 
-class Reader {
+class ModelReader {
 public:
-    explicit Reader(const std::string& file) : file_(file) {}
+    explicit ModelReader(const std::string& file) : file_(file) {}
 
     SawModelTable read(const toml::table& table) const {
         know(table, model_keys, "a saw's model");
@@ -180,6 +180,8 @@ void save_saw_model(const SawModel& model, const SawModelTexts& texts, const std
     file::write_whole_file(path, out);
 }
 
-SawModelTable read_saw_model(const toml::table& table, const std::string& file) { return Reader(file).read(table); }
+SawModelTable read_saw_model(const toml::table& table, const std::string& file) {
+    return ModelReader(file).read(table);
+}
 
 }  // namespace tactus::sound

@@ -51,9 +51,9 @@ constexpr std::array<Unit, 3> lengths{{{"_mm", 1e-3}, {"_cm", 1e-2}, {"_m", 1.0}
 constexpr std::array<Unit, 1> forces{{{"_N", 1.0}}};
 constexpr std::array<Unit, 1> bare{{{"", 1.0}}};
 
-class Reader {
+class TrajectoryReader {
 public:
-    Reader(const std::filesystem::path& path, const TrajectorySelection& selection)
+    TrajectoryReader(const std::filesystem::path& path, const TrajectorySelection& selection)
         : file_(path.string()), selection_(selection) {
         if (std::filesystem::exists(path)) file::require_file(path);
         stream_.open(path);
@@ -212,7 +212,7 @@ simulate::TrajectoryRules Trajectory::rules() const {
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path, const TrajectorySelection& selection) {
-    return Reader(path, selection).read();
+    return TrajectoryReader(path, selection).read();
 }
 
 }  // namespace tactus::table

@@ -2,6 +2,7 @@
 #include "assets/training/task_file.hpp"
 
 #include "assets/file/toml_file.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_spared = 64, most_settings = 256, longest_name = 64;
-constexpr double degree = std::numbers::pi / 180.0;
 
 class TaskReader : file::TomlFile {
 public:

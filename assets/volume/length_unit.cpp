@@ -15,12 +15,12 @@ double metres_in(std::string_view unit) {
 }
 
 std::string unit_question(std::string_view what, double extent, const PlausibleSize& size) {
-    const auto is_plausible = [&](double mm) { return mm >= size.least && mm <= size.most; };
+    const auto is_plausible = [&](double width) { return width >= size.least && width <= size.most; };
     if (is_plausible(extent)) return {};
     std::string likely;
     for (const std::string_view unit : {"cm", "m"})
-        if (const double mm = extent * metres_in(unit) * 1e3; is_plausible(mm))
-            likely += fmt::format("{}--unit {} makes it {:.4g} mm", likely.empty() ? "" : ", ", unit, mm);
+        if (const double width = extent * metres_in(unit) * 1e3; is_plausible(width))
+            likely += fmt::format("{}--unit {} makes it {:.4g} mm", likely.empty() ? "" : ", ", unit, width);
     return fmt::format(
         "{} states no unit and is {:.4g} units across, which is not plausible for a bone in mm; give its unit with "
         "--unit mm, cm or m{}",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/readers.hpp"
 
+#include "assets/volume/voxel_limit.hpp"
 #include "dsp/core/error.hpp"
 
 #include <glm/geometric.hpp>
@@ -15,7 +16,6 @@ namespace tactus::volume {
 
 namespace {
 
-constexpr double most_voxels = 1e9;
 constexpr int highest_label = 255;
 
 // Labels are small whole numbers, most of them 0. A masked CT also has many zeros, but grey values above 255.

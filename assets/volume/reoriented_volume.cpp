@@ -2,6 +2,7 @@
 #include "assets/volume/reoriented_volume.hpp"
 
 #include "assets/file/room.hpp"
+#include "assets/volume/voxel_limit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -17,8 +18,6 @@
 namespace tactus::volume {
 
 namespace {
-
-constexpr double most_voxels = 1e9;
 
 using Axes = std::array<int, 3>;
 

@@ -5,6 +5,7 @@
 #include "devices/board/mechanism.hpp"
 #include "devices/driver/buttons.hpp"
 #include "devices/gripper/serial_port.hpp"
+#include "dsp/core/constants.hpp"
 
 #include <fmt/format.h>
 
@@ -246,7 +247,6 @@ std::unique_ptr<driver::Backend> make_haply_2diy(Options& options) {
     Settings settings = read_common(options, "far", "0.123 N m", "2 N");
     settings.name = fmt::format("Haply 2diy at {}", settings.port);
     DiyProtocol::Settings line;
-    const double degree = std::acos(-1.0) / 180.0;
     line.offset_deg = {options.quantity("offset_1", "180 deg", "-720 deg", "720 deg") / degree,
                        options.quantity("offset_2", "0 deg", "-720 deg", "720 deg") / degree};
     line.counts = options.quantity("counts", "13824", "100", "1e6");

@@ -3,6 +3,7 @@
 
 #include "devices/driver/buttons.hpp"
 #include "devices/evdev/force_effect.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 
@@ -26,7 +27,6 @@ namespace tactus::evdev {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double usual_range = 900.0 * degree;  // of wheels whose driver does not say
 constexpr int most_reads = 8;  // a round; more is read in the next one
 constexpr std::int64_t longest_refusal_ns = 200'000'000;

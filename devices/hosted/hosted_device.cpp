@@ -21,7 +21,7 @@ namespace tactus::hosted {
 namespace {
 
 constexpr std::chrono::milliseconds farewell{100};
-constexpr std::int64_t longest_silence_ns = 500'000'000;
+constexpr std::int64_t longest_driver_silence_ns = 500'000'000;
 constexpr double oldest_sample_s = 20e-3;
 
 }  // namespace
@@ -161,10 +161,10 @@ const std::string& HostedDevice::service() noexcept {
         heard_ns_ = now;
     }
     if (process_->has_ended()) loss_ = how_it_ended();
-    else if (now - heard_ns_ > longest_silence_ns) {
+    else if (now - heard_ns_ > longest_driver_silence_ns) {
         process_->kill();
-        loss_ =
-            fmt::format("its driver did not return for {} ms; its process was killed", longest_silence_ns / 1'000'000);
+        loss_ = fmt::format("its driver did not return for {} ms; its process was killed",
+                            longest_driver_silence_ns / 1'000'000);
     }
     return loss_;
 }

@@ -29,7 +29,7 @@ std::optional<Words> unpack(std::span<const char> bytes) {
     return words;
 }
 
-int number_of(const std::string& word) {
+int line_number_of(const std::string& word) {
     try {
         return std::stoi(word);
     } catch (const std::exception&) {
@@ -82,7 +82,7 @@ void append(Words& words, const SourceLocation& where) {
 
 SourceLocation take_location(std::span<const std::string>& words) {
     if (words.size() < 3) throw Error("a message of the device's process has no place");
-    SourceLocation where{words[0], number_of(words[1]), number_of(words[2])};
+    SourceLocation where{words[0], line_number_of(words[1]), line_number_of(words[2])};
     words = words.subspan(3);
     return where;
 }

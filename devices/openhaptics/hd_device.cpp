@@ -3,6 +3,7 @@
 
 #include "devices/driver/buttons.hpp"
 #include "devices/openhaptics/hd_api.hpp"
+#include "dsp/core/constants.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +19,6 @@ namespace tactus::openhaptics {
 
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr std::int64_t longest_silence_ns = 500'000'000;
 constexpr unsigned short priority = 32767;  // the vendor's default
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/units.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -20,8 +21,6 @@ struct Named {
     std::array<std::int8_t, Dimension::base_count> exponent;  // m, kg, s, A, rad, HU, K
     bool prefixed;                                            // takes SI prefixes
 };
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 constexpr Named named_units[] = {
     {"m", 1.0, {1, 0, 0, 0, 0, 0}, true},

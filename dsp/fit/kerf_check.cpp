@@ -24,7 +24,7 @@ constexpr double rim = 1.2e-3;  // m: nearer to the face the cortex is rounded
 constexpr double short_reach = 5e-3, middle_reach = 7e-3, long_reach = 9e-3;
 constexpr double half_width = 1.5e-3;  // m, of a strip
 constexpr double alike = 0.8;  // least cosine between the normals of a strip
-constexpr std::size_t most_strips = 48, least_points = 12, most_paint = 400;
+constexpr std::size_t most_strips = 48, least_in_strip = 12, most_paint = 400;
 constexpr int independent = 8;  // strips around a bone that tell something of their own
 constexpr double widest = 6e-3;  // m: errors of the opening that are still seen
 constexpr double most_error = 0.5e-3;  // m, of the opening
@@ -98,7 +98,7 @@ std::optional<Step> step_at(const Vec3& at, const Vec3& out, const Vec3& normal,
                 for (std::size_t b = 0; b < terms; ++b) matrix[a * terms + b] += row[a] * row[b];
             }
         }
-        if (count < least_points) return std::nullopt;
+        if (count < least_in_strip) return std::nullopt;
     }
     for (std::size_t a = 0; a < terms; ++a) matrix[a * terms + a] += 1e-9;
     if (!geometry::solve_positive(matrix, solved)) return std::nullopt;

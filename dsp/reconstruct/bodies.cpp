@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/bodies.hpp"
+#include "dsp/core/constants.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -18,7 +19,6 @@ namespace {
 
 using geometry::TriangleSurface;
 using Triangle = std::array<int, 3>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const Vec3& corner(const TriangleSurface& surface, int n) { return surface.vertices[static_cast<std::size_t>(n)]; }
 

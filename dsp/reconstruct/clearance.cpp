@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/clearance.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/cut.hpp"
 #include "dsp/reconstruct/jaw_normal.hpp"
 
@@ -17,8 +18,6 @@
 namespace tactus::reconstruct {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Least value of a convex function of a point that goes from a to b: golden section.
 template <class Function>

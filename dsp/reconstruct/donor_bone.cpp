@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/donor_bone.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plan_frame.hpp"
 
@@ -10,12 +11,6 @@
 #include <utility>
 
 namespace tactus::reconstruct {
-
-namespace {
-
-constexpr double mm = 1e-3;
-
-}  // namespace
 
 DonorBone::DonorBone(const FibulaInputs& inputs) : DonorBone(inputs, {}) {
     if (inputs.donor) take(parts_near_line(*inputs.donor, point_, axis_, farthest_from_line_));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/fibula_plan.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
@@ -21,8 +22,6 @@
 namespace tactus::reconstruct {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A segment whose axis meets its more distal plane `start` along the line.
 FibulaSegment segment_at(const FibulaInputs& inputs, const JawSide& jaw, const DonorBone& donor, std::size_t n,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/flap_warning.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/reconstruct/reach.hpp"
 
@@ -16,8 +17,6 @@
 namespace tactus::reconstruct {
 
 namespace {
-
-constexpr double mm = 1e-3, infinity = std::numeric_limits<double>::infinity();
 
 class Warnings {
 public:

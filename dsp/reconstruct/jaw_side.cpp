@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/jaw_side.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plan_frame.hpp"
 
@@ -16,7 +17,6 @@ namespace tactus::reconstruct {
 
 namespace {
 
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 constexpr double least_segment = 1.0 * mm, greatest_tilt = 75.0 * degree;
 constexpr std::size_t most_planes = 6;
 

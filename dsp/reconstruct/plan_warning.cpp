@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/plan_measures.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace tactus::reconstruct {
 
 namespace {
 
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0, greatest_off_bisector = 1.0 * degree;
+constexpr double greatest_off_bisector = 1.0 * degree;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/plate_line.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/cut.hpp"
 
@@ -17,7 +18,6 @@ namespace tactus::reconstruct {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double first_station = 6e-3;  // m of a stump between the cut and its first screw
 
 /// A point of the outer contour.

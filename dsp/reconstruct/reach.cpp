@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/reach.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/margin_wall.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/rope/measure.hpp"
@@ -18,7 +19,6 @@ namespace tactus::reconstruct {
 
 namespace {
 
-constexpr double mm = 1e-3, infinity = std::numeric_limits<double>::infinity();
 constexpr double bend_step = 5.0 * mm, lead_in = 10.0 * mm, touching = 0.1 * mm;
 constexpr std::size_t path_points = 33;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/section.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/closest_point.hpp"
 
@@ -38,8 +39,6 @@ bool meets_line(const InPlane& in, const Vec3& a, const Vec3& b, double height, 
     at = ua + (ub - ua) * va / (va - vb);
     return true;
 }
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Whether each outline, by its root, encloses `p`; even-odd rule.
 std::vector<bool> enclosing(const Section& all, const std::vector<std::size_t>& root_of, const InPlane& in,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/blade_faces.hpp"
 
+#include "dsp/saw/hand_limits.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -10,11 +12,8 @@ namespace tactus::saw {
 
 namespace {
 
-constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
-constexpr double most_lag = 0.020;  // m
-constexpr double dry_friction = 0.3;
 constexpr double deepest_row = 5e-3;  // m behind the teeth: a long blade is guided near them
-constexpr int most_moves = 10;
+constexpr int most_steps = 10;
 
 }  // namespace
 
@@ -67,7 +66,7 @@ void BladeFaces::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool
 
 void BladeFaces::slide(const volume::BoneSnapshot& bone, FacePoint& p, double voxel, bool running) const noexcept {
     const double skin = 0.01 * voxel;
-    for (int move = 0; move < most_moves; ++move) {
+    for (int move = 0; move < most_steps; ++move) {
         const Vec3 lag = p.target - p.at;
         const double distance = glm::length(lag);
         if (distance < 1e-9) return;

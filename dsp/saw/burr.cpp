@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/burr.hpp"
 
+#include "dsp/saw/hand_limits.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -12,9 +14,6 @@ namespace tactus::saw {
 
 namespace {
 
-constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
-constexpr double most_lag = 0.020;  // m
-constexpr double dry_friction = 0.3;
 constexpr int most_moves = 12;
 constexpr std::size_t probes = 28;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/tooth_row.hpp"
 
+#include "dsp/saw/hand_limits.hpp"
 #include "dsp/saw/lag_norm.hpp"
 
 #include <glm/geometric.hpp>
@@ -14,9 +15,6 @@ namespace tactus::saw {
 
 namespace {
 
-constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
-constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
-constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
 constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
 constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz

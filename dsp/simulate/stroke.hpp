@@ -2,6 +2,7 @@
 // Intention of a simulated operator who saws: approach, press, long strokes while feeding into the material, retract.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/simulate/hand.hpp"
 #include "dsp/simulate/tremor.hpp"
 
@@ -144,7 +145,7 @@ private:
     void stroke(double t, double& along, double& speed) const noexcept {
         const double since = t - plan_.stroke_at;
         if (since <= 0.0) return;
-        const double pi = std::numbers::pi, rate = 2.0 * pi * plan_.stroke_rate;
+        const double rate = 2.0 * pi * plan_.stroke_rate;
         double gain = 1.0, gain_rate = 0.0;
         ease(since, gain, gain_rate);
         if (retracting_) {
@@ -159,7 +160,6 @@ private:
 
     /// Half-cosine ramp from 0 to 1 within ease_s.
     static void ease(double since, double& value, double& rate) noexcept {
-        const double pi = std::numbers::pi;
         const bool rising = since < ease_s;
         value = rising ? 0.5 - 0.5 * std::cos(pi * since / ease_s) : 1.0;
         rate = rising ? 0.5 * pi / ease_s * std::sin(pi * since / ease_s) : 0.0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/median.hpp"
 #include "dsp/geometry/symmetric_eigen.hpp"
 #include "dsp/training/removed.hpp"
 
@@ -126,12 +127,6 @@ bool weighted_plane(const std::vector<Vec3>& uvt, const std::vector<double>& wei
     coefficients.z = (vt * uu - ut * uv) / det;
     coefficients.x = mean.z - coefficients.y * mean.x - coefficients.z * mean.y;
     return true;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// Moves the frame into the robust plane of the points.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vessel/refine.hpp"
+#include "dsp/core/median.hpp"
 #include "dsp/geometry/spline.hpp"
 
 #include <glm/geometric.hpp>
@@ -9,12 +10,6 @@
 namespace tactus::vessel {
 
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Tubes at even distances along a spline through `tubes`.
 std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing) {

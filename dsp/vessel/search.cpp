@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vessel/search.hpp"
 
+#include "dsp/core/median.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -8,12 +10,6 @@
 namespace tactus::vessel {
 
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// What the vessel has been like lately.
 struct Recent {

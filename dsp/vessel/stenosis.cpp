@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vessel/stenosis.hpp"
+#include "dsp/core/median.hpp"
 #include "dsp/vessel/narrowing.hpp"
 
 #include <algorithm>
@@ -13,12 +14,6 @@ constexpr double least_depth = 0.06;  ///< of the radius of the nodes; less is n
 constexpr std::size_t most_fits = 5;
 constexpr double most_error = 0.06;  ///< of the depth; on phantoms the true error is about half of it
 constexpr double most_misfit = 2.0;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Nodes of a branch as a narrowing is looked for in them.
 class Radii {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/actuator.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +15,6 @@
 namespace tactus::vibration {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // 8 g peak to peak at 0.5 A, in m/s² per A.
 constexpr double mark_ii_sensitivity = 4.0 * 9.80665 / 0.5;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/cycle_loop.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/vibration/sinc_reading.hpp"
 
@@ -14,8 +15,6 @@
 namespace tactus::vibration {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// The low-passed sound at a position (in samples); `cutoff` 1 is half the sample rate.
 double read_filtered(std::span<const float> samples, const SincKernel& kernel, double position, double cutoff) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/equaliser.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
@@ -16,7 +17,6 @@ namespace tactus::vibration {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 
 void check(const FrequencyResponse& response, const EqualiserDesign& design) {
     if (response.hz.size() < 3) throw Error("an equaliser needs the response at 3 frequencies or more");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/frequency_response.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -11,12 +12,6 @@
 #include <numbers>
 
 namespace tactus::vibration {
-
-namespace {
-
-constexpr double pi = std::numbers::pi;
-
-}  // namespace
 
 std::vector<double> unwrapped_phase(std::span<const std::complex<double>> gain) {
     std::vector<double> phase(gain.size());

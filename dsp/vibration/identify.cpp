@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/identify.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
@@ -19,8 +20,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Spectrum = std::vector<Complex>;
-
-constexpr double pi = std::numbers::pi;
 
 struct Spectra {
     Spectrum drive;

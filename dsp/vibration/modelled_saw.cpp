@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/modelled_saw.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/filter/one_pole.hpp"
@@ -18,7 +19,7 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double pi = std::numbers::pi, model_rate = SawModelSize::residual_rate;
+constexpr double lowest_rate = SawModelSize::residual_rate;
 constexpr double highest_share = 0.42;  // of the output's rate: orders above it would alias when the blade speeds up
 constexpr double least_swell = 0.02;    // of the mean power
 constexpr Random noise{0x7ac705};
@@ -26,8 +27,8 @@ constexpr Random noise{0x7ac705};
 }  // namespace
 
 void ModelledSaw::prepare(double rate, const SawModel& model, const SawBehaviour& behaviour) {
-    if (!(std::isfinite(rate) && rate >= model_rate))
-        throw Error(fmt::format("a modelled saw needs a group at {:g} Hz or more, not {:g} Hz", model_rate, rate));
+    if (!(std::isfinite(rate) && rate >= lowest_rate))
+        throw Error(fmt::format("a modelled saw needs a group at {:g} Hz or more, not {:g} Hz", lowest_rate, rate));
     *this = ModelledSaw{};
     sounds_ = SawSounds(model);
     behaviour_ = behaviour;
@@ -89,7 +90,7 @@ double ModelledSaw::orders() noexcept {
 
 void ModelledSaw::add_noise() noexcept {
     // The sinc reads eight samples behind the newest.
-    const double cycles = blade_.cycles() + reading_half * blade_.rate() / model_rate;
+    const double cycles = blade_.cycles() + reading_half * blade_.rate() / lowest_rate;
     const double angle = 2.0 * pi * (cycles - std::floor(cycles));
     double power = 1.0;
     for (std::size_t m = 0; m < SawModelSize::swells; ++m) {
@@ -105,7 +106,7 @@ void ModelledSaw::add_noise() noexcept {
 }
 
 double ModelledSaw::residual() noexcept {
-    position_ += model_rate / rate_;
+    position_ += lowest_rate / rate_;
     while (position_ >= 1.0) {
         position_ -= 1.0;
         add_noise();

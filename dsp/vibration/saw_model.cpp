@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/saw_model.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/filter/resample.hpp"
@@ -19,7 +20,7 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double pi = std::numbers::pi, model_rate = SawModelSize::residual_rate;
+constexpr double model_rate = SawModelSize::residual_rate;
 constexpr double highest_modelled = 0.375 * model_rate;  // Hz: below the resampling's roll-off
 constexpr std::size_t strokes_per_segment = 32, fewest_strokes = 16;
 // The resampling removes what lies above the band. A noise floor under it spares the filter that steep edge.

@@ -13,8 +13,8 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double stand_in_level = 0.25;  // −12 dB: cutting recordings used as free air
-constexpr double same_rate = 1.03;  // recorded rates within this ratio count as one rate
+constexpr double free_air_level = 0.25;  // −12 dB: cutting recordings used as free air
+constexpr double one_rate = 1.03;  // recorded rates within this ratio count as one rate
 
 double ratio(double a, double b) noexcept { return a > b ? a / b : b / a; }
 
@@ -46,7 +46,7 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
             if (layers_[i].cutting == cutting) break;
             Layer stand_in = layers_[i];
             stand_in.cutting = cutting;
-            if (!cutting) stand_in.amplitude *= stand_in_level;
+            if (!cutting) stand_in.amplitude *= free_air_level;
             layers_.push_back(stand_in);
         }
     }
@@ -72,7 +72,7 @@ void SawVoice::make_groups() {
         for (std::size_t i = 0; i < groups.size(); ++i) {
             if (i + 1 < groups.size()) groups[i].border = groups[i].rate * groups[i + 1].rate;
             for (std::size_t k = 0; k < layers_.size(); ++k)
-                if (layers_[k].cutting == cutting && ratio(layers_[k].rate, groups[i].rate) <= same_rate)
+                if (layers_[k].cutting == cutting && ratio(layers_[k].rate, groups[i].rate) <= one_rate)
                     groups[i].layers.push_back(k);
         }
     }

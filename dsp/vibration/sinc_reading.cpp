@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/sinc_reading.hpp"
+#include "dsp/core/constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int taps = reading_taps;
 
 /// Interpolation kernel with one row of taps per fraction of a sample, so that a row is contiguous.

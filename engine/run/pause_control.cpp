@@ -9,7 +9,7 @@ namespace {
 
 constexpr Flicks fade_time = flicks_per_second / 50;  // a fade takes 10 ms
 // From asking to the first tick that fades, and to the first that does not run: all groups must have heard of it.
-constexpr Flicks fade_lead = flicks_per_second / 1000;
+constexpr Flicks pause_lead = flicks_per_second / 1000;
 constexpr Flicks stop_lead = flicks_per_second * 30 / 1000;
 
 }  // namespace
@@ -43,7 +43,7 @@ bool PauseControl::begin_if_wanted() noexcept {
     window.fade = PauseWindow::never;
     window.until = PauseWindow::never;
     window.stop = now + stop_lead;
-    window.fade = now + fade_lead;
+    window.fade = now + pause_lead;
     return true;
 }
 
@@ -55,7 +55,7 @@ bool PauseControl::end() noexcept {
     window.end = std::min(now + stop_lead, window.stop.load());
     // A pause fades by itself; what comes in anew after one is held off again.
     window.until = PauseWindow::never;
-    if (window.stop == PauseWindow::never) window.fade = now + fade_lead;
+    if (window.stop == PauseWindow::never) window.fade = now + pause_lead;
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "graph/node/options.hpp"
 
 #include "dsp/core/units.hpp"
+#include "graph/node/unit_of.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,16 +11,6 @@
 #include <cmath>
 
 namespace tactus {
-namespace {
-
-/// "0.2 kg" → "kg": the unit of a quantity of the program itself, which is valid.
-std::string_view unit_of(std::string_view quantity) {
-    const std::size_t space = quantity.find(' ');
-    return space == std::string_view::npos ? std::string_view{} : quantity.substr(space + 1);
-}
-
-}  // namespace
-
 Options::Options(std::string owner, std::vector<OptionText> given, SourceLocation where)
     : owner_(std::move(owner)), given_(std::move(given)), where_(std::move(where)) {}
 

@@ -2,20 +2,12 @@
 #include "graph/node/param.hpp"
 
 #include "dsp/core/units.hpp"
+#include "graph/node/unit_of.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace tactus {
-
-namespace {
-
-std::string unit_of(std::string_view quantity) {
-    const std::size_t space = quantity.find(' ');
-    return space == std::string_view::npos ? "" : std::string(quantity.substr(space + 1));
-}
-
-}  // namespace
 
 Param::Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_)
     : unit(unit_of(default_text)), about(about_) {

@@ -133,9 +133,9 @@ private:
     /// The widest range of samples within the stated one.
     static SampleRange samples_in(const expression::Interval& range) noexcept {
         SampleRange out{static_cast<float>(range.low), static_cast<float>(range.high)};
-        constexpr float infinity = std::numeric_limits<float>::infinity();
-        if (static_cast<double>(out.low) < range.low) out.low = std::nextafter(out.low, infinity);
-        if (static_cast<double>(out.high) > range.high) out.high = std::nextafter(out.high, -infinity);
+        constexpr float most = std::numeric_limits<float>::infinity();
+        if (static_cast<double>(out.low) < range.low) out.low = std::nextafter(out.low, most);
+        if (static_cast<double>(out.high) > range.high) out.high = std::nextafter(out.high, -most);
         if (out.low > out.high) out.low = out.high = static_cast<float>(range.low);  // no sample lies within
         return out;
     }

@@ -210,7 +210,7 @@ int main(int count, char** words) {
     }
     const int rounds = std::atoi(words[1]), first = count > 2 ? std::atoi(words[2]) : 0;
     const fs::path scratch = fs::temp_directory_path() / fmt::format("tactus-crash-{}", getpid());
-    const tactus::test::Display screen;
+    const tactus::test::VirtualDisplay screen;
     const std::string display = screen.is_there() ? screen.environment() : std::string();
     int found = 0;
     try {

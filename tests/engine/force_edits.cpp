@@ -3,6 +3,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/column_tap.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 /// The hand rests at the middle of a soft spring that pulls it to a place 4 mm away.
 std::string held(const std::string& stiffness, const std::string& more_wires, const std::string& more) {

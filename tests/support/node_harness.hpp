@@ -69,6 +69,9 @@ struct HarnessOptions {
     const ValueType* any = &value::number;  ///< of inputs that take any type
 };
 
+/// The rate of a force loop.
+inline constexpr HarnessOptions servo{.period = flicks_per_second / 1000};
+
 class NodeHarness {
 public:
     using Options = HarnessOptions;

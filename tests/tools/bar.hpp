@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/types.hpp"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace tactus::test {
 
 /// A bar of egg-shaped section, 12 by 22 mm and 40 mm long.
 inline bone::Bone bar() {
-    constexpr double mm = 1e-3;
     bone::Bone bone;
     volume::Grid& grid = bone.distance;
     grid = {{95, 37, 59}, Vec3(-23.5, -9.0, -14.5) * mm, Vec3(0.5 * mm), {}};

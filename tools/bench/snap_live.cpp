@@ -2,6 +2,7 @@
 #include "tools/bench/snap_live.hpp"
 
 #include "assets/library/fragments.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "dsp/fit/fit.hpp"
@@ -18,7 +19,6 @@ namespace tactus::bench {
 
 namespace {
 
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 constexpr int all_ticks = 3000;
 
 /// Motion within 2 mm and 2 degrees of the fitted pose, at up to 1.1 Hz, of a handle `arm` from the fragment's centre.

@@ -2,6 +2,7 @@
 // How often a method brought two fragments together, how well, and how long it took.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/fit.hpp"
 #include "engine/run/clock.hpp"
@@ -18,7 +19,6 @@
 
 namespace tactus::bench {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double success = 0.5e-3;  // m, rms over the whole fragment
 
 inline double median(std::vector<double> values) {

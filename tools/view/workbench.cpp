@@ -182,9 +182,9 @@ bool Workbench::reset(const std::string& node, const std::string& param) {
 bool Workbench::cut_at(const Vec3& site) {
     patch::Problems problems;
     // A hundredth of a millimetre: no voxel is smaller.
-    const Vec3 mm = glm::round(site * 1e5) * 1e-2;
+    const Vec3 site_mm = glm::round(site * 1e5) * 1e-2;
     const auto settings =
-        session::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), mm, Vec3(0.0));
+        session::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), site_mm, Vec3(0.0));
     if (settings.empty()) {
         tell("this patch has no bone to saw: a site needs a workspace or carve node with a bone", true);
         return false;
@@ -202,7 +202,7 @@ bool Workbench::cut_at(const Vec3& site) {
                 changed = edit::with_setting(changed, s.node, s.param, s.value);
             return changed;
         },
-        fmt::format("the saw works at {:g}, {:g}, {:g} mm", mm.x, mm.y, mm.z));
+        fmt::format("the saw works at {:g}, {:g}, {:g} mm", site_mm.x, site_mm.y, site_mm.z));
     if (!is_made) choice_.overrides.settings = before;
     // The text may have named this site already, and the override hid it.
     else if (before.size() != choice_.overrides.settings.size()) adopt_text();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/exposure/hand_arm.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
@@ -14,7 +15,6 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 // ISO 8041-1, table 3: 10^0.8 and 10^3.1 Hz, 100/2π Hz.
 const double w1 = 2.0 * pi * std::pow(10.0, 0.8), w2 = 2.0 * pi * std::pow(10.0, 3.1);
 constexpr double w3 = 100.0, q1 = std::numbers::sqrt2 / 2.0, q4 = 0.64;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/filter/resample.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double half_width = 20.0;   // zero crossings of the sinc on each side
 constexpr double attenuation = 80.0;  // dB
 constexpr std::size_t most_phases = 1024;

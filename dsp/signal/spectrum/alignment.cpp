@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/alignment.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
 #include <algorithm>
@@ -16,7 +17,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double pi = std::numbers::pi;
 constexpr double floor_ratio = 1e-6;       // −60 dB
 constexpr double search = 5e-3;            // s around the whitened peak
 constexpr double chance = 1e-3;

@@ -12,7 +12,7 @@ namespace tactus::signal {
 namespace {
 
 constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0, order_depth_db = 40.0;
-constexpr int fewest_orders = 2, most_orders = 10;
+constexpr int fewest_orders = 2, highest_order = 10;
 
 double decibel(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
 
@@ -63,7 +63,7 @@ std::optional<double> harmonic_error(const Spectrum& reference, double reference
     if (!(reference_hz > 0.0 && output_hz > 0.0)) return std::nullopt;
     std::vector<double> levels, differences;
     double strongest = -300.0;
-    for (int k = 1; k <= most_orders && k * reference_hz <= highest; ++k) {
+    for (int k = 1; k <= highest_order && k * reference_hz <= highest; ++k) {
         const SpectralLine line = line_near(reference, k * reference_hz, reference.df);
         if (!(line.power > 0.0)) break;
         levels.push_back(line.snr_db < order_snr_db ? -300.0 : decibel(order_power(reference, k * reference_hz)));

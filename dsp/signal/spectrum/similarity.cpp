@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/similarity.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
@@ -13,7 +14,6 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double floor_ratio = 1e-4;  // −40 dB
 
 struct Bins {

@@ -6,6 +6,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/surface_distance.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
@@ -28,7 +29,6 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-constexpr double mm = 1e-3;
 const Vec3 far_off(1.0, -0.9, 1.1);
 
 // A ball of 8 mm whose upper part a saw has taken away at z = 3 mm above its middle.

@@ -253,11 +253,11 @@ TEST_CASE("components are counted and the small ones left out") {
 }
 
 TEST_CASE("how much air a scan holds around a bone does not change the bone, smoothed or not") {
-    for (const double mm : {0.25, 0.7}) {
-        INFO("voxels of " << mm << " mm");
-        const auto ball = [mm](int air) {
+    for (const double voxel : {0.25, 0.7}) {
+        INFO("voxels of " << voxel << " mm");
+        const auto ball = [voxel](int air) {
             const int n = 31 + 2 * air;
-            volume::Grid hu{{n, n, n}, Vec3(-1e-3 * mm * (15 + air)), Vec3(1e-3 * mm), {}};
+            volume::Grid hu{{n, n, n}, Vec3(-1e-3 * voxel * (15 + air)), Vec3(1e-3 * voxel), {}};
             for (int k = 0; k < n; ++k)
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {

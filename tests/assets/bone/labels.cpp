@@ -5,6 +5,7 @@
 #include "assets/bone/import.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
@@ -25,7 +26,6 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-constexpr double mm = 1e-3;
 using Shape = std::function<double(const Vec3&)>;  // signed distance, m
 
 volume::Grid layout(const Vec3& spacing, const Vec3& middle, const std::array<int, 3>& size) {
@@ -58,28 +58,28 @@ Errors errors_of(const bone::Bone& bone, const Shape& truth) {
     return {errors[errors.size() / 2] / voxel, errors[errors.size() * 95 / 100] / voxel};
 }
 
-const Vec3 far_off(1.0, -0.8, 1.2);
+const Vec3 label_far_off(1.0, -0.8, 1.2);
 
 Shape ball(double radius) {
-    return [radius](const Vec3& p) { return glm::length(p - far_off) - radius; };
+    return [radius](const Vec3& p) { return glm::length(p - label_far_off) - radius; };
 }
 Shape ring(double wide, double thick) {
     return [=](const Vec3& at) {
-        const Vec3 p = at - far_off;
+        const Vec3 p = at - label_far_off;
         return std::hypot(std::hypot(p.x, p.y) - wide, p.z) - thick;
     };
 }
 // A wall of so many samples across a ball, slanted to all axes.
 Shape wall(double thick) {
     return [thick](const Vec3& at) {
-        const Vec3 p = at - far_off;
+        const Vec3 p = at - label_far_off;
         return std::max(std::abs(glm::dot(p, glm::normalize(Vec3(1.0, 0.6, 0.4)))) - 0.5 * thick,
                         glm::length(p) - 9.0 * mm);
     };
 }
 
 volume::Grid labelled(const Shape& shape, const Vec3& spacing, int size = 48) {
-    return sampled(layout(spacing, far_off, {size, size, size}),
+    return sampled(layout(spacing, label_far_off, {size, size, size}),
                    [&](const Vec3& p) { return shape(p) < 0.0 ? 1.0 : 0.0; });
 }
 
@@ -126,8 +126,8 @@ TEST_CASE("a slanted wall little more than one voxel thick stays a wall without 
     int outside = 0;
     for (int a = -6; a <= 6; ++a)
         for (int b = -6; b <= 6; ++b) {
-            const Vec3 q =
-                (far_off + 1.0 * mm * (u * double(a) + v * double(b)) - bone.distance.origin) / bone.distance.spacing;
+            const Vec3 q = (label_far_off + 1.0 * mm * (u * double(a) + v * double(b)) - bone.distance.origin) /
+                           bone.distance.spacing;
             double least = 1.0;
             for (int c = 0; c < 8; ++c)
                 least = std::min(
@@ -140,8 +140,8 @@ TEST_CASE("a slanted wall little more than one voxel thick stays a wall without 
 TEST_CASE("a slanted sheet of single voxels has a closed surface without holes, lit from its own side") {
     // One labelled sample per column along x: the thinnest digital plane, whose voxels meet along edges only.
     const Vec3 spacing(0.5 * mm), n = glm::normalize(Vec3(1.0, 0.8, 0.45));
-    const volume::Grid labels = sampled(layout(spacing, far_off, {48, 48, 48}), [&](const Vec3& at) {
-        const Vec3 p = at - far_off;
+    const volume::Grid labels = sampled(layout(spacing, label_far_off, {48, 48, 48}), [&](const Vec3& at) {
+        const Vec3 p = at - label_far_off;
         const double step = 0.5 * spacing.x * n.x, level = glm::dot(p, n);
         return std::abs(p.y) < 6.0 * mm && std::abs(p.z) < 6.0 * mm && level >= -step && level < step ? 1.0 : 0.0;
     });
@@ -166,7 +166,7 @@ TEST_CASE("a slanted sheet of single voxels has a closed surface without holes, 
 }
 
 TEST_CASE("the sheet of a thin label takes no sample from the label beside it") {
-    volume::Grid labels = layout(Vec3(0.5 * mm), far_off, {24, 24, 24});
+    volume::Grid labels = layout(Vec3(0.5 * mm), label_far_off, {24, 24, 24});
     labels.values.assign(labels.count(), 0.0f);
     for (int k = 8; k < 16; ++k)
         for (int n = 6; n < 16; ++n) labels.at(n, n, k) = 1.0f;
@@ -188,7 +188,7 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
     for (const Shape& shape : {ball(6.0 * mm), ring(5.0 * mm, 1.8 * mm)}) {
         std::uint64_t n = 0;
         // An edge of 0.4 mm standard deviation between 40 and 1240 HU.
-        const volume::Grid hu = sampled(layout(spacing, far_off, {56, 56, 34}), [&](const Vec3& p) {
+        const volume::Grid hu = sampled(layout(spacing, label_far_off, {56, 56, 34}), [&](const Vec3& p) {
             return 640.0 - 600.0 * std::erf(shape(p) / (std::sqrt(2.0) * 0.4 * mm)) + 15.0 * random.normal(n++);
         });
         volume::Grid labels = hu;
@@ -212,11 +212,11 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
 TEST_CASE("between two labels grey values are not asked: each ends where the other begins") {
     const Vec3 spacing(0.5 * mm);
     const Shape whole = ball(8.0 * mm);
-    const auto half = [](const Vec3& p) { return p.x - far_off.x + 0.3 * (p.y - far_off.y); };
-    const volume::Grid labels = sampled(layout(spacing, far_off, {44, 44, 44}), [&](const Vec3& p) {
+    const auto half = [](const Vec3& p) { return p.x - label_far_off.x + 0.3 * (p.y - label_far_off.y); };
+    const volume::Grid labels = sampled(layout(spacing, label_far_off, {44, 44, 44}), [&](const Vec3& p) {
         return whole(p) >= 0.0 ? 0.0 : half(p) < 0.0 ? 1.0 : 2.0;
     });
-    const volume::Grid hu = sampled(layout(spacing, far_off, {44, 44, 44}),
+    const volume::Grid hu = sampled(layout(spacing, label_far_off, {44, 44, 44}),
                                     [&](const Vec3& p) { return std::clamp(300.0 - 1e6 * whole(p), -1000.0, 1400.0); });
     double volume = 0.0;
     for (const int label : {1, 2}) {
@@ -256,7 +256,7 @@ TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads fr
     const Random random{7};
     std::uint64_t n = 0;
     // A ball whose outer half is full of holes, so that its voxels touch at faces, edges and corners.
-    volume::Grid labels = sampled(layout(spacing, far_off, {40, 40, 26}), [&](const Vec3& p) {
+    volume::Grid labels = sampled(layout(spacing, label_far_off, {40, 40, 26}), [&](const Vec3& p) {
         const double depth = -ball(7.0 * mm)(p);
         return depth > 0.0 && random.uniform(n++) < 0.4 + depth / (6.0 * mm) ? 1.0 : 0.0;
     });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/mesh_part.hpp"
+#include "dsp/core/constants.hpp"
 
 #include "assets/bone/import.hpp"
 #include "dsp/contact/sample_surface.hpp"
@@ -36,7 +37,6 @@ void write_ball(const std::filesystem::path& path) {
         file << "v " << r * std::sin(polar) * std::cos(turn) << ' ' << r * std::sin(polar) * std::sin(turn) << ' '
              << r * std::cos(polar) << '\n';
     };
-    constexpr double pi = 3.14159265358979;
     for (int ring = 1; ring <= rings; ++ring)
         for (int n = 0; n < around; ++n) at(pi * ring / (rings + 1), 2.0 * pi * n / around);
     at(0.0, 0.0);

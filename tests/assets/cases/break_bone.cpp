@@ -4,6 +4,7 @@
 #include "assets/cases/paint.hpp"
 #include "assets/cases/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
@@ -16,8 +17,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A bar of 10 by 20 mm elliptic section and 40 mm length, bent upwards.
 volume::Grid bar() {

@@ -2,6 +2,7 @@
 // Paint as strokes in a file: what is written and read back is the same paint.
 #include "assets/cases/paint_file.hpp"
 #include "assets/library/fragments.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
@@ -13,8 +14,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 std::vector<contact::SurfacePoint> broken_half(double spacing) {
     return library::make_fragments({.voxel = 0.6 * mm, .spacing = spacing})[0].points;

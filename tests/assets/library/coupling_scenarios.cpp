@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pegs, thin plates and broken bones: the couplings where they are hard.
 #include "assets/library/fragments.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/quantile.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "tests/dsp/coupling/held.hpp"
@@ -13,8 +14,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 struct Part {
     contact::Pointshell shell;

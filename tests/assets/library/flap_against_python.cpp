@@ -4,6 +4,7 @@
 #include "assets/library/flap_case.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/cut.hpp"
@@ -40,8 +41,6 @@ using namespace tactus::reconstruct;
 using file::Json;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 

@@ -3,6 +3,7 @@
 #include "assets/library/fibula.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/training/task_file.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/training/removed.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
@@ -13,8 +14,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 training::TaskFile task(const char* name) {
     return training::load_task_file(test::source_folder() / "assets/library/tasks" / (std::string(name) + ".toml"));

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string refusal(const std::string& text) {
+std::string seeds_refusal(const std::string& text) {
     try {
         segment::seeds_of_text(text, "seeds.json");
     } catch (const Error& error) {
@@ -62,19 +62,19 @@ TEST_CASE("assets: a wrong seeds file is refused with label and stroke") {
     using Catch::Matchers::ContainsSubstring;
     const std::string good = R"({"name": "b", "strokes": [{"points_mm": [[1, 2, 3]]}]})";
     const auto with = [&](const std::string& label) { return R"({"labels": [)" + label + ", " + good + "]}"; };
-    CHECK(refusal(with(R"({"name": "a", "strokes": [{"points_mm": [[1, 2, 3]]}]})")) == "accepted");
-    CHECK_THAT(refusal(""), ContainsSubstring("seeds.json: byte 1"));
-    CHECK_THAT(refusal("[]"), ContainsSubstring("expected {\"labels\""));
-    CHECK_THAT(refusal(R"({"labels": []})"), ContainsSubstring("no labels"));
-    CHECK_THAT(refusal(R"({"labels": [)" + good + "]}"), ContainsSubstring("one label"));
-    CHECK_THAT(refusal(with(good)), ContainsSubstring("two labels 'b'"));
-    CHECK_THAT(refusal(with(R"({"strokes": []})")), ContainsSubstring("label 1 has no 'name'"));
-    CHECK_THAT(refusal(with(R"({"name": "", "strokes": []})")), ContainsSubstring("1 to 200 characters"));
-    CHECK_THAT(refusal(with(R"({"name": "a\nb", "strokes": []})")), ContainsSubstring("one line"));
-    CHECK_THAT(refusal(with(R"({"name": "a", "strokes": []})")), ContainsSubstring("label 'a' has no strokes"));
-    CHECK_THAT(refusal(with(R"({"name": "a", "colour": "red", "strokes": []})")), ContainsSubstring("'colour'"));
+    CHECK(seeds_refusal(with(R"({"name": "a", "strokes": [{"points_mm": [[1, 2, 3]]}]})")) == "accepted");
+    CHECK_THAT(seeds_refusal(""), ContainsSubstring("seeds.json: byte 1"));
+    CHECK_THAT(seeds_refusal("[]"), ContainsSubstring("expected {\"labels\""));
+    CHECK_THAT(seeds_refusal(R"({"labels": []})"), ContainsSubstring("no labels"));
+    CHECK_THAT(seeds_refusal(R"({"labels": [)" + good + "]}"), ContainsSubstring("one label"));
+    CHECK_THAT(seeds_refusal(with(good)), ContainsSubstring("two labels 'b'"));
+    CHECK_THAT(seeds_refusal(with(R"({"strokes": []})")), ContainsSubstring("label 1 has no 'name'"));
+    CHECK_THAT(seeds_refusal(with(R"({"name": "", "strokes": []})")), ContainsSubstring("1 to 200 characters"));
+    CHECK_THAT(seeds_refusal(with(R"({"name": "a\nb", "strokes": []})")), ContainsSubstring("one line"));
+    CHECK_THAT(seeds_refusal(with(R"({"name": "a", "strokes": []})")), ContainsSubstring("label 'a' has no strokes"));
+    CHECK_THAT(seeds_refusal(with(R"({"name": "a", "colour": "red", "strokes": []})")), ContainsSubstring("'colour'"));
     const auto stroke = [&](const std::string& text) {
-        return refusal(with(R"({"name": "a", "strokes": [{"points_mm": [[0, 0, 0]]}, )" + text + "]}"));
+        return seeds_refusal(with(R"({"name": "a", "strokes": [{"points_mm": [[0, 0, 0]]}, )" + text + "]}"));
     };
     CHECK_THAT(stroke("{}"), ContainsSubstring("label 'a', stroke 2: 'points_mm'"));
     CHECK_THAT(stroke(R"({"points_mm": []})"), ContainsSubstring("at least one point"));

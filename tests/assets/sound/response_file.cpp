@@ -14,7 +14,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-sound::ResponseFile read(const TemporaryFolder& folder, const std::string& text) {
+sound::ResponseFile read_response(const TemporaryFolder& folder, const std::string& text) {
     const auto path = folder / "r.csv";
     std::ofstream(path, std::ios::binary) << text;
     return sound::load_response(path);
@@ -56,7 +56,7 @@ TEST_CASE("a response comes back from its file") {
 TEST_CASE("tables of other programs are read: blanks, remarks, no names, no phases") {
     const TemporaryFolder folder;
     const sound::ResponseFile table =
-        read(folder, "* Freq(Hz) SPL(dB) Phase(degrees)\n0 -80 0\n10.0 6.0206 90\n20\t0 -90.0\n40 +3 0\n");
+        read_response(folder, "* Freq(Hz) SPL(dB) Phase(degrees)\n0 -80 0\n10.0 6.0206 90\n20\t0 -90.0\n40 +3 0\n");
     REQUIRE(table.identified.response.hz.size() == 3);
     CHECK(std::abs(table.identified.response.gain[0] - std::complex<double>(0.0, 2.0)) < 1e-4);
     CHECK(std::abs(table.identified.response.gain[1] - std::complex<double>(0.0, -1.0)) < 1e-4);
@@ -64,7 +64,7 @@ TEST_CASE("tables of other programs are read: blanks, remarks, no names, no phas
     // A level that rises 6 dB per octave has a phase of 90°.
     std::string rising = "dB;Hz\r\n";
     for (int i = 0; i < 20; ++i) rising += std::to_string(6.0206 * i) + ";" + std::to_string(std::exp2(i)) + "\r\n";
-    const sound::ResponseFile guessed = read(folder, rising);
+    const sound::ResponseFile guessed = read_response(folder, rising);
     for (const auto& gain : guessed.identified.response.gain) CHECK(std::arg(gain) == Approx(M_PI / 2.0).margin(1e-3));
 }
 
@@ -86,6 +86,6 @@ TEST_CASE("a table that is no response is refused with its line") {
     };
     for (const auto& [text, message] : slips) {
         INFO(text);
-        CHECK_THROWS_WITH(read(folder, text), ContainsSubstring(message) && ContainsSubstring("r.csv"));
+        CHECK_THROWS_WITH(read_response(folder, text), ContainsSubstring(message) && ContainsSubstring("r.csv"));
     }
 }

@@ -36,7 +36,7 @@ SawModel sample() {
     return model;
 }
 
-struct Folder : TemporaryFolder {
+struct ModelFolder : TemporaryFolder {
     std::filesystem::path file() const { return path / "saw.toml"; }
     std::string saved() const {
         sound::save_saw_model(sample(), {"A \"saw\"", "note", "CC0", true, true}, file());
@@ -59,7 +59,7 @@ struct Folder : TemporaryFolder {
 }  // namespace
 
 TEST_CASE("a saved model of a saw is read back to the bit, with what is said of it") {
-    const Folder folder;
+    const ModelFolder folder;
     folder.saved();
     const sound::RecordingSet set = sound::load_recording_set(folder.file());
     CHECK(set.recordings.empty());
@@ -85,7 +85,7 @@ TEST_CASE("a saved model of a saw is read back to the bit, with what is said of 
 }
 
 TEST_CASE("a damaged model of a saw is refused where the fault is") {
-    const Folder folder;
+    const ModelFolder folder;
     CHECK_THAT(folder.error("version = 1", "version = 9"),
                ContainsSubstring("saw.toml:8") && ContainsSubstring("version 1"));
     CHECK_THAT(folder.error("unit = \"m/s^2\"", "unit = \"mm\""), ContainsSubstring("'unit' must be"));

@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Temporary {
+struct TemporarySound {
     fs::path path;
-    explicit Temporary(const char* name)
+    explicit TemporarySound(const char* name)
         : path(fs::temp_directory_path() / fmt::format("tactus_{}_{}", ::getpid(), name)) {}
-    ~Temporary() { fs::remove(path); }
+    ~TemporarySound() { fs::remove(path); }
 };
 
 void write(const fs::path& path, int format, int channels, int rate, const std::vector<double>& samples) {
@@ -65,7 +65,7 @@ TEST_CASE(
           Case{"16.aiff", SF_FORMAT_AIFF | SF_FORMAT_PCM_16, 2, 11025, 3.1e-5},
           Case{"24.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_24, 3, 96000, 1.2e-7}}) {
         CAPTURE(name);
-        const Temporary file(name);
+        const TemporarySound file(name);
         std::vector<double> samples(static_cast<std::size_t>(channels) * 1000);
         for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 0.9 * std::sin(0.1 * static_cast<double>(i));
         write(file.path, format, channels, rate, samples);
@@ -81,7 +81,7 @@ TEST_CASE(
 }
 
 TEST_CASE("floats above full scale stay as they are, and a NaN names its place") {
-    const Temporary file("loud.wav");
+    const TemporarySound file("loud.wav");
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_DOUBLE, 1, 1000, {0.0, 3.5, -7.25});
     CHECK(read_all(file.path, 2) == std::vector{0.0, 3.5, -7.25});
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_DOUBLE, 1, 1000,
@@ -91,11 +91,11 @@ TEST_CASE("floats above full scale stay as they are, and a NaN names its place")
 }
 
 TEST_CASE("sounds that are cut short, empty or no sound are refused") {
-    const Temporary file("short.wav");
+    const TemporarySound file("short.wav");
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000, std::vector<double>(1000));
     fs::resize_file(file.path, 900);
     CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Matchers::ContainsSubstring("cut short"));
-    const Temporary flac("short.flac");
+    const TemporarySound flac("short.flac");
     std::vector<double> noise(50000);
     for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = std::sin(static_cast<double>(i * i % 1013));
     write(flac.path, SF_FORMAT_FLAC | SF_FORMAT_PCM_16, 1, 1000, noise);

@@ -12,7 +12,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-table::Thresholds read(const std::string& text) {
+table::Thresholds read_thresholds(const std::string& text) {
     const TemporaryFolder folder;
     std::ofstream(folder / "t.toml", std::ios::binary) << text;
     return table::load_thresholds(folder / "t.toml");
@@ -21,10 +21,10 @@ table::Thresholds read(const std::string& text) {
 }  // namespace
 
 TEST_CASE("thresholds keep their defaults but for what the file says") {
-    const table::Thresholds all = read("");
+    const table::Thresholds all = read_thresholds("");
     CHECK(all.lsd_db == 2.0);
     CHECK_FALSE(all.st_sim.has_value());
-    const table::Thresholds some = read("lsd_db = 1\nst_sim = 0.95\nadded_line_db = false\n");
+    const table::Thresholds some = read_thresholds("lsd_db = 1\nst_sim = 0.95\nadded_line_db = false\n");
     CHECK(some.lsd_db == 1.0);
     CHECK(some.st_sim == 0.95);
     CHECK_FALSE(some.added_line_db.has_value());
@@ -32,9 +32,9 @@ TEST_CASE("thresholds keep their defaults but for what the file says") {
 }
 
 TEST_CASE("thresholds that make no sense are refused with their place") {
-    CHECK_THROWS_WITH(read("lsd = 1"), ContainsSubstring("did you mean 'lsd_db'?"));
-    CHECK_THROWS_WITH(read("\nlsd_db = \"1\""), ContainsSubstring(":2:") && ContainsSubstring("number"));
-    CHECK_THROWS_WITH(read("lsd_db = nan"), ContainsSubstring("number"));
-    CHECK_THROWS_WITH(read("lsd_db = true"), ContainsSubstring("number"));
-    CHECK_THROWS_WITH(read("lsd_db"), ContainsSubstring("TOML"));
+    CHECK_THROWS_WITH(read_thresholds("lsd = 1"), ContainsSubstring("did you mean 'lsd_db'?"));
+    CHECK_THROWS_WITH(read_thresholds("\nlsd_db = \"1\""), ContainsSubstring(":2:") && ContainsSubstring("number"));
+    CHECK_THROWS_WITH(read_thresholds("lsd_db = nan"), ContainsSubstring("number"));
+    CHECK_THROWS_WITH(read_thresholds("lsd_db = true"), ContainsSubstring("number"));
+    CHECK_THROWS_WITH(read_thresholds("lsd_db"), ContainsSubstring("TOML"));
 }

@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -19,12 +20,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double mm = 1e-3;
-
-struct Scratch {
+struct TaskScratch {
     fs::path path = fs::temp_directory_path() / ("tactus_task_" + std::to_string(::getpid()));
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
+    TaskScratch() { fs::create_directories(path); }
+    ~TaskScratch() { fs::remove_all(path); }
     fs::path write(const std::string& text) const {
         std::ofstream(path / "task.toml") << text;
         return path / "task.toml";
@@ -67,7 +66,7 @@ std::string with(std::string text, const std::string& what, const std::string& b
 }
 
 std::string refusal(const std::string& text) {
-    const Scratch folder;
+    const TaskScratch folder;
     try {
         training::load_task_file(folder.write(text));
     } catch (const Error& error) {
@@ -80,7 +79,7 @@ std::string refusal(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a task is read with its units, relative to its own folder") {
-    const Scratch folder;
+    const TaskScratch folder;
     const training::TaskFile task = training::load_task_file(folder.write(plane));
     CHECK(task.title == "a cut");
     CHECK(task.bone == folder.path.parent_path() / "bones/jaw.vdb");
@@ -100,7 +99,7 @@ TEST_CASE("a task is read with its units, relative to its own folder") {
 }
 
 TEST_CASE("the axes of a cut are orthogonal, and the feed is made to lie in the plane") {
-    const Scratch folder;
+    const TaskScratch folder;
     const training::PlannedCut cut = training::load_task_file(folder.write(plane)).cut;
     CHECK(std::abs(cut.feed.y - 1.0) < 1e-12);
     CHECK(std::abs(glm::dot(cut.stroke, cut.feed)) < 1e-12);
@@ -142,7 +141,7 @@ TEST_CASE("a wrong task is refused with the line of what is wrong") {
 }
 
 TEST_CASE("a spared structure becomes a distance with room around it") {
-    const Scratch folder;
+    const TaskScratch folder;
     volume::Grid labels{{30, 24, 20}, {5 * mm, -3 * mm, 1 * mm}, Vec3(0.5 * mm), {}};
     labels.values.assign(labels.count(), 0.0f);
     const Vec3 middle = labels.position(15, 12, 10);
@@ -161,7 +160,7 @@ TEST_CASE("a spared structure becomes a distance with room around it") {
 }
 
 TEST_CASE("a label map that is missing, or lacks the label, is refused with the line of its structure") {
-    const Scratch folder;
+    const TaskScratch folder;
     const auto refusal_of = [&] {
         try {
             training::load_task(folder.write(plane));

@@ -22,14 +22,14 @@ namespace {
 
 constexpr int shapes = 3;
 constexpr double ball_radius = 9.0, ring_radius = 9.0, tube_radius = 4.5;  // mm
-const Vec3 ball(-12.0, 0.0, 0.0), ring(11.5, 0.0, 0.0), wall(0.0, 17.0, 0.0), wall_half(20.0, 1.25, 8.0);
+const Vec3 ball_centre(-12.0, 0.0, 0.0), ring(11.5, 0.0, 0.0), wall(0.0, 17.0, 0.0), wall_half(20.0, 1.25, 8.0);
 
 // Signed distance to sphere, torus (axis z) and a wall of 2.5 mm, mm.
 double distance_mm(const Vec3& p) {
     const Vec3 r = p - ring, w = glm::abs(p - wall) - wall_half;
     const double tube = std::hypot(std::hypot(r.x, r.y) - ring_radius, r.z) - tube_radius;
     const double slab = glm::length(glm::max(w, 0.0)) + std::min(std::max({w.x, w.y, w.z}), 0.0);
-    return std::min({glm::length(p - ball) - ball_radius, tube, slab});
+    return std::min({glm::length(p - ball_centre) - ball_radius, tube, slab});
 }
 
 // 1200 HU in air, blurred with a Gaussian of 0.4 mm, noise of 25 HU.

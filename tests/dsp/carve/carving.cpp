@@ -13,7 +13,7 @@ namespace {
 
 carve::CarveCore saw(const carve::CarveSettings& settings = {}) { return {settings, Vec3(voxel)}; }
 
-const Vec3 above{0, 0.0006, 0};  // 0.1 mm of air under the kerf's front
+const Vec3 above_bone{0, 0.0006, 0};  // 0.1 mm of air under the kerf's front
 
 bool same(const volume::Grid& a, const volume::Grid& b) { return a.values == b.values; }
 
@@ -25,9 +25,9 @@ TEST_CASE("a saw pressed into bone advances at the reference speed over density"
         carve::CarveCore carver = saw();
         const double speed = 0.67e-3 * 1800.0 / density;
         const double seconds = 0.0025 / speed;
-        carve_through(carver, field, stroke(above, {0, -0.010, 0}, 0.2 * seconds));
+        carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 0.2 * seconds));
         const double before = depth(carver);
-        const Vec3 from = above + Vec3(0, -0.002 * seconds, 0);
+        const Vec3 from = above_bone + Vec3(0, -0.002 * seconds, 0);
         carve_through(carver, field, stroke(from, {0, -0.010, 0}, seconds));
         INFO("density " << density);
         CHECK(depth(carver) - before == Approx(0.0025).epsilon(0.02));
@@ -36,7 +36,7 @@ TEST_CASE("a saw pressed into bone advances at the reference speed over density"
 
 TEST_CASE("the volume removed does not depend on how often the carver is called") {
     for (const double density : {200.0, 1800.0}) {
-        const auto path = stroke(above, {0, -0.010, 0}, density < 1000.0 ? 0.8 : 3.0);
+        const auto path = stroke(above_bone, {0, -0.010, 0}, density < 1000.0 ? 0.8 : 3.0);
         std::vector<double> volumes;
         for (const std::size_t per_call : {33, 17, 8, 1, 100}) {
             DenseField field = block(Vec3(0.0), density);
@@ -53,7 +53,7 @@ TEST_CASE("the volume removed is that of the swept blade, wherever the samples o
     for (const double share : {0.0, 0.23, 0.5, 0.81}) {
         DenseField field = block(Vec3(0.4, 1.0, 0.7) * (share * voxel), 600.0);
         carve::CarveCore carver = saw();
-        volumes.push_back(carve_through(carver, field, stroke(above, {0, -0.010, 0}, 2.0)).removed_m3);
+        volumes.push_back(carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 2.0)).removed_m3);
         CHECK(volumes.back() == Approx(slot(depth(carver))).epsilon(0.02));
         CHECK(volumes.back() == Approx(volumes[0]).epsilon(0.01));
     }
@@ -63,7 +63,7 @@ TEST_CASE("the volume removed by an oblique blade in a grid of flat voxels is th
     const Quat oblique = glm::angleAxis(0.5, Vec3(0, 1, 0)) * downwards;  // turned about its way into the bone
     DenseField field = block(Vec3(0.0), 600.0, {0.00035, 0.0003, 0.0005});
     carve::CarveCore carver({}, field.spacing());
-    const double volume = carve_through(carver, field, stroke(above, {0, -0.010, 0}, 2.0, oblique)).removed_m3;
+    const double volume = carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 2.0, oblique)).removed_m3;
     // The slot crosses the block from one long side to the other, 12 mm apart, at 0.5 rad to the 18 mm side.
     const double length = std::min(0.018 / std::cos(0.5), 0.012 / std::sin(0.5));
     CHECK(volume == Approx(slot(depth(carver)) * length / 0.018).epsilon(0.02));
@@ -76,7 +76,7 @@ TEST_CASE("removed bone is counted in its density class") {
     };
     carve::CarveCore carver = saw();
     const auto result =
-        carve_through(carver, field, stroke(above, {0, -0.0005, 0}, 4.0));  // slower than the saw can cut
+        carve_through(carver, field, stroke(above_bone, {0, -0.0005, 0}, 4.0));  // slower than the saw can cut
     const double edge = 0.0005 * 3.999 - 0.0006;
     CHECK(depth(carver) == Approx(edge).margin(1e-6));
     const double per_length = slot(edge) / 0.018;
@@ -112,7 +112,7 @@ TEST_CASE("force, rate and density change the advance as the law says") {
     const auto advance = [&](double force, double rate) {
         DenseField field = block();
         carve::CarveCore carver = saw(settings);
-        auto path = stroke(above, {0, -0.010, 0}, 1.5);
+        auto path = stroke(above_bone, {0, -0.010, 0}, 1.5);
         for (carve::CarveSample& sample : path) {
             sample.thrust = force;
             sample.rate = rate;
@@ -130,7 +130,7 @@ TEST_CASE("a saw that does not run removes nothing and does not pass") {
     DenseField field = block();
     const volume::Grid before = field.grid;
     carve::CarveCore carver = saw();
-    const auto result = carve_through(carver, field, stroke(above, {0, -0.010, 0}, 1.0, downwards, false));
+    const auto result = carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 1.0, downwards, false));
     CHECK(result.removed_m3 == 0.0);
     CHECK(same(field.grid, before));
     CHECK(depth(carver) == Approx(-0.0005).margin(2e-5));
@@ -139,8 +139,8 @@ TEST_CASE("a saw that does not run removes nothing and does not pass") {
 TEST_CASE("a saw that starts while pressed against bone cuts from the surface on") {
     DenseField field = block();
     carve::CarveCore carver = saw();
-    carve_through(carver, field, stroke(above, {0, -0.010, 0}, 0.2, downwards, false));
-    const auto result = carve_through(carver, field, stroke(above - Vec3(0, 0.002, 0), Vec3(0.0), 1.5));
+    carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 0.2, downwards, false));
+    const auto result = carve_through(carver, field, stroke(above_bone - Vec3(0, 0.002, 0), Vec3(0.0), 1.5));
     CHECK(depth(carver) + 0.0005 == Approx(0.67e-3 * 1.5).epsilon(0.03));
     CHECK(result.removed_m3 > 0.0);
 }
@@ -148,9 +148,9 @@ TEST_CASE("a saw that starts while pressed against bone cuts from the surface on
 TEST_CASE("drawing the blade back is free and it returns to where it had come") {
     DenseField field = block(Vec3(0.0), 600.0);
     carve::CarveCore carver = saw();
-    carve_through(carver, field, stroke(above, {0, -0.010, 0}, 1.5));
+    carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 1.5));
     const double reached = depth(carver);
-    const Vec3 out = above + Vec3(0, 0.002, 0);
+    const Vec3 out = above_bone + Vec3(0, 0.002, 0);
     carve_through(carver, field, stroke({0, -reached, 0}, {0, 0.1, 0}, 0.001 * std::ceil(1e4 * (reached + 0.0026))));
     CHECK(depth(carver) < -0.002);
     const auto back =
@@ -164,7 +164,7 @@ TEST_CASE("a wall is cut through and the blade goes on through air") {
     field.grid = sampled(field.grid.origin, Vec3(0.013, 0.004, 0.009), Vec3(voxel),
                          [](const Vec3& p) { return box_distance(p, {-0.009, -0.003, -0.006}, block_high); });
     carve::CarveCore carver = saw();
-    const auto result = carve_through(carver, field, stroke(above, {0, -0.003, 0}, 3.0));
+    const auto result = carve_through(carver, field, stroke(above_bone, {0, -0.003, 0}, 3.0));
     CHECK(depth(carver) == Approx(0.003 * 2.999 - 0.0006).margin(1e-6));
     CHECK(result.removed_m3 == Approx(0.018 * 0.003 * 0.001).epsilon(0.02));
 }
@@ -186,10 +186,10 @@ TEST_CASE("a blade that does not touch the bone removes nothing, and one that do
 TEST_CASE("two cuts leave an island between them untouched") {
     DenseField field = block(Vec3(0.0), 600.0);
     carve::CarveCore carver = saw();
-    carve_through(carver, field, stroke(above + Vec3(0, 0, -0.002), {0, -0.010, 0}, 1.0));
-    carve_through(carver, field, stroke(above + Vec3(0, 0.020, -0.002), Vec3(0.0), 0.01));
-    carve_through(carver, field, stroke(above + Vec3(0, 0.020, 0.002), Vec3(0.0), 0.01));
-    carve_through(carver, field, stroke(above + Vec3(0, 0, 0.002), {0, -0.010, 0}, 1.0));
+    carve_through(carver, field, stroke(above_bone + Vec3(0, 0, -0.002), {0, -0.010, 0}, 1.0));
+    carve_through(carver, field, stroke(above_bone + Vec3(0, 0.020, -0.002), Vec3(0.0), 0.01));
+    carve_through(carver, field, stroke(above_bone + Vec3(0, 0.020, 0.002), Vec3(0.0), 0.01));
+    carve_through(carver, field, stroke(above_bone + Vec3(0, 0, 0.002), {0, -0.010, 0}, 1.0));
     CHECK(field.value({0, -0.001, -0.002}) > 0.0003);
     CHECK(field.value({0, -0.001, 0.002}) > 0.0003);
     CHECK(field.value({0, -0.001, 0.0}) == Approx(-0.001).margin(0.00005));
@@ -222,7 +222,7 @@ TEST_CASE("a blade that is tilted by next to nothing touches no voxel outside th
             BoundedField field{block(Vec3(0.0), 600.0)};
             carve::CarveCore carver = saw();
             const Quat orientation = glm::angleAxis(tilt, axis) * rolled;
-            const auto result = carve_through(carver, field, stroke(above, {0, -0.010, 0}, 0.15, orientation));
+            const auto result = carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 0.15, orientation));
             INFO("tilt " << tilt);
             REQUIRE(field.outside == 0);
             if (volume == 0.0) volume = result.removed_m3;
@@ -243,7 +243,7 @@ TEST_CASE("a blade that appears in the middle of bone cuts from the surface on")
 TEST_CASE("bone without density gives way and is removed") {
     DenseField field = block(Vec3(0.0), 0.0);
     carve::CarveCore carver = saw();
-    const auto result = carve_through(carver, field, stroke(above, {0, -0.010, 0}, 0.4));
+    const auto result = carve_through(carver, field, stroke(above_bone, {0, -0.010, 0}, 0.4));
     CHECK(depth(carver) == Approx(0.010 * 0.399 - 0.0006).margin(1e-6));
     CHECK(result.removed_m3 == Approx(slot(depth(carver))).epsilon(0.02));
     CHECK(result.removed_by_density[0] == result.removed_m3);
@@ -251,7 +251,7 @@ TEST_CASE("bone without density gives way and is removed") {
 
 TEST_CASE("samples that are not numbers are ignored") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    auto path = stroke(above, {0, -0.010, 0}, 0.5);
+    auto path = stroke(above_bone, {0, -0.010, 0}, 0.5);
     DenseField clean = block(Vec3(0.0), 600.0), noisy = block(Vec3(0.0), 600.0);
     carve::CarveCore a = saw(), b = saw();
     carve_through(a, clean, path);

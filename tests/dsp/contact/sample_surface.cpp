@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/sample_surface.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/support/catch.hpp"
@@ -10,8 +11,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// Distance to a box of half sides `half` with sharp edges.
 volume::Grid box(int size, double spacing, const Vec3& half) {

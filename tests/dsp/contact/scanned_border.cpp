@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/scanned_border.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace tactus;
@@ -8,8 +9,6 @@ using contact::SurfacePoint;
 namespace surface_label = contact::surface_label;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 SurfacePoint at(double x, double y, double z, std::uint8_t label) {
     return {Vec3(x, y, z) * mm, Vec3(1.0, 0.0, 0.0), 1e-6, label};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
@@ -25,7 +26,6 @@ void check_points(const Shape& shape, double spacing, double area) {
 }  // namespace
 
 TEST_CASE("points of a shape lie on its surface, look outwards and share out its area") {
-    const double pi = std::numbers::pi;
     check_points(contact::Ball{0.01}, 0.5e-3, 4.0 * pi * 1e-4);
     check_points(contact::Box{{0.02, 0.01, 0.005}}, 0.5e-3, 2.0 * (2e-4 + 1e-4 + 0.5e-4));
     check_points(contact::make_cylinder(0.01, 0.02), 0.4e-3, pi * 0.01 * 0.02 + 2.0 * pi * 25e-6);

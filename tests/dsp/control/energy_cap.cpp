@@ -2,6 +2,7 @@
 #include "dsp/control/energy_cap.hpp"
 
 #include "dsp/core/random.hpp"
+#include "tests/dsp/control/period.hpp"
 #include "tests/support/bounce.hpp"
 #include "tests/support/catch.hpp"
 
@@ -34,8 +35,6 @@ Ratios over_bounces(Bounce bounce) {
     });
     return most;
 }
-
-constexpr double period = 1e-3;
 
 control::EnergyCap made(double resolution = 20e-6) {
     control::EnergyCap cap;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/force_limiter.hpp"
+#include "tests/dsp/control/period.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double period = 0.001;
 
 /// A limiter with a driver that counts, and the largest output and output step seen so far.
 struct Rig {

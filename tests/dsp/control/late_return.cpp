@@ -3,6 +3,7 @@
 
 #include "dsp/control/energy_cap.hpp"
 #include "dsp/control/force_limiter.hpp"
+#include "tests/dsp/control/period.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -11,8 +12,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double period = 1e-3;
 
 /// Forces that are lost at once to a late tick; the hand is given nothing until they come back.
 struct Waiting {

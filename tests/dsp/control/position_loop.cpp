@@ -8,9 +8,9 @@ using namespace tactus;
 
 namespace {
 
-constexpr double period = 1.0 / 150.0;
+constexpr double loop_period = 1.0 / 150.0;
 
-/// A motor that turns at 30 mm/s or not at all below that, and acts a period after it was told.
+/// A motor that turns at 30 mm/s or not at all below that, and acts a loop_period after it was told.
 struct Coarse {
     control::PositionLoopSettings settings{75.0, 0.0, 0.0, 0.6, 0.03, 1};
     control::PositionLoop loop;
@@ -18,10 +18,10 @@ struct Coarse {
     int moves = 0;
 
     double tick(double wanted) {
-        const double command = loop(settings, wanted, position, 0.0, period);
+        const double command = loop(settings, wanted, position, 0.0, loop_period);
         const double share = std::abs(told) < 0.015 ? 0.0 : std::max(0.03, std::abs(told));
         moves += share > 0.0;
-        position += std::copysign(share, told) * period;
+        position += std::copysign(share, told) * loop_period;
         told = command;
         return position;
     }
@@ -31,7 +31,7 @@ struct Coarse {
 
 TEST_CASE("a motor with a slowest speed comes within six tenths of a step and then rests") {
     Coarse motor;
-    const double step = 0.03 * period;  // 0.2 mm
+    const double step = 0.03 * loop_period;  // 0.2 mm
     for (const double wanted : {0.75 * step, 1.43e-3, -0.77e-3, 0.1e-3, 5e-3}) {
         for (int n = 0; n < 150; ++n) motor.tick(wanted);
         CHECK(std::abs(motor.position - wanted) <= 0.6 * step);
@@ -48,5 +48,6 @@ TEST_CASE("a motor with a slowest speed comes within six tenths of a step and th
 TEST_CASE("where the motor turns at any speed nothing is stepped") {
     control::PositionLoop loop;
     const control::PositionLoopSettings settings{40.0, 0.0, 0.0, 0.07, 0.0, 1};
-    for (const double wanted : {1e-6, -1e-5, 1e-4}) CHECK(loop(settings, wanted, 0.0, 0.0, period) == 40.0 * wanted);
+    for (const double wanted : {1e-6, -1e-5, 1e-4})
+        CHECK(loop(settings, wanted, 0.0, 0.0, loop_period) == 40.0 * wanted);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hand without will on a device, sampled at 1 kHz, against the coupling: how stiff it may be before it rings.
+#include "dsp/core/constants.hpp"
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/dsp/coupling/held.hpp"
 #include "tests/support/catch.hpp"
@@ -11,7 +12,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double mm = 1e-3, period = 1e-3;
+constexpr double period = 1e-3;
 
 /// A device of 0.1 kg and damping `damping` (N s/m) is pressed with 3 N on a table through a coupling of `stiffness` whose
 /// force comes `late` ticks after the pose that it was computed from, and is given a knock. How far it swings after four

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What proxies must never do: go through a wall, however thin it is and however the hand or the wall moves.
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/surface_proxy.hpp"
 #include "tests/dsp/coupling/held.hpp"
@@ -11,8 +12,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A closed shell of `wall` about a ball of air.
 struct HollowBall {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/quasi_static.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/dynamic_coupling.hpp"
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/dsp/coupling/held.hpp"
@@ -17,8 +18,6 @@ using namespace tactus;
 using test::Held;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 const contact::Voxmap& ball_map() {
     static const contact::Voxmap map = test::map_of(contact::Ball{25.0 * mm}, 0.35 * mm);
@@ -269,7 +268,6 @@ TEST_CASE("sliding over a ball: the force is the spring's along the normal") {
         }
         CAPTURE(static_cast<int>(between), worst_size, worst_angle);
         // At 71 voxels of radius. The gradient of the trilinear interpolant lags by up to half a voxel along each axis.
-        const double degree = std::numbers::pi / 180.0;
         CHECK(worst_angle < (between == contact::Interpolation::quadratic ? 0.05 : 0.6) * degree);
         CHECK(worst_size < 0.01);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/surface_proxy.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/closest_point.hpp"
 #include "tests/dsp/coupling/held.hpp"
@@ -15,14 +16,12 @@ using namespace tactus;
 
 namespace {
 
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
-
-const contact::Voxmap& ball_map() {
+const contact::Voxmap& proxy_ball() {
     static const contact::Voxmap map = test::map_of(contact::Ball{25.0 * mm}, 0.35 * mm);
     return map;
 }
 const geometry::TriangleTree& ball_triangles() {
-    static const geometry::TriangleTree tree(geometry::iso_surface(ball_map().grid, 0.0f, false));
+    static const geometry::TriangleTree tree(geometry::iso_surface(proxy_ball().grid, 0.0f, false));
     return tree;
 }
 const contact::Voxmap& plate_map() {
@@ -86,7 +85,7 @@ TEST_CASE("the nearest place within half-spaces is on faces, in edges and in cor
 }
 
 TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal", "[slow]") {
-    for (const coupling::ProxySurface& surface : both(ball_map(), ball_triangles()))
+    for (const coupling::ProxySurface& surface : both(proxy_ball(), ball_triangles()))
         for (const double radius : {0.0, 2.0 * mm}) {
             coupling::SurfaceProxy proxy;
             proxy.settings.shape.radius = radius;
@@ -176,7 +175,7 @@ TEST_CASE("texture makes the force of an even slide wave by the length of its wa
 }
 
 TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far jumps") {
-    const coupling::ProxySurface surface{&ball_map(), nullptr, {}};
+    const coupling::ProxySurface surface{&proxy_ball(), nullptr, {}};
     coupling::SurfaceProxy proxy;
     CHECK(proxy.update({1.0, 2.0, 3.0}, {}).proxy == Vec3(1.0, 2.0, 3.0));
     proxy.reset({0.0, 0.0, 30.0 * mm});

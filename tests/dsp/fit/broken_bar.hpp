@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/fit.hpp"
@@ -15,8 +16,6 @@
 #include <vector>
 
 namespace tactus::test {
-
-inline constexpr double mm = 1e-3;
 
 /// Height of the break over (y, z), m.
 using Relief = std::function<double(double, double)>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/faces.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 
@@ -12,8 +13,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Three sides of a cube of 12 mm that meet in a corner, rough, all painted; and a fourth that is not.
 std::vector<contact::SurfacePoint> corner() {

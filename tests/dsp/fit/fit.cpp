@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fit.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
@@ -12,8 +13,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 const Half& left() {
     static const Half half = bar_half(-1.0, rough_relief(3));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fit_precision.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
@@ -14,7 +15,7 @@ using namespace tactus::test;
 
 namespace {
 
-constexpr double far_end = 110.0 * mm, degree = 0.017453292519943295;
+constexpr double far_end = 110.0 * mm;
 
 /// Noise of a scan as it is left by smoothing: white noise, averaged with its neighbours.
 void add_noise(volume::Grid& grid, double height, std::uint64_t seed) {

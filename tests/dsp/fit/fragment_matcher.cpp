@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fragment_matcher.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/joint_refinement.hpp"
 #include "dsp/geometry/iso_surface.hpp"
@@ -15,16 +16,15 @@ using namespace tactus::test;
 
 namespace {
 
-constexpr double degree = 0.017453292519943295;
 const Relief& relief() {
     static const Relief made = rough_relief(3);
     return made;
 }
-const Half& left() {
+const Half& left_half() {
     static const Half made = bar_half(-1.0, relief());
     return made;
 }
-const Half& right() {
+const Half& right_half() {
     static const Half made = bar_half(1.0, relief());
     return made;
 }
@@ -43,9 +43,9 @@ fit::FragmentMatch searched(fit::FragmentMatcher& matcher, std::span<const Pose>
 }  // namespace
 
 TEST_CASE("dsp: the matcher names a mirrored and a foreign partner, from nearby and from anywhere") {
-    const Half mirror = mirrored(right()), foreign = bar_half(1.0, rough_relief(12));
-    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right()), surface_of(mirror),
-                                                     surface_of(foreign)};
+    const Half mirror = mirrored(right_half()), foreign = bar_half(1.0, rough_relief(12));
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left_half()), surface_of(right_half()),
+                                                     surface_of(mirror), surface_of(foreign)};
     fit::FragmentMatcher matcher(surfaces);
     const std::vector<Pose> poses{beside(4 * mm, 10 * degree, 7), {}, {}, {}};
     const auto stands_alone = [&](std::size_t n) {
@@ -56,7 +56,7 @@ TEST_CASE("dsp: the matcher names a mirrored and a foreign partner, from nearby 
     const fit::FragmentMatch own = matcher.near(0, poses, stands_alone(1));
     CHECK(own.verdict == fit::FitVerdict::fit);
     CHECK(own.partner == 1);
-    CHECK(error_of(left(), own.pose) < 0.1 * mm);
+    CHECK(error_of(left_half(), own.pose) < 0.1 * mm);
     for (const std::size_t wrong : {2u, 3u}) {
         CAPTURE(wrong);
         CHECK(matcher.near(0, poses, stands_alone(wrong)).verdict != fit::FitVerdict::fit);
@@ -67,12 +67,13 @@ TEST_CASE("dsp: the matcher names a mirrored and a foreign partner, from nearby 
     const fit::FragmentMatch found = searched(matcher, far, std::vector<char>(4, 1));
     CHECK(found.verdict == fit::FitVerdict::fit);
     CHECK(found.partner == 1);
-    CHECK(error_of(left(), found.pose) < 0.1 * mm);
+    CHECK(error_of(left_half(), found.pose) < 0.1 * mm);
 }
 
 TEST_CASE("dsp: what a search found goes along with its partner, and other partners are another search") {
     const Half foreign = bar_half(1.0, rough_relief(12));
-    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right()), surface_of(foreign)};
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left_half()), surface_of(right_half()),
+                                                     surface_of(foreign)};
     fit::FragmentMatcher matcher(surfaces);
     std::vector<Pose> poses{{}, {}, {}};
     std::vector<char> stands{0, 1, 1};
@@ -83,7 +84,7 @@ TEST_CASE("dsp: what a search found goes along with its partner, and other partn
     poses[1] = beside(9 * mm, 0.3, 4);
     const fit::FragmentMatch moved = matcher.search(0, poses, stands);
     CHECK(moved.partner == 1);
-    CHECK(error_of(left(), moved.pose, poses[1]) < 0.1 * mm);
+    CHECK(error_of(left_half(), moved.pose, poses[1]) < 0.1 * mm);
     // The partner is taken away: what was found with it is forgotten.
     stands[1] = 0;
     CHECK(matcher.search(0, poses, stands).partner != 1);
@@ -133,15 +134,15 @@ TEST_CASE("dsp: a face on either side of a thin plate is pulled to its own side 
 }
 
 TEST_CASE("dsp: more faces than there is room for are an error, and hardly any paint fits nothing") {
-    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right())};
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left_half()), surface_of(right_half())};
     fit::MatcherSettings one_face;
     one_face.most_faces = 1;
     CHECK_THROWS_AS(fit::FragmentMatcher(surfaces, one_face), Error);
-    Half dotted = left();
+    Half dotted = left_half();
     std::size_t painted = 0;
     for (contact::SurfacePoint& p : dotted.points)
         if (p.label == contact::surface_label::fracture && ++painted > 25) p.label = contact::surface_label::none;
-    const std::vector<fit::FragmentSurface> hardly{surface_of(dotted), surface_of(right())};
+    const std::vector<fit::FragmentSurface> hardly{surface_of(dotted), surface_of(right_half())};
     fit::FragmentMatcher matcher(hardly);
     CHECK(matcher.faces_of(0) == 0);
     const std::vector<Pose> poses(2);
@@ -152,18 +153,18 @@ TEST_CASE("dsp: more faces than there is room for are an error, and hardly any p
 
 TEST_CASE("dsp: a small face is found at either end of a larger one, whichever of the two moves") {
     const Half part = bar_half(1.0, relief(), {.half = 0.45});
-    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left()), surface_of(part)});
+    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left_half()), surface_of(part)});
     REQUIRE(matcher.faces() == 2);
     fit::FitEnergy energy = matcher.make_energy();
     const Pose away{Vec3(0.3, 0.1, -0.2), rotation_by({1.0, -2.0, 0.7})};
-    CHECK(error_of(left(), matcher.fit_faces(energy, 0, 1, away).pose) < 0.3 * mm);
+    CHECK(error_of(left_half(), matcher.fit_faces(energy, 0, 1, away).pose) < 0.3 * mm);
     CHECK(error_of(part, matcher.fit_faces(energy, 1, 0, away).pose) < 0.3 * mm);
 }
 
 TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") {
     const Half coarse = bar_half(1.0, relief(), {.voxel = Vec3(1.0 * mm)});
-    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left()), surface_of(coarse)});
-    const fit::FitSettings alone = fit::settings_for(left().surface(), coarse.surface());
+    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left_half()), surface_of(coarse)});
+    const fit::FitSettings alone = fit::settings_for(left_half().surface(), coarse.surface());
     CHECK(matcher.settings.fit.finest == Approx(alone.finest));
     CHECK(matcher.settings.fit.sigma == Approx(alone.sigma));
     CHECK(matcher.settings.fit.polish == Approx(0.5 * alone.polish));
@@ -172,7 +173,7 @@ TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") 
 TEST_CASE("dsp: chips off one side neither tilt a fit nor close it") {
     // Wedges of up to 1.6 mm off a fifth of the face, all with the same slope.
     const Half chipped = bar_half(-1.0, relief(), {.chipped = 0.2});
-    const std::vector<fit::FragmentSurface> surfaces{surface_of(chipped), surface_of(right())};
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(chipped), surface_of(right_half())};
     fit::FragmentMatcher matcher(surfaces);
     for (const std::uint64_t seed : {7u, 8u, 9u}) {
         CAPTURE(seed);
@@ -301,7 +302,7 @@ TEST_CASE("dsp: faces that slide on each other fit with the healthy side in the 
     CHECK(match.verdict == fit::FitVerdict::fit);
     CHECK(error_of(near_side, match.pose) < 0.15 * mm);
     // The faces still decide where they do say something.
-    const std::vector<fit::FragmentSurface> rough{surface_of(left()), surface_of(right())};
+    const std::vector<fit::FragmentSurface> rough{surface_of(left_half()), surface_of(right_half())};
     fit::FragmentMatcher both(rough, settings);
-    CHECK(error_of(left(), both.near(0, poses, stands).pose) < 0.1 * mm);
+    CHECK(error_of(left_half(), both.near(0, poses, stands).pose) < 0.1 * mm);
 }

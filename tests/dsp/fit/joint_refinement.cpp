@@ -2,6 +2,7 @@
 #include "dsp/fit/joint_refinement.hpp"
 
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/fit/overlap.hpp"
 #include "dsp/geometry/dense_cholesky.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
@@ -11,12 +12,6 @@
 
 using namespace tactus;
 using namespace tactus::test;
-
-namespace {
-
-constexpr double degree = 0.017453292519943295;
-
-}  // namespace
 
 TEST_CASE("dsp: all faces are fitted together: a chain of three ends where it belongs, and what is fixed stays") {
     // Two lefts on one right: an error of the one in the middle would be an error of both others.

@@ -3,6 +3,7 @@
 #include "dsp/fit/mutual_gap.hpp"
 
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/common.hpp>
@@ -16,8 +17,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 struct Box {
     Vec3 low, high;  // m

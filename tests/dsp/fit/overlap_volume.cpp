@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/gap.hpp"
 #include "tests/support/catch.hpp"
@@ -15,7 +16,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double mm = 1e-3, mm3 = 1e-9;
+constexpr double mm3 = 1e-9;
 constexpr double radius = 8.0 * mm;
 const Vec3 sides(6.0 * mm, 8.0 * mm, 7.0 * mm);  // half of them
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/surface_brush.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 
@@ -11,8 +12,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Points of a crumpled sheet, some of them painted.
 std::vector<contact::SurfacePoint> sheet(int side) {

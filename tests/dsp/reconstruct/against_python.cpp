@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random fibula plans against a check in Python that cuts the donor's triangles by itself.
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -25,8 +26,6 @@ using namespace tactus;
 using namespace tactus::reconstruct;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 std::string text(const Vec3& v) { return fmt::format("[{:.17g},{:.17g},{:.17g}]", v.x, v.y, v.z); }
 

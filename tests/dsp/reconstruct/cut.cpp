@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/cut.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/dsp/reconstruct/donors.hpp"
@@ -16,8 +17,6 @@ using namespace tactus;
 using namespace tactus::reconstruct;
 
 namespace {
-
-constexpr double mm = 1e-3, pi = std::numbers::pi;
 
 double enclosed(const geometry::TriangleSurface& surface) {
     double sum = 0.0;

@@ -2,6 +2,7 @@
 // Donor bones with known shapes.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 
@@ -59,7 +60,7 @@ inline void append(geometry::TriangleSurface& to, const geometry::TriangleSurfac
 /// A fibula of 330 mm with three edges, a bow of 4 mm and a marrow cavity, and a tibia 40 mm beside it that reaches
 /// farther up and down.
 inline geometry::TriangleSurface lower_leg(const Vec3& from, const Vec3& axis) {
-    constexpr double mm = 1e-3, length = 330.0 * mm;
+    constexpr double length = 330.0 * mm;
     const auto bow = [](double s) { return Vec3(4.0 * mm * std::sin(std::numbers::pi * s / length), 0.0, 0.0); };
     geometry::TriangleSurface leg = tube_of(
         from, axis, length, 36, 61,

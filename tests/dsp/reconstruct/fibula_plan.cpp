@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/fibula_plan.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/slabs.hpp"
@@ -19,8 +20,6 @@ using namespace tactus;
 using namespace tactus::reconstruct;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 // A tube of radius 7 mm about the line.
 geometry::TriangleSurface tube(const Vec3& from, const Vec3& axis, double length = 330.0 * mm) {
@@ -336,7 +335,6 @@ TEST_CASE("dsp: sections overlap by their common area without the marrow cavity"
     append(hollow, tube_of(Vec3(0.0), z, 20.0 * mm, 90, 5, [](double, double) { return 3.0 * mm; }));
     const Plane across{Vec3(0.0, 0.0, 10.3 * mm), z};
     const Section ring = section_of(hollow, across);
-    const double pi = std::numbers::pi;
     CHECK(overlap_area(ring, ring, across) == Approx(pi * (49.0 - 9.0) * 1e-6).epsilon(0.005));
     Section aside = section_of(tube(Vec3(0.0), z, 20.0 * mm), across);
     for (Vec3& p : aside.points) p.x += 7.0 * mm;

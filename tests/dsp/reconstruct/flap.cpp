@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
@@ -20,8 +21,6 @@ using namespace tactus;
 using namespace tactus::reconstruct;
 
 namespace {
-
-constexpr double mm = 1e-3, pi = std::numbers::pi;
 
 bool has(const FlapMeasures& m, FlapTrouble code, const std::string& object = "") {
     return std::ranges::any_of(m.warnings, [&](const FlapWarning& w) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/jaw_curve.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/rope/measure.hpp"
@@ -14,12 +15,6 @@
 
 using namespace tactus;
 using namespace tactus::reconstruct;
-
-namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
-
-}  // namespace
 
 TEST_CASE("a jaw of straight pieces is split at its corners within 1 mm and 2 degrees whatever the start") {
     int found = 0, worse = 0;

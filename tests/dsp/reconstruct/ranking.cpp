@@ -2,6 +2,7 @@
 // The two stories of Olsson 2015, 6.1.3.1: a plate that meets the vessel, and vessels that do not reach.
 #include "dsp/reconstruct/ranking.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tests/dsp/reconstruct/small_flap.hpp"
@@ -15,9 +16,7 @@ using namespace tactus::reconstruct;
 
 namespace {
 
-constexpr double mm = 1e-3, pi = std::numbers::pi;
-
-bool has(const FlapMeasures& m, FlapTrouble code) {
+bool has_trouble(const FlapMeasures& m, FlapTrouble code) {
     return std::ranges::any_of(m.warnings, [&](const FlapWarning& w) { return w.code == code; });
 }
 
@@ -47,14 +46,14 @@ TEST_CASE("a plate on the vessels is raised, and the fibula turned by 180° abou
         const Flap flap = with_plate(in, outwards);
         const std::vector<Candidate> all = ranking(in, flap);
         REQUIRE(all.size() == 8);
-        const bool meets = has(given(all).measures, FlapTrouble::near_vessel);
+        const bool meets = has_trouble(given(all).measures, FlapTrouble::near_vessel);
         // One of the two directions turns the vessels to the plate: there the turned fibula is better, and at the other
         // one, the control without the fault, nothing is raised and the plan as given stays first.
         if (meets) {
             CHECK(all[0].changes == 1);
             CHECK(all[0].is_flipped);
             CHECK(all[0].excluded.empty());
-            CHECK_FALSE(has(all[0].measures, FlapTrouble::near_vessel));
+            CHECK_FALSE(has_trouble(all[0].measures, FlapTrouble::near_vessel));
         } else {
             CHECK(all[0].changes == 0);
         }
@@ -74,8 +73,8 @@ TEST_CASE(
         CHECK_FALSE(all[0].at_first);
         CHECK(all[0].changes == (reversed ? 2 : 0));
         CHECK(all[0].excluded.empty());
-        CHECK_FALSE(has(all[0].measures, FlapTrouble::too_short));
-        CHECK(has(given(all).measures, FlapTrouble::too_short) == reversed);
+        CHECK_FALSE(has_trouble(all[0].measures, FlapTrouble::too_short));
+        CHECK(has_trouble(given(all).measures, FlapTrouble::too_short) == reversed);
         if (reversed) CHECK_THAT(given(all).excluded, Catch::Matchers::ContainsSubstring("does not reach"));
         // All that leave at the first plane are excluded, and stand last.
         for (std::size_t n = 0; n < 8; ++n) {

@@ -2,6 +2,7 @@
 // A vessel that is attached to pieces: what is free, what it pulls, how far it reaches.
 #include "dsp/rope/attached_vessel.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
@@ -20,8 +21,6 @@ using rope::AttachedVesselSettings;
 using rope::Attachment;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Along z from 200 mm down to 0, a point per millimetre.
 std::vector<Vec3> straight() {
@@ -50,7 +49,7 @@ AttachedVesselSettings plain(double pedicle = 0.0) {
 }
 
 /// Two pieces of 30 mm with a wedge of 4 mm between them; the pedicle is what is above 100 mm.
-struct Flap {
+struct HeldFlap {
     std::vector<Vec3> line = straight();
     std::vector<std::vector<Vec3>> surfaces{{}, cylinder(36.0 * mm, 66.0 * mm), cylinder(70.0 * mm, 100.0 * mm)};
     std::vector<Attachment> attached = rope::attachments_along(line, surfaces, 12.0 * mm);
@@ -64,7 +63,7 @@ void settle(AttachedVessel& vessel, const std::vector<Pose>& poses, const Vec3* 
 }  // namespace
 
 TEST_CASE("a vessel is attached where it runs beside a piece, and free from its cuts on") {
-    const Flap flap;
+    const HeldFlap flap;
     REQUIRE(flap.attached.size() == 2);
     // In the order of the course, which begins above.
     CHECK(flap.attached[0].body == 2);
@@ -81,7 +80,7 @@ TEST_CASE("a vessel is attached where it runs beside a piece, and free from its 
 
 TEST_CASE("pieces that share a part of a course get parts that follow each other") {
     // The whole bone, and two pieces cut from it.
-    const Flap flap;
+    const HeldFlap flap;
     auto surfaces = flap.surfaces;
     surfaces[0] = cylinder(10.0 * mm, 120.0 * mm);
     surfaces.push_back(cylinder(5.0 * mm, 50.0 * mm));
@@ -92,7 +91,7 @@ TEST_CASE("pieces that share a part of a course get parts that follow each other
 }
 
 TEST_CASE("a long pedicle and all spans have no more points than asked") {
-    const Flap flap;
+    const HeldFlap flap;
     AttachedVesselSettings settings = plain();
     settings.most_points = 30;
     const std::vector<Attachment> apart{{2, 100, 120}, {1, 150, 164}};
@@ -104,7 +103,7 @@ TEST_CASE("a long pedicle and all spans have no more points than asked") {
 }
 
 TEST_CASE("a pedicle held at its length in the leg bears the tension of the leg, and no more is felt by the pieces") {
-    const Flap flap;
+    const HeldFlap flap;
     AttachedVessel vessel(flap.line, flap.attached, flap.poses, plain());
     const Vec3 site = flap.line.front();
     settle(vessel, flap.poses, &site);
@@ -125,7 +124,7 @@ TEST_CASE("a pedicle held at its length in the leg bears the tension of the leg,
 }
 
 TEST_CASE("a vessel's reach changes from slack to none at the lengths that are stated") {
-    const Flap flap;
+    const HeldFlap flap;
     AttachedVessel vessel(flap.line, flap.attached, flap.poses, plain(80.0 * mm));
     CHECK(vessel.pedicle_rest() == Approx(0.89 * 80.0 * mm).epsilon(0.003));
     const double root = flap.line[flap.attached[0].first].z;
@@ -146,7 +145,7 @@ TEST_CASE("a vessel's reach changes from slack to none at the lengths that are s
 }
 
 TEST_CASE("moving the first cut distally lengthens the pedicle") {
-    Flap flap;
+    HeldFlap flap;
     const AttachedVessel before(flap.line, flap.attached, flap.poses, plain());
     flap.surfaces[2] = cylinder(70.0 * mm, 90.0 * mm);
     const AttachedVessel after(flap.line, rope::attachments_along(flap.line, flap.surfaces, 12.0 * mm), flap.poses,
@@ -155,7 +154,7 @@ TEST_CASE("moving the first cut distally lengthens the pedicle") {
 }
 
 TEST_CASE("a piece that turns about its axis twists the pedicle by as much") {
-    const Flap flap;
+    const HeldFlap flap;
     AttachedVessel vessel(flap.line, flap.attached, flap.poses, plain(60.0 * mm));
     const Vec3 site(0.0, 0.0, 150.0 * mm);
     settle(vessel, flap.poses, &site);
@@ -172,7 +171,7 @@ TEST_CASE("a piece that turns about its axis twists the pedicle by as much") {
 }
 
 TEST_CASE("a vessel in a tick allocates nothing, and poses that are none change nothing") {
-    const Flap flap;
+    const HeldFlap flap;
     AttachedVessel vessel(flap.line, flap.attached, flap.poses, {});
     const Vec3 site = flap.line.front();
     settle(vessel, flap.poses, &site);

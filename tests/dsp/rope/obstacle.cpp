@@ -3,6 +3,7 @@
 #include "dsp/rope/obstacle.hpp"
 
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/rope/bone_field.hpp"
 #include "dsp/rope/rope.hpp"
@@ -19,8 +20,6 @@ using namespace tactus;
 using namespace tactus::rope;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A bone of three balls; its field ends close around it, so that the distance jumps there.
 contact::Voxmap tight_field() {

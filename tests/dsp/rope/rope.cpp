@@ -2,6 +2,7 @@
 // A rope against strings, beams and belts with known solutions.
 #include "dsp/rope/rope.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/rope/measure.hpp"
@@ -20,7 +21,7 @@ using namespace tactus::rope;
 
 namespace {
 
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0, tick = 1e-3;
+constexpr double tick = 1e-3;
 
 // A line of equal rest lengths.
 Rope rope_along(const std::vector<Vec3>& line, std::size_t points, double rest_length, const RopeMaterial& material,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/kerf_heat.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/saw/heat_partition.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
@@ -15,8 +16,6 @@ using saw::KerfHeat;
 using saw::KerfMaterial;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// A line that removes nothing.
 KerfMaterial line() {

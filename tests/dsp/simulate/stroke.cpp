@@ -9,7 +9,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double period = 0.001;
+constexpr double servo_period = 0.001;
 
 struct Cut {
     double mean = 0.0, ripple = 0.0, peak = 0.0;  // N, thrust in the last half
@@ -26,12 +26,12 @@ Cut press(double stiffness, double rate, double seconds, simulate::StrokePlan pl
     double surface = -5e-3, sum = 0.0, square = 0.0;
     int count = 0;
     Wrench force;
-    const int ticks = static_cast<int>(seconds / period);
+    const int ticks = static_cast<int>(seconds / servo_period);
     for (int i = 0; i < ticks; ++i) {
-        simulate::advance(cut.hand, cut.intend, force, period);
+        simulate::advance(cut.hand, cut.intend, force, servo_period);
         const double inside = surface - cut.hand.pose.position.z;
         force.force.z = inside > 0.0 ? stiffness * inside : 0.0;
-        if (inside > 0.0) surface -= rate * period;
+        if (inside > 0.0) surface -= rate * servo_period;
         cut.peak = std::max(cut.peak, force.force.z);
         if (i < ticks / 2) continue;
         sum += force.force.z;
@@ -80,7 +80,7 @@ TEST_CASE("the hand follows its strokes in free space within a millimetre") {
         const auto watch = [&](double h, const Wrench& force, const Pose& pose) noexcept {
             return last = intend(h, force, pose);
         };
-        simulate::advance(hand, watch, {}, period);
+        simulate::advance(hand, watch, {}, servo_period);
         worst = std::max(worst, glm::length(hand.pose.position - last.pose.position));
         furthest = std::max(furthest, std::abs(hand.pose.position.x));
     }
@@ -94,7 +94,7 @@ TEST_CASE("tremor has the stated size and lies between 8 and 12 Hz") {
     const int count = 60'000;
     for (int i = 0; i < count; ++i) {
         Vec3 shake, speed;
-        tremor.at(i * period, shake, speed);
+        tremor.at(i * servo_period, shake, speed);
         square += shake.y * shake.y;
         speed_square += speed.y * speed.y;
     }
@@ -131,7 +131,7 @@ TEST_CASE("an operator whose device gives no force any more pulls back, and come
         const bool gives = i < 3000 || i >= 5000;
         const double inside = -5e-3 - hand.pose.position.z;
         thrust = gives && inside > 0.0 ? 2000.0 * inside : 0.0;
-        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, period);
+        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, servo_period);
         if (gives) continue;
         deepest = std::max(deepest, inside);
         if (i >= 4500) highest = std::max(highest, hand.pose.position.z);
@@ -154,7 +154,7 @@ TEST_CASE("an operator who finds nothing where something was goes on to what lie
         // A wall at 5 mm that breaks after 3 s, and one 30 mm behind it.
         is_open = is_open || i >= 3000;
         thrust = 5000.0 * std::max(0.0, (is_open ? -35e-3 : -5e-3) - hand.pose.position.z);
-        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, period);
+        simulate::advance(hand, intend, {{0.0, 0.0, thrust}, {}}, servo_period);
     }
     CHECK(hand.pose.position.z < -35e-3);
     CHECK(thrust == Approx(plan.thrust).epsilon(0.1));
@@ -184,7 +184,7 @@ TEST_CASE("after a break-through an operator with a reaction time stops short of
         for (int i = 0; i < 4000; ++i) {
             // A wall of 5 N/mm at 10 mm, which is gone after 3.9 s.
             wall = std::max(0.0, -hand.pose.position.z - 10e-3);
-            simulate::advance(hand, intend, {{0.0, 0.0, i < 3900 ? 5000.0 * wall : 0.0}, {}}, period);
+            simulate::advance(hand, intend, {{0.0, 0.0, i < 3900 ? 5000.0 * wall : 0.0}, {}}, servo_period);
         }
         return -hand.pose.position.z;
     };
@@ -209,7 +209,7 @@ TEST_CASE("an operator who reacts late still presses steadily, with any grip") {
         double least = 1e9, most = 0.0;
         for (int i = 0; i < 20000; ++i) {
             const double force = 20000.0 * std::max(0.0, -hand.pose.position.z - 10e-3);
-            simulate::advance(hand, intend, {{0.0, 0.0, force}, {}}, period);
+            simulate::advance(hand, intend, {{0.0, 0.0, force}, {}}, servo_period);
             if (i < 15000) continue;
             least = std::min(least, force);
             most = std::max(most, force);
@@ -235,7 +235,7 @@ TEST_CASE("the trigger follows its times") {
     simulate::StrokeOperator intend(plan);
     simulate::Hand hand;
     const auto at = [&](double until) {
-        while (intend.time() < until - 1e-9) simulate::advance(hand, intend, {}, period);
+        while (intend.time() < until - 1e-9) simulate::advance(hand, intend, {}, servo_period);
         return intend.trigger();
     };
     CHECK_FALSE(at(0.1));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/training/motion.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/dsp/training/block.hpp"
 #include "tests/support/catch.hpp"
@@ -11,8 +12,6 @@ using namespace tactus;
 using training::AttemptSample;
 
 namespace {
-
-constexpr double mm = 1e-3, pi = std::numbers::pi;
 
 /// Strokes of 16 mm at 1 Hz for `seconds`, fed at 1 mm/s, with tremor of that amplitude and a force along the feed.
 std::vector<AttemptSample> sawing(double seconds, double tremor, double force) {

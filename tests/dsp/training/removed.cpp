@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "tests/dsp/training/block.hpp"
 #include "tests/support/catch.hpp"
 
@@ -12,8 +13,6 @@ using test::cut_block;
 using test::whole_block;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 /// The normal of the plan, turned about the stroke (x) and about the feed (z).
 Vec3 turned(double about_stroke, double about_feed) {

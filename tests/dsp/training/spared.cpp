@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/training/spared.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/dsp/training/block.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
@@ -10,8 +11,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A nerve of 3 mm diameter along y, 5 mm below the origin.
 training::SparedStructure nerve(double h = 0.3 * mm) {

@@ -16,16 +16,16 @@ using namespace tactus;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double card_rate = 48000.0;
 
 vibration::FrequencyResponse measured(const test::Plant& plant) {
     const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 0.3, 1.0, 1};
     std::vector<float> drive;
     for (std::size_t i = 0; i < 9 * 48000; ++i)
-        drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / rate)));
+        drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / card_rate)));
     std::vector<float> heard = plant(drive);
-    test::add_disturbance(heard, rate, -50.0, -80.0, 7);
-    return vibration::identify(run, heard, rate).response;
+    test::add_disturbance(heard, card_rate, -50.0, -80.0, 7);
+    return vibration::identify(run, heard, card_rate).response;
 }
 
 const vibration::FrequencyResponse& response_of_the_plant() {
@@ -44,17 +44,18 @@ std::vector<float> equalised(const std::vector<float>& wanted, vibration::Equali
 /// Plays on a plant of a noisy bench and compares with what was wanted.
 signal::Comparison played(const std::vector<float>& wanted, const std::vector<float>& drive, const test::Plant& plant) {
     std::vector<float> heard = plant(drive);
-    test::add_disturbance(heard, rate, -50.0, -80.0, 11);
+    test::add_disturbance(heard, card_rate, -50.0, -80.0, 11);
     // The saw is running already: how it starts is another matter.
     constexpr std::size_t settled = 24000;
-    return signal::compare({std::span(wanted).subspan(settled), rate}, {std::span(heard).subspan(settled), rate});
+    return signal::compare({std::span(wanted).subspan(settled), card_rate},
+                           {std::span(heard).subspan(settled), card_rate});
 }
 
 struct Saw {
     const char* name;
     double strokes;
     bool cutting;
-    std::vector<float> take() const { return test::saw(strokes, cutting, 8.0, rate, 21); }
+    std::vector<float> take() const { return test::saw(strokes, cutting, 8.0, card_rate, 21); }
 };
 
 const Saw saws[] = {

@@ -13,14 +13,14 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double sweep_rate = 48000.0;
 
 std::vector<float> drive_of(const vibration::SweepRun& run) {
-    const auto period = static_cast<std::size_t>((run.sweep.duration + run.pause) * rate);
+    const auto period = static_cast<std::size_t>((run.sweep.duration + run.pause) * sweep_rate);
     std::vector<float> samples;
     for (int r = 0; r < run.repeats; ++r)
         for (std::size_t i = 0; i < period; ++i)
-            samples.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / rate)));
+            samples.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / sweep_rate)));
     return samples;
 }
 
@@ -31,7 +31,7 @@ std::vector<float> delayed(const std::vector<float>& samples, std::size_t count)
     return out;
 }
 
-double decibel(double ratio) { return 20.0 * std::log10(ratio); }
+double sweep_decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
 /// Largest deviation of level from the plant's within the band, dB.
 double level_error(const vibration::FrequencyResponse& response, const std::function<double(double)>& truth,
@@ -39,7 +39,7 @@ double level_error(const vibration::FrequencyResponse& response, const std::func
     double worst = 0.0;
     for (std::size_t i = 0; i < response.hz.size(); ++i)
         if (response.hz[i] >= lowest && response.hz[i] <= highest)
-            worst = std::max(worst, std::abs(decibel(std::abs(response.gain[i]) / truth(response.hz[i]))));
+            worst = std::max(worst, std::abs(sweep_decibel(std::abs(response.gain[i]) / truth(response.hz[i]))));
     return worst;
 }
 
@@ -68,8 +68,8 @@ TEST_CASE("a sweep identifies a plant within 0.25 dB from 40 to 1000 Hz through 
     const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     const test::Plant plant;
     std::vector<float> heard = plant(drive_of(run));
-    test::add_disturbance(heard, rate, -50.0, -80.0, 3);
-    const vibration::FrequencyResponse response = vibration::identify(run, heard, rate).response;
+    test::add_disturbance(heard, sweep_rate, -50.0, -80.0, 3);
+    const vibration::FrequencyResponse response = vibration::identify(run, heard, sweep_rate).response;
     const auto truth = [&](double f) { return std::abs(plant.gain(f)); };
     CHECK(level_error(response, truth, 40.0, 1000.0) < 0.25);
     CHECK(response.latency == Approx(0.0).margin(5e-5));
@@ -86,8 +86,8 @@ TEST_CASE("latency is the delay of the chain, not the phase of its resonance") {
     const vibration::SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 0.5, 0.5, 1};
     for (const std::size_t samples : {0u, 37u, 128u, 4800u}) {
         const vibration::FrequencyResponse response =
-            vibration::identify(run, delayed(test::Plant{}(drive_of(run)), samples), rate).response;
-        CHECK(response.latency == Approx(static_cast<double>(samples) / rate).margin(5e-5));
+            vibration::identify(run, delayed(test::Plant{}(drive_of(run)), samples), sweep_rate).response;
+        CHECK(response.latency == Approx(static_cast<double>(samples) / sweep_rate).margin(5e-5));
     }
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("distortion comes out by order: 1.0375, 0.05 and 0.0125 of x + 0.1 x²
     const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     std::vector<float> heard = drive_of(run);
     for (float& x : heard) x = x + 0.1f * x * x + 0.05f * x * x * x;
-    const vibration::Identified found = vibration::identify(run, heard, rate, 4);
+    const vibration::Identified found = vibration::identify(run, heard, sweep_rate, 4);
     for (std::size_t i = 0; i < found.response.hz.size(); ++i) {
         const double f = found.response.hz[i];
         if (f < 40.0 || f > 490.0) continue;
@@ -111,9 +111,9 @@ TEST_CASE("noise that does not repeat lowers the coherence where it is, and only
     const vibration::SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 1.0, 0.5, 2};
     std::vector<float> heard = test::Plant{}(drive_of(run));
     const Random random{9};
-    signal::Biquad around{signal::bandpass(300.0, rate, 3.0)};
+    signal::Biquad around{signal::bandpass(300.0, sweep_rate, 3.0)};
     for (std::size_t i = 0; i < heard.size(); ++i) heard[i] += static_cast<float>(around(30.0 * random.normal(i)));
-    const vibration::FrequencyResponse response = vibration::identify(run, heard, rate).response;
+    const vibration::FrequencyResponse response = vibration::identify(run, heard, sweep_rate).response;
     for (std::size_t i = 0; i < response.hz.size(); ++i) {
         if (std::abs(response.hz[i] - 300.0) < 20.0) CHECK(response.coherence[i] < 0.8);
         if (response.hz[i] > 60.0 && response.hz[i] < 90.0) CHECK(response.coherence[i] > 0.85);
@@ -123,7 +123,7 @@ TEST_CASE("noise that does not repeat lowers the coherence where it is, and only
 TEST_CASE("the fitted resonance is the actuator's, whatever modes the handle adds and whatever the sensor measures") {
     const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     const auto fit = [&](const std::vector<float>& heard) {
-        return vibration::fit_resonance(vibration::identify(run, heard, rate).response, 30.0, 400.0);
+        return vibration::fit_resonance(vibration::identify(run, heard, sweep_rate).response, 30.0, 400.0);
     };
     const vibration::Resonance handle = fit(test::Plant{}(drive_of(run)));
     CHECK(handle.hz == Approx(75.0).epsilon(0.06));
@@ -131,7 +131,8 @@ TEST_CASE("the fitted resonance is the actuator's, whatever modes the handle add
     CHECK(handle.order == 2);
 
     std::vector<float> alone = drive_of(run), displacement = alone;
-    signal::Biquad resonator{signal::highpass(89.0, rate, 1.0 / 0.46)}, spring{signal::lowpass(60.0, rate, 2.0)};
+    signal::Biquad resonator{signal::highpass(89.0, sweep_rate, 1.0 / 0.46)},
+        spring{signal::lowpass(60.0, sweep_rate, 2.0)};
     for (float& x : alone) x = static_cast<float>(resonator(static_cast<double>(x)));
     for (float& x : displacement) x = static_cast<float>(spring(static_cast<double>(x)));
     const vibration::Resonance bare = fit(alone);
@@ -146,7 +147,8 @@ TEST_CASE("the fitted resonance is the actuator's, whatever modes the handle add
 
 TEST_CASE("a straight wire and a mere slope have no resonance") {
     const vibration::SweepRun run{{20.0, 2000.0, 2.0, 0.02}, 1.0, 0.5, 1};
-    CHECK(vibration::fit_resonance(vibration::identify(run, drive_of(run), rate).response, 30.0, 400.0).hz == 0.0);
+    CHECK(vibration::fit_resonance(vibration::identify(run, drive_of(run), sweep_rate).response, 30.0, 400.0).hz ==
+          0.0);
     vibration::FrequencyResponse slope;
     for (double f = 20.0; f < 500.0; f *= 1.02) {
         slope.hz.push_back(f);
@@ -172,8 +174,9 @@ TEST_CASE("minimum phase follows from the level alone") {
 
 TEST_CASE("a record without the sweep is refused") {
     const vibration::SweepRun run{{20.0, 2000.0, 1.0, 0.02}, 1.0, 0.5, 1};
-    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(1000), rate),
+    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(1000), sweep_rate),
                       ContainsSubstring("0.0208 s long; 1.5 s were played"));
-    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(72000), rate), ContainsSubstring("silent"));
-    CHECK_THROWS_AS(vibration::identify({{20.0, 30.0, 1.0}, 1.0, 0.5, 1}, std::vector<float>(72000), rate), Error);
+    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(72000), sweep_rate), ContainsSubstring("silent"));
+    CHECK_THROWS_AS(vibration::identify({{20.0, 30.0, 1.0}, 1.0, 0.5, 1}, std::vector<float>(72000), sweep_rate),
+                    Error);
 }

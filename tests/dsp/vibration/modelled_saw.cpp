@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/modelled_saw.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
@@ -18,7 +19,7 @@ using vibration::SawModelSize;
 
 namespace {
 
-constexpr double pi = std::numbers::pi, rate = 48000.0;
+constexpr double played_rate = 48000.0;
 
 /// A saw of known parts: orders 1 to 4 and noise in a band around 700 Hz that swells twice per stroke.
 struct Parts {
@@ -27,20 +28,20 @@ struct Parts {
 };
 
 std::vector<float> saw(double strokes, const Parts& parts, std::uint64_t seed, double seconds = 4.0) {
-    const auto count = static_cast<std::size_t>(seconds * rate);
+    const auto count = static_cast<std::size_t>(seconds * played_rate);
     const Random random{seed};
     std::vector<double> noise(count, 0.0);
-    const double radius = 0.985, angle = 2.0 * pi * 700.0 / rate;
+    const double radius = 0.985, angle = 2.0 * pi * 700.0 / played_rate;
     double power = 0.0;
     for (std::size_t i = 2; i < count; ++i) {
-        const double phase = 2.0 * pi * strokes * static_cast<double>(i) / rate;
+        const double phase = 2.0 * pi * strokes * static_cast<double>(i) / played_rate;
         noise[i] = std::abs(std::sin(phase)) * random.normal(i) + 2.0 * radius * std::cos(angle) * noise[i - 1] -
                    radius * radius * noise[i - 2];
         power += noise[i] * noise[i] / static_cast<double>(count);
     }
     std::vector<float> out(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const double phase = 2.0 * pi * strokes * static_cast<double>(i) / rate;
+        const double phase = 2.0 * pi * strokes * static_cast<double>(i) / played_rate;
         const double orders = parts.first * std::cos(phase) + parts.second * std::cos(2.0 * phase + 1.0) +
                               parts.third * std::cos(3.0 * phase - 2.0) + parts.fourth * std::cos(4.0 * phase + 0.5);
         out[i] = static_cast<float>(std::numbers::sqrt2 * orders + parts.noise / std::sqrt(power) * noise[i]);
@@ -50,7 +51,7 @@ std::vector<float> saw(double strokes, const Parts& parts, std::uint64_t seed, d
 
 vibration::SawRecording recording(const std::vector<float>& samples, double strokes, double load,
                                   double density = 0.0) {
-    vibration::SawRecording out{samples, rate, strokes, load, load > 0.0};
+    vibration::SawRecording out{samples, played_rate, strokes, load, load > 0.0};
     out.density = density;
     return out;
 }
@@ -59,7 +60,7 @@ vibration::SawRecording recording(const std::vector<float>& samples, double stro
 double line(const std::vector<float>& samples, double frequency) {
     double re = 0.0, im = 0.0, weights = 0.0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double t = static_cast<double>(i) / rate;
+        const double t = static_cast<double>(i) / played_rate;
         const double hann = 1.0 - std::cos(2.0 * pi * static_cast<double>(i) / static_cast<double>(samples.size()));
         re += hann * samples[i] * std::cos(2.0 * pi * frequency * t);
         im += hann * samples[i] * std::sin(2.0 * pi * frequency * t);
@@ -71,9 +72,9 @@ double line(const std::vector<float>& samples, double frequency) {
 std::vector<float> play(const vibration::SawModel& model, double load, double strokes, double density = 0.0,
                         double seconds = 4.0) {
     vibration::ModelledSaw voice;
-    voice.prepare(rate, model);
+    voice.prepare(played_rate, model);
     for (int i = 0; i < 48000; ++i) voice.tick(load, density, true, strokes);
-    std::vector<float> out(static_cast<std::size_t>(seconds * rate));
+    std::vector<float> out(static_cast<std::size_t>(seconds * played_rate));
     for (float& y : out) y = voice.tick(load, density, true, strokes);
     return out;
 }
@@ -188,9 +189,9 @@ TEST_CASE("no change of rate, load, density or trigger makes a step in a modelle
     const vibration::SawRecording some[] = {recording(idle, 150.0, 0.0), recording(cut, 150.0, 8.0, 1000.0),
                                             recording(fast, 233.0, 8.0, 1500.0)};
     vibration::ModelledSaw voice;
-    voice.prepare(rate, vibration::fit_saw_model(some));
+    voice.prepare(played_rate, vibration::fit_saw_model(some));
     // The steepest that orders 1 and 2 can be at 233 Hz, and the start of the blade.
-    const double greatest = 2.0 * pi * 233.0 / rate * std::numbers::sqrt2 * (30.0 + 2.0 * 12.0);
+    const double greatest = 2.0 * pi * 233.0 / played_rate * std::numbers::sqrt2 * (30.0 + 2.0 * 12.0);
     double before = 0.0, steepest = 0.0;
     for (int i = 0; i < 96000; ++i) {
         const int part = i / 4800;
@@ -208,21 +209,21 @@ TEST_CASE("a modelled saw that is off is silent, and bad input is no sound") {
     const vibration::SawRecording one[] = {recording(samples, 150.0, 7.0)};
     const vibration::SawModel model = vibration::fit_saw_model(one);
     vibration::ModelledSaw voice;
-    voice.prepare(rate, model);
+    voice.prepare(played_rate, model);
     for (int i = 0; i < 1000; ++i) CHECK(voice.tick(7.0, 0.0, false, 233.0) == 0.0f);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < 48000; ++i) REQUIRE(std::isfinite(voice.tick(nan, nan, true, i % 2 ? nan : 1e300)));
     for (int i = 0; i < 96000; ++i) voice.tick(0.0, 0.0, false, 0.0);
     CHECK(voice.tick(0.0, 0.0, false, 0.0) == 0.0f);
     CHECK_THROWS_AS(voice.prepare(1000.0, model), Error);
-    CHECK_THROWS_AS(voice.prepare(rate, {}), Error);
+    CHECK_THROWS_AS(voice.prepare(played_rate, {}), Error);
 }
 
 TEST_CASE("a modelled saw neither allocates nor waits") {
     const auto samples = saw(150.0, {}, 1, 1.0);
     const vibration::SawRecording one[] = {recording(samples, 150.0, 7.0)};
     vibration::ModelledSaw voice;
-    voice.prepare(rate, vibration::fit_saw_model(one));
+    voice.prepare(played_rate, vibration::fit_saw_model(one));
     const RealtimeViolations found = watch([&] {
         for (int i = 0; i < 4800; ++i) voice.tick(i % 9 > 4 ? 7.0 : 0.0, 1000.0, i % 100 > 4, 150.0 + i % 80);
     });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/iso_distance.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/resample.hpp"
 #include "dsp/volume/surface_distance.hpp"
@@ -15,8 +16,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 volume::Grid cube_grid(int size, double spacing) {
     volume::Grid grid{{size, size, size}, Vec3(-0.5 * (size - 1) * spacing), Vec3(spacing), {}};

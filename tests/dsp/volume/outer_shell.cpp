@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/outer_shell.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
@@ -10,7 +11,7 @@
 using namespace tactus;
 
 TEST_CASE("dsp: the outer shell fills what is reached through a narrow hole and keeps the outside") {
-    constexpr double mm = 1e-3, outer = 12.0 * mm, inner = 9.0 * mm, hole = 1.5 * mm;
+    constexpr double outer = 12.0 * mm, inner = 9.0 * mm, hole = 1.5 * mm;
     volume::Grid ball{{45, 45, 45}, Vec3(-22.0 * mm), Vec3(1.0 * mm), {}};
     for (int k = 0; k < 45; ++k)
         for (int j = 0; j < 45; ++j)

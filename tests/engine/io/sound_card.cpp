@@ -43,8 +43,8 @@ private:
     std::string name_ = "played";
 };
 
-struct Bench {
-    explicit Bench(std::size_t frames = 4096) {
+struct CardBench {
+    explicit CardBench(std::size_t frames = 4096) {
         auto owned = std::make_unique<PlayedSink>(frames);
         sink = owned.get();
         card = std::make_unique<io::SoundCard>(std::move(owned), io::CardUse{period, 0.005});
@@ -64,14 +64,14 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("activations that never ran are silence of the same length on the card") {
-    const Bench bench;
+    const CardBench bench;
     bench.write(100, 3);
     bench.write(105, 2);
     CHECK(bench.sink->ask(7, 1) == std::vector<float>{100, 101, 102, 0, 0, 105, 106});
 }
 
 TEST_CASE("what finds no room is counted, and the clock still knows which frame plays") {
-    const Bench bench(64);
+    const CardBench bench(64);
     bench.write(0, 1000);
     CHECK(bench.sink->statistics().frames_dropped == 936);
     control::TrimmedClock clock{0, 0, 1.0};
@@ -111,7 +111,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a card that asks for nothing is lost after half a second, once, and found when it asks again") {
-    const Bench bench;
+    const CardBench bench;
     control::TrimmedClock clock{0, 0, 1.0};
     const std::int64_t ms = 1'000'000;
     bench.write(0, 480);
@@ -130,7 +130,7 @@ TEST_CASE("a card that asks for nothing is lost after half a second, once, and f
 }
 
 TEST_CASE("a card that never asked is lost as well") {
-    const Bench bench;
+    const CardBench bench;
     control::TrimmedClock clock{0, 0, 1.0};
     CHECK_FALSE(bench.card->service(1, 0, &clock));
     CHECK(bench.card->service(600'000'000, 0, &clock));
@@ -162,7 +162,7 @@ TEST_CASE("readers of the run's clock see whole lines only") {
 }
 
 TEST_CASE("the clock is trimmed where time is, not where the furthest group is: nothing jumps") {
-    const Bench bench;
+    const CardBench bench;
     control::TrimmedClock clock{0, 0, 1.0};
     constexpr Flicks slow = 5 * flicks_per_second;  // a group of 0.2 Hz has come to here already
     std::int64_t frames = 0, worst = 0;

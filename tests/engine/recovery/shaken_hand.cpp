@@ -16,7 +16,6 @@ namespace tactus::test {
 
 namespace {
 
-constexpr HarnessOptions servo{.period = flicks_per_second / 1000};
 constexpr double tick_s = 1e-3;
 constexpr double resolution = 20e-6;  // m
 constexpr double device_force = 9.0;  // N

@@ -2,6 +2,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +14,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 struct Edit {
     Flicks when;

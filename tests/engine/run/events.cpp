@@ -7,6 +7,7 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/support/times.hpp"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,6 @@ using Catch::Matchers::ContainsSubstring;
 namespace tactus::test {
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 struct Seen {
     std::int64_t tick = 0;
@@ -103,7 +102,7 @@ std::optional<compile::Plan> try_plan(const PatchText& text, patch::Problems& pr
     return compile::compile(patch, types, problems);
 }
 
-compile::Plan plan_of(const PatchText& text) {
+compile::Plan event_plan_of(const PatchText& text) {
     patch::Problems problems;
     std::optional<compile::Plan> plan = try_plan(text, problems);
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
@@ -117,13 +116,13 @@ struct Outcome {
     std::int64_t lost = 0;  ///< in all groups
 };
 
-Outcome render(const PatchText& text, double length = 0.2, int block = 0, bool random = false, int threads = 1) {
+Outcome render_events(const PatchText& text, double length = 0.2, int block = 0, bool random = false, int threads = 1) {
     seen_by.clear();
     run::EngineOptions options;
     options.seconds = length;
     options.block = block;
     options.random_blocks = random;
-    run::Engine engine(plan_of(text), options);
+    run::Engine engine(event_plan_of(text), options);
     engine.render(threads);
     Outcome outcome{engine.port_hashes(), engine.output_hash(), 0};
     for (const auto& group : engine.groups()) outcome.lost += group->telemetry.lost_events.load();
@@ -207,7 +206,7 @@ TEST_CASE("an event becomes visible at its time plus the latency, at the exact t
                                   {"quick", "oscillator", "48 kHz", {}}},
                                  {"p.events -> w.in"},
                                  ""};
-            render(text, 0.2, block);
+            render_events(text, 0.2, block);
             const auto& all = seen("w");
             const Flicks given = patch::parse_rate(from), taken = patch::parse_rate(to);
             // An audio group is heard after the quantum, all others after their period.
@@ -230,7 +229,7 @@ TEST_CASE("within a group an event is seen in the tick that gives it, and a dela
         {{"p", "burst", "1 kHz", {{"every", "10"}}}, witness("now", "1 kHz"), witness("late", "1 kHz")},
         {"p.events -> now.in", "p.events -> late.in as delay 3"},
         ""};
-    render(text, 0.05);
+    render_events(text, 0.05);
     REQUIRE(seen("now").size() == 5);
     REQUIRE(seen("late").size() == 5);
     for (std::size_t i = 0; i < 5; ++i) {
@@ -252,7 +251,7 @@ TEST_CASE("events of several wires come by time, then by the name of their outpu
                          wires,
                          ""};
     };
-    render(patch());
+    render_events(patch());
     const auto all = seen("w");
     REQUIRE(all.size() > 500);
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -266,9 +265,9 @@ TEST_CASE("events of several wires come by time, then by the name of their outpu
         REQUIRE(rank(one) <= rank(next));
     }
     for (const char* from : {"a", "b", "z"}) check_each_once(all, from);
-    const auto hash = render(patch()).ports;
+    const auto hash = render_events(patch()).ports;
     std::ranges::reverse(wires);
-    CHECK(render(patch()).ports == hash);
+    CHECK(render_events(patch()).ports == hash);
 }
 
 TEST_CASE("of more than sixteen events of a tick the last end survives, and the consumer is told of the others") {
@@ -277,7 +276,7 @@ TEST_CASE("of more than sixteen events of a tick the last end survives, and the 
         const PatchText text{{{"p", "burst", "1 kHz", {{"count", "20"}, {"every", "50"}}}, witness("w", rate)},
                              {"p.events -> w.in"},
                              ""};
-        const Outcome outcome = render(text);
+        const Outcome outcome = render_events(text);
         const auto& all = seen("w");
         REQUIRE(all.size() == 4 * 16);
         for (std::size_t k = 0; k < all.size(); ++k) {
@@ -292,7 +291,7 @@ TEST_CASE("of more than sixteen events of a tick the last end survives, and the 
 
 TEST_CASE("a slow reader gets a thousand and twenty-four events at once, and all ends among more") {
     const PatchText text{{{"p", "burst", "1 kHz", {{"count", "16"}}}, witness("w", "10 Hz")}, {"p.events -> w.in"}, ""};
-    const Outcome outcome = render(text, 0.35);
+    const Outcome outcome = render_events(text, 0.35);
     const auto& all = seen("w");
     // 100 ticks of 16 events.
     REQUIRE(all.size() == 3 * 1024);
@@ -302,19 +301,19 @@ TEST_CASE("a slow reader gets a thousand and twenty-four events at once, and all
 }
 
 TEST_CASE("threads and blocks change no bit of what events lead to", "[slow]") {
-    const Outcome reference = render(around(), 0.5, 1);
+    const Outcome reference = render_events(around(), 0.5, 1);
     for (const int threads : {1, 2, 4})
         for (const int block : {0, 7, 48, 480})
             for (const bool random : {false, true}) {
                 INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
-                const Outcome outcome = render(around(), 0.5, block, random, threads);
+                const Outcome outcome = render_events(around(), 0.5, block, random, threads);
                 CHECK(outcome.ports == reference.ports);
                 CHECK(outcome.lost == reference.lost);
             }
     // The output of events itself is part of the run's hash.
     PatchText other = around();
     other.nodes[0].settings = {{"every", "4"}};
-    const auto differing = render(other, 0.5).ports;
+    const auto differing = render_events(other, 0.5).ports;
     const auto of = [](const run::Engine::PortHashes& ports, const std::string& name) {
         return std::ranges::find(ports, name, [](const auto& port) { return port.first; })->second;
     };
@@ -325,10 +324,11 @@ TEST_CASE("threads and blocks change no bit of what events lead to", "[slow]") {
 TEST_CASE("runs that end at once, or between ticks, bring no event twice and none from nowhere") {
     for (const double length : {1e-5, 0.0005, 0.001, 0.00101, 0.0166, 0.02}) {
         INFO("a run of " << length << " s");
-        const Outcome reference = render(around(), length, 1);
-        for (const int threads : {1, 4}) CHECK(render(around(), length, 0, false, threads).ports == reference.ports);
+        const Outcome reference = render_events(around(), length, 1);
+        for (const int threads : {1, 4})
+            CHECK(render_events(around(), length, 0, false, threads).ports == reference.ports);
     }
-    render({{{"p", "burst", "1 kHz", {}}, witness("w", "48 kHz")}, {"p.events -> w.in"}, ""}, 0.00101);
+    render_events({{{"p", "burst", "1 kHz", {}}, witness("w", "48 kHz")}, {"p.events -> w.in"}, ""}, 0.00101);
     REQUIRE(seen("w").size() == 1);
     CHECK(seen("w")[0].event.time == 0);
     CHECK(seen("w")[0].tick == 48);
@@ -346,9 +346,9 @@ TEST_CASE("an edit that makes a node anew loses none of the events on their way,
     seen_by.clear();
     run::EngineOptions options;
     options.seconds = 0.3;
-    run::Engine engine(plan_of(patch("0", "")), options);
-    engine.schedule(plan_of(patch("1", "")), 100 * ms);
-    engine.schedule(plan_of(patch("1", "[nodes.alone]\ntype = \"burst\"\nrate = \"1 kHz\"\n")), 200 * ms);
+    run::Engine engine(event_plan_of(patch("0", "")), options);
+    engine.schedule(event_plan_of(patch("1", "")), 100 * ms);
+    engine.schedule(event_plan_of(patch("1", "[nodes.alone]\ntype = \"burst\"\nrate = \"1 kHz\"\n")), 200 * ms);
     engine.render(1);
     for (const char* reader : {"w", "v"}) {
         INFO(reader);
@@ -373,8 +373,8 @@ TEST_CASE("a reader that comes by an edit sees what happens from then on") {
     seen_by.clear();
     run::EngineOptions options;
     options.seconds = 0.3;
-    run::Engine engine(plan_of(before), options);
-    engine.schedule(plan_of(after), 100 * ms);
+    run::Engine engine(event_plan_of(before), options);
+    engine.schedule(event_plan_of(after), 100 * ms);
     engine.render(1);
     check_each_once(seen("w"), "p");
     REQUIRE_FALSE(seen("v").empty());
@@ -478,12 +478,12 @@ TEST_CASE("a live run with events is repeated bit by bit, also when groups stand
     run::EngineOptions options;
     options.seconds = 1.0;
     options.live = true;
-    run::Engine live(plan_of(text), options);
+    run::Engine live(event_plan_of(text), options);
     live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
     std::int64_t dropped = 0;
     for (const auto& group : live.groups()) dropped += group->telemetry.dropped.load();
     CHECK(dropped > 0);
-    check_replays([&] { return plan_of(text); }, 1.0, log, live.port_hashes());
+    check_replays([&] { return event_plan_of(text); }, 1.0, log, live.port_hashes());
     std::filesystem::remove(log);
 }
 
@@ -500,7 +500,7 @@ TEST_CASE("a thousand events a second make nobody late", "[live]") {
         run::EngineOptions options;
         options.seconds = 2.0;
         options.live = true;
-        run::Engine live(plan_of(text), options);
+        run::Engine live(event_plan_of(text), options);
         live.run_live({.dilate = 1.0, .log = {}, .stop = nullptr, .watch = {}});
         REQUIRE(live.groups().size() == 3);
         std::int64_t late = 0;

@@ -3,6 +3,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/live_case.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -14,8 +15,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 struct Mending {
     std::string fault = "none", plant = "plant", out = "out", max_force = "20 N", recover = "0";

@@ -4,6 +4,7 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@ using namespace tactus;
 using namespace tactus::test;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 std::string on_spring(const std::string& stiffness, const std::string& spring = "spring", const std::string& more = "",
                       const std::string& rate = "1 kHz") {

@@ -5,6 +5,7 @@
 #include "dsp/core/random.hpp"
 #include "graph/node/port.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +14,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 /// A writer and a reader of 1 kHz; the value at activation k is k.
 class Pair {

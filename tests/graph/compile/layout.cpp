@@ -32,7 +32,7 @@ Places places_of(const std::string& text) {
     return places;
 }
 
-std::string wires(const std::string& list) { return "wires = [" + list + "]\n"; }
+std::string wires_text(const std::string& list) { return "wires = [" + list + "]\n"; }
 std::string audio_of(const std::string& name, const std::string& type) { return a_node(name, type, "48 kHz"); }
 
 }  // namespace
@@ -41,9 +41,10 @@ std::string audio_of(const std::string& name, const std::string& type) { return 
 //  │ wave ├──►│ a ├──►│ b ├──►│ c ├──►│ d │
 //  └──────┘   └───┘   └───┘   └───┘   └───┘
 TEST_CASE("a chain of signals of any length lives in two places") {
-    const Places p = places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in\", \"c.out -> d.in\"") +
-                               audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") +
-                               audio_of("c", "gain") + audio_of("d", "gain"));
+    const Places p =
+        places_of(wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in\", \"c.out -> d.in\"") +
+                  audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
+                  audio_of("d", "gain"));
     std::set<std::size_t> different;
     for (const auto& [port, offset] : p.at) different.insert(offset);
     CHECK(different.size() == 2);
@@ -61,7 +62,7 @@ TEST_CASE("a chain of signals of any length lives in two places") {
 //               └───┘
 TEST_CASE("a signal keeps its place until its last reader has run") {
     const Places p =
-        places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"w.out -> z.in\"") + audio_of("w", "wave") +
+        places_of(wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"w.out -> z.in\"") + audio_of("w", "wave") +
                   audio_of("a", "gain") + audio_of("b", "gain") + audio_of("z", "gain"));
     CHECK(p.at.at("w.out") != p.at.at("a.out"));
     CHECK(p.at.at("w.out") != p.at.at("b.out"));
@@ -74,10 +75,10 @@ TEST_CASE("a signal keeps its place until its last reader has run") {
 //  │ wave ├──►│ a ├──►│ b ├─┐ delay 1
 //  └──────┘   └───┘   └───┘ └─► c
 TEST_CASE("a signal that waits for a later tick keeps its place, and so does every other type") {
-    const Places p =
-        places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in as delay 1\", \"s.value -> r.in\"") +
-                  audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
-                  a_node("s", "source") + a_node("r", "relay"));
+    const Places p = places_of(
+        wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in as delay 1\", \"s.value -> r.in\"") +
+        audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
+        a_node("s", "source") + a_node("r", "relay"));
     for (const auto& [port, offset] : p.at)
         if (port != "b.out") CHECK(offset != p.at.at("b.out"));
     CHECK(p.at.at("s.value") != p.at.at("r.out"));

@@ -7,7 +7,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-std::string refusal(std::string_view text) {
+std::string rate_refusal(std::string_view text) {
     try {
         patch::parse_rate(text);
     } catch (const Error& error) {
@@ -30,10 +30,10 @@ TEST_CASE("the rates of haptics, sound and pictures are exact") {
 }
 
 TEST_CASE("a rate whose period is no whole number of flicks names exact ones beside it") {
-    CHECK_THAT(refusal("1001 Hz"), ContainsSubstring("1000 Hz and 1008 Hz"));
-    CHECK_THAT(refusal("999.9 Hz"), ContainsSubstring("1000 Hz"));
+    CHECK_THAT(rate_refusal("1001 Hz"), ContainsSubstring("1000 Hz and 1008 Hz"));
+    CHECK_THAT(rate_refusal("999.9 Hz"), ContainsSubstring("1000 Hz"));
     for (const char* text : {"1001 Hz", "61 Hz", "59.94 Hz", "44.099 kHz", "0.0011 Hz", "191.999 kHz"}) {
-        const std::string message = refusal(text);
+        const std::string message = rate_refusal(text);
         INFO(message);
         const std::size_t first = message.find("that are: ") + 10, second = message.find(" and ", first) + 5;
         CHECK_NOTHROW(patch::parse_rate(message.substr(first, second - 5 - first)));
@@ -43,5 +43,5 @@ TEST_CASE("a rate whose period is no whole number of flicks names exact ones bes
 
 TEST_CASE("what is no rate is refused") {
     for (const char* text : {"", "1000", "1 ms", "0 Hz", "-1 kHz", "1 GHz", "nan Hz", "inf Hz", "1e-300 Hz", "Hz"})
-        CHECK_FALSE(refusal(text).empty());
+        CHECK_FALSE(rate_refusal(text).empty());
 }

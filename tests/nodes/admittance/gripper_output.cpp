@@ -9,10 +9,8 @@ using control::Fault, control::ForceState;
 
 namespace {
 
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
 struct Gripper {
-    test::NodeHarness node{"gripper_output", servo};
+    test::NodeHarness node{"gripper_output", test::servo};
 
     Gripper() {
         node.disconnect_optional();

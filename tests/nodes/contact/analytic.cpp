@@ -6,14 +6,8 @@
 using namespace tactus;
 using test::NodeHarness;
 
-namespace {
-
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
-}  // namespace
-
 TEST_CASE("two balls that overlap by 1 mm at 0.8 N/mm push 0.8 N apart along the line of centres") {
-    NodeHarness node("sphere_contact", servo);
+    NodeHarness node("sphere_contact", test::servo);
     node.set("centre", "10 mm, 0 mm, 0 mm");
     const Vec3 direction = glm::normalize(Vec3(1.0, 2.0, -2.0));
     node.feed<Pose>("pose", [&](std::int64_t k) {
@@ -31,7 +25,7 @@ TEST_CASE("two balls that overlap by 1 mm at 0.8 N/mm push 0.8 N apart along the
 }
 
 TEST_CASE("a spring pulls along the offset, turns the shorter way, and damps the relative velocity") {
-    NodeHarness node("spring", servo);
+    NodeHarness node("spring", test::servo);
     node.set("stiffness", "0.5 N/mm").set("damping", "4 N s/m");
     node.set("angular_stiffness", "2 N m/rad").set("angular_damping", "0.1 N m s/rad");
     const Quat turned = rotation_by({0.0, 0.3, 0.0});

@@ -9,6 +9,7 @@
 // of the force where points touch. A damper D counts as D/T in K.
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
@@ -34,8 +35,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 const Quat upright(1.0, 0.0, 0.0, 0.0);
 
 struct Part {
@@ -136,7 +135,7 @@ Cycle cycle_of(const std::vector<Pose>& poses, const std::vector<Wrench>& felt, 
 }
 
 std::vector<Wrench> felt_by(const Case& c, const std::vector<Pose>& poses) {
-    NodeHarness node(c.type, servo);
+    NodeHarness node(c.type, test::servo);
     node.feed<Pose>(c.pose, [&](std::int64_t k) { return poses[static_cast<std::size_t>(k)]; });
     c.set_up(node);
     if (!c.wired) node.disconnect_optional();
@@ -147,7 +146,7 @@ std::vector<Wrench> felt_by(const Case& c, const std::vector<Pose>& poses) {
 
 /// direct_coupling feels what voxmap_contact computes.
 std::vector<Wrench> felt_directly(const Case& c, const std::vector<Pose>& poses) {
-    NodeHarness contact("voxmap_contact", servo), direct("direct_coupling", servo);
+    NodeHarness contact("voxmap_contact", test::servo), direct("direct_coupling", test::servo);
     contact.feed<Pose>("pose", [&](std::int64_t k) { return poses[static_cast<std::size_t>(k)]; });
     contact.feed("scene", table_and_box()).set("held", "1");
     contact.prepare();

@@ -2,6 +2,7 @@
 // Closed paths of a hand over a table whose top is z = 0: both ends are free of contact and equal.
 #pragma once
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
@@ -30,7 +31,6 @@ inline double eased(double s, double a, double b) {
 
 /// Closed paths of something whose lower end is at the pose, above a table whose top is z = 0; `depth` m.
 inline std::vector<Motion> motions(double depth, double turn, const Quat& rest) {
-    constexpr double mm = 1e-3;
     const double up = 4.0 * mm;
     const auto at = [rest](double x, double y, double z, const Vec3& w = Vec3(0.0)) {
         return Pose{{x, y, z}, rotation_by(w) * rest};

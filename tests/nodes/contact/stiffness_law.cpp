@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How stiff contact is may not depend on how densely a surface is sampled, unless a patch asks for a stiffness per point.
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "nodes/contact/body_parts.hpp"
 #include "tests/support/catch.hpp"
@@ -14,9 +15,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
 /// Stiffness in N/m of a box of 10 mm, with points `spacing` m apart, that is pressed 0.3 mm into a table.
 double stiffness_of(double spacing, const std::vector<std::pair<const char*, const char*>>& settings) {
     const contact::Box table{Vec3(40.0, 40.0, 10.0) * mm}, box{Vec3(10.0 * mm)};
@@ -28,7 +26,7 @@ double stiffness_of(double spacing, const std::vector<std::pair<const char*, con
     scene.count = 2;
     scene.objects[0] = {under.body(), {{0.0, 0.0, -5.0 * mm}, {1, 0, 0, 0}}};
     scene.objects[1] = {on.body(), {}};
-    NodeHarness node("voxmap_contact", servo);
+    NodeHarness node("voxmap_contact", test::servo);
     node.set("held", "1");
     for (const auto& [name, text] : settings) node.set(name, text);
     node.feed("scene", scene);

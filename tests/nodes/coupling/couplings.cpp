@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
@@ -14,11 +15,8 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
 /// Place 0: a table of 40 × 40 × 10 mm, top at z = 0. Place 1: a box of 10 mm that floats 1 mm above it.
-const coupling::Scene& table_and_box() {
+const coupling::Scene& coupled_scene() {
     const auto part = [](const contact::Box& box, double spacing, double voxel) {
         volume::Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(voxel), {}};
         for (int axis = 0; axis < 3; ++axis)
@@ -45,9 +43,9 @@ const coupling::Scene& table_and_box() {
 }  // namespace
 
 TEST_CASE("a held box set down on a table is felt with the coupling's stiffness, and the box stands on it") {
-    NodeHarness node("quasi_static_coupling", servo);
+    NodeHarness node("quasi_static_coupling", test::servo);
     node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
-    node.feed("scene", table_and_box());
+    node.feed("scene", coupled_scene());
     node.feed<Pose>("device", [](std::int64_t k) {
         return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
     });
@@ -66,14 +64,14 @@ TEST_CASE("a held box set down on a table is felt with the coupling's stiffness,
 }
 
 TEST_CASE("a body is taken and let go at any point without a jump in force") {
-    NodeHarness grasp("grasp", servo), coupling("quasi_static_coupling", servo);
+    NodeHarness grasp("grasp", test::servo), coupling("quasi_static_coupling", test::servo);
     // Taken at a corner, carried down on the table, pressed, and let go while pressed.
     const auto hand = [](std::int64_t k) {
         const double down = std::clamp(0.02 * mm * static_cast<double>(k - 300), 0.0, 4.0 * mm);
         return Pose{{4.0 * mm, 3.0 * mm, 12.0 * mm - down}, rotation_by({0.3, -0.2, 1.0})};
     };
     grasp.feed<Pose>("hand", hand);
-    grasp.feed("scene", table_and_box());
+    grasp.feed("scene", coupled_scene());
     grasp.feed<bool>("trigger", [](std::int64_t k) { return k >= 100 && k < 900; });
     grasp.prepare();
     grasp.run(1200);
@@ -85,11 +83,11 @@ TEST_CASE("a body is taken and let go at any point without a jump in force") {
     CHECK(held[101] == 1.0);
     CHECK(held[1100] == -1.0);
     const Pose there = hand(100) * grips[100];
-    CHECK(glm::length(there.position - table_and_box().objects[1].pose.position) < 1e-12);
+    CHECK(glm::length(there.position - coupled_scene().objects[1].pose.position) < 1e-12);
 
     const auto at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
     coupling.feed<Pose>("device", hand);
-    coupling.feed("scene", table_and_box());
+    coupling.feed("scene", coupled_scene());
     coupling.feed<Pose>("grip", [&](std::int64_t k) { return grips[at(k)]; });
     coupling.feed<bool>("holding", [&](std::int64_t k) { return bool(holding[at(k)]); });
     coupling.feed<double>("strength", [&](std::int64_t k) { return strength[at(k)]; });
@@ -118,8 +116,8 @@ TEST_CASE("a body is taken and let go at any point without a jump in force") {
 }
 
 TEST_CASE("a scene keeps a body where a hand has put it") {
-    NodeHarness node("scene", servo);
-    const coupling::Scene& sample = table_and_box();
+    NodeHarness node("scene", test::servo);
+    const coupling::Scene& sample = coupled_scene();
     node.feed("a", sample.objects[0].body);
     node.feed("b", sample.objects[1].body);
     node.disconnect("c").disconnect("d").disconnect("a_pose").disconnect("b_pose").disconnect("c_pose");
@@ -138,9 +136,9 @@ TEST_CASE("a scene keeps a body where a hand has put it") {
 }
 
 TEST_CASE("direct rendering scales all points together to what the hand can feel") {
-    NodeHarness contact("voxmap_contact", servo), direct("direct_coupling", servo);
+    NodeHarness contact("voxmap_contact", test::servo), direct("direct_coupling", test::servo);
     contact.set("held", "1");
-    contact.feed("scene", table_and_box());
+    contact.feed("scene", coupled_scene());
     contact.feed("pose", Pose{{0.0, 0.0, 4.5 * mm}, {1, 0, 0, 0}});
     contact.prepare();
     contact.run(1);
@@ -158,9 +156,9 @@ TEST_CASE("direct rendering scales all points together to what the hand can feel
 TEST_CASE("a proxy node stops at the table, on its field and on its triangles") {
     for (const char* type : {"point_proxy", "sphere_proxy"})
         for (const char* surface : {"field", "triangles"}) {
-            NodeHarness node(type, servo);
+            NodeHarness node(type, test::servo);
             node.set("surface", surface);
-            coupling::Scene only = table_and_box();
+            coupling::Scene only = coupled_scene();
             only.count = 1;
             node.feed("scene", only);
             node.feed<Pose>("device", [](std::int64_t k) {
@@ -176,9 +174,9 @@ TEST_CASE("a proxy node stops at the table, on its field and on its triangles") 
 }
 
 TEST_CASE("a body with mass comes to rest on the table under the hand's springs") {
-    NodeHarness node("dynamic_coupling", servo);
+    NodeHarness node("dynamic_coupling", test::servo);
     node.set("held", "1");
-    node.feed("scene", table_and_box());
+    node.feed("scene", coupled_scene());
     node.feed<Pose>("device", [](std::int64_t k) {
         return Pose{{0.0, 0.0, std::max(6.0 * mm - 0.02 * mm * static_cast<double>(k), 3.0 * mm)}, {1, 0, 0, 0}};
     });
@@ -189,9 +187,9 @@ TEST_CASE("a body with mass comes to rest on the table under the hand's springs"
 }
 
 TEST_CASE("a device that jumps gives no blow by the damper of a body with mass") {
-    NodeHarness node("dynamic_coupling", servo);
+    NodeHarness node("dynamic_coupling", test::servo);
     node.set("held", "1").set("stiffness", "0.1 N/mm");
-    node.feed("scene", table_and_box());
+    node.feed("scene", coupled_scene());
     node.feed<Pose>("device",
                     [](std::int64_t k) { return Pose{{0.0, 0.0, k < 50 ? 30.0 * mm : 60.0 * mm}, {1, 0, 0, 0}}; });
     node.disconnect_optional();
@@ -204,7 +202,7 @@ TEST_CASE("a device that jumps gives no blow by the damper of a body with mass")
 }
 
 TEST_CASE("a shaped wrench stays below its limits and keeps its direction") {
-    NodeHarness node("force_shaping", servo);
+    NodeHarness node("force_shaping", test::servo);
     node.feed("in", Wrench{{30.0, 40.0, 0.0}, {0.0, 0.0, 3.0}});
     node.prepare();
     node.run(1);
@@ -216,7 +214,7 @@ TEST_CASE("a shaped wrench stays below its limits and keeps its direction") {
 }
 
 TEST_CASE("a device of three degrees of freedom is given no torque and says so") {
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     DevicePort& port = node.host.device("", DeviceUse::drive, {});
     port.info.actuates_torque = false;
     node.feed<Wrench>("wrench",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/simulate/hand.hpp"
 #include "tests/support/catch.hpp"
@@ -16,9 +17,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// The bundled fracture, coarse: where both halves stand fitted, as bodies and as bones.
 struct Fracture {
@@ -60,7 +58,7 @@ double off(const Pose& pose) {
 }
 
 struct Session {
-    NodeHarness node{"snap_to_fit", servo};
+    NodeHarness node{"snap_to_fit", test::servo};
 
     template <class Hand>
     Session(const Hand& hand, std::int64_t ticks, std::int64_t engage, std::int64_t settle) {
@@ -120,7 +118,7 @@ TEST_CASE("the hand can always pull a fragment out of its fit") {
 TEST_CASE("a fragment that nothing draws stays in the hand, settle or not") {
     for (const bool has_target : {true, false}) {
         CAPTURE(has_target);
-        NodeHarness node("snap_to_fit", servo);
+        NodeHarness node("snap_to_fit", test::servo);
         node.asset("moving", fracture().right).asset("fixed", fracture().left);
         node.set("held", "1").set("target", has_target ? "0" : "1");
         node.feed("scene", fracture().scene).feed("grip", grip);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thin walls against fast and long things in the hand: nothing may end up behind a wall.
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "tests/support/catch.hpp"
@@ -14,9 +15,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 struct Part {
     contact::Pointshell shell;
@@ -70,7 +68,7 @@ constexpr const char* couplings[] = {"quasi_static_coupling", "dynamic_coupling"
 TEST_CASE("a cube that is held 80 mm from its partner stays above a wall of 1 mm when the hand turns by 5 degrees") {
     for (const char* type : couplings)
         for (const double ticks : {1.0, 5.0, 20.0, 100.0}) {
-            NodeHarness node(type, servo);
+            NodeHarness node(type, test::servo);
             node.set("held", "1").set("angular_stiffness", "20 N m/rad").set("max_torque", "5 N m");
             node.feed("scene", unit_and_wall());
             node.feed<Pose>("device", [ticks](std::int64_t k) {
@@ -93,7 +91,7 @@ TEST_CASE("a small tip that is pushed at up to 2 m/s stays above a wall of 1 mm"
             for (const char* points : {"0 N/mm", "10 N/mm", "100 N/mm"})
                 for (const double speed : {0.05, 0.3, 1.0, 2.0})
                     for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
-                        NodeHarness node(type, servo);
+                        NodeHarness node(type, test::servo);
                         node.set("held", "1").set("stiffness", stiffness).set("point_stiffness", points);
                         node.feed("scene", tip_and_wall());
                         node.feed<Pose>("device", [=](std::int64_t k) {
@@ -112,7 +110,7 @@ TEST_CASE("a small tip that is pushed at up to 2 m/s stays above a wall of 1 mm"
 
 TEST_CASE("a tip that was pushed against the middle of a wall slides on and comes off when the hand goes back") {
     for (const char* type : couplings) {
-        NodeHarness node(type, servo);
+        NodeHarness node(type, test::servo);
         node.set("held", "1").set("stiffness", "20 N/mm");
         node.feed("scene", tip_and_wall());
         node.feed<Pose>("device", [](std::int64_t k) {

@@ -14,8 +14,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
 DeviceSample sample_at(double x, std::int64_t counter) {
     DeviceSample sample;
     sample.pose.position.x = x;
@@ -34,7 +32,7 @@ double number_of(const Report& report, const std::string& section, const std::st
 
 TEST_CASE("device_input holds the last good pose, and lets go of the trigger, while samples are bad") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    NodeHarness node("device_input", servo);
+    NodeHarness node("device_input", test::servo);
     node.device_feed = [&](std::int64_t k, DevicePort& port) {
         port.sample = sample_at(0.001 * static_cast<double>(k), k);
         if (k == 5) port.sample.valid = false;
@@ -55,7 +53,7 @@ TEST_CASE("device_input holds the last good pose, and lets go of the trigger, wh
 }
 
 TEST_CASE("device_output bounds what reaches the hand and tells what it was asked for") {
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     node.set("max_force", "6 N");
     node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
     node.feed<Wrench>("wrench",
@@ -77,7 +75,7 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
 }
 
 TEST_CASE("device_output takes the device's own limit when that is lower") {
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     node.host.device("", DeviceUse::read, {}).info.max_force = 3.0;
     node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
     node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{8.0, 0.0, 0.0}, {}}; });
@@ -87,7 +85,7 @@ TEST_CASE("device_output takes the device's own limit when that is lower") {
 }
 
 TEST_CASE("device_output lets go, and says why, when the device stops delivering samples") {
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     node.device_feed = [](std::int64_t k, DevicePort& port) {
         port.sample = sample_at(0.0, std::min<std::int64_t>(k, 500));
     };
@@ -102,7 +100,7 @@ TEST_CASE("device_output lets go, and says why, when the device stops delivering
 TEST_CASE("forces return to a device that gives fewer samples than there are ticks, after its samples were bad") {
     for (const std::int64_t ticks : {1, 2, 5, 9}) {
         CAPTURE(ticks);
-        NodeHarness node("device_output", servo);
+        NodeHarness node("device_output", test::servo);
         node.device_feed = [&](std::int64_t k, DevicePort& port) {
             port.sample = sample_at(0.0, k / ticks);
             if (k >= 500 && k < 520) port.sample.valid = false;
@@ -117,7 +115,7 @@ TEST_CASE("forces return to a device that gives fewer samples than there are tic
         CHECK(node.last<Wrench>("applied").force.x == Approx(2.0));
     }
     // One whose samples do not come back stays without.
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     node.device_feed = [](std::int64_t k, DevicePort& port) {
         port.sample = sample_at(0.0, std::min<std::int64_t>(k, 500));
     };
@@ -130,7 +128,7 @@ TEST_CASE("forces return to a device that gives fewer samples than there are tic
 }
 
 TEST_CASE("device_output tells what the hand felt, and since when forces were off while the patch asked for some") {
-    NodeHarness node("device_output", servo);
+    NodeHarness node("device_output", test::servo);
     node.set("recover_after", "0 s");
     node.device_feed = [](std::int64_t k, DevicePort& port) {
         port.sample = sample_at(0.0, k);
@@ -152,7 +150,7 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
     const Pose handle{{0.03, 0.01, -0.02}, rotation_by({0.3, 0.7, -0.2})};
     const Vec3 velocity(0.2, -0.1, 0.05);
     const double dt = 1e-3 / 1024.0;
-    NodeHarness place("workspace", servo);
+    NodeHarness place("workspace", test::servo);
     place.disconnect("clutch").disconnect("turn");
     place.set("origin", "10 mm, -20 mm, 5 mm").set("rotation", "30 deg, 40 deg, -70 deg").set("scale", "2.5");
     place.set("grip", "0 mm, 30 mm, -80 mm").set("grip_rotation", "-90 deg, 10 deg, 0 deg");
@@ -164,7 +162,7 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
     const auto tools = place.values<Pose>("pose");
 
     const Wrench on_tool{{3.0, -5.0, 2.0}, {0.1, 0.2, -0.3}};
-    NodeHarness back("device_wrench", servo);
+    NodeHarness back("device_wrench", test::servo);
     back.set("scale", "2.5").feed("wrench", on_tool).feed("tool", tools[0]);
     back.feed("frame", place.values<Pose>("frame")[0]);
     back.prepare();
@@ -175,7 +173,7 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
 }
 
 TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth towards it") {
-    NodeHarness node("workspace", servo);
+    NodeHarness node("workspace", test::servo);
     node.disconnect("clutch").disconnect("turn");
     node.asset("bone", test::sample_asset("bone")).set("clearance", "4 mm");
     node.feed<Pose>("device", [](std::int64_t k) {
@@ -199,7 +197,7 @@ TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth 
 TEST_CASE("on the bundled mandible the blade goes across the body from the outside, clear of everything else",
           "[slow]") {
     const auto mandible = std::make_shared<const bone::Bone>(library::make_mandible());
-    NodeHarness node("workspace", servo);
+    NodeHarness node("workspace", test::servo);
     node.disconnect("clutch").disconnect("turn");
     node.asset("bone", mandible);
     node.prepare();
@@ -217,7 +215,7 @@ TEST_CASE("on the bundled mandible the blade goes across the body from the outsi
 TEST_CASE("a workspace says so when a bone has no place for a blade") {
     bone::Bone air = *std::static_pointer_cast<const bone::Bone>(test::sample_asset("bone"));
     for (float& d : air.distance.values) d = 1.0f;
-    NodeHarness node("workspace", servo);
+    NodeHarness node("workspace", test::servo);
     node.disconnect("clutch").disconnect("turn");
     node.asset("bone", std::make_shared<const bone::Bone>(air));
     CHECK_THROWS_WITH(node.prepare(), Catch::Matchers::ContainsSubstring("leave 'bone' out"));

@@ -14,12 +14,11 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 constexpr double asked = 4.0;  // N, from 300 ms on, for ever: the hand is deep inside of a body
 
 /// A device_output whose device is late at some ticks.
 struct LateOutput {
-    NodeHarness node{"device_output", servo};
+    NodeHarness node{"device_output", test::servo};
     std::set<std::int64_t> taken, late, invalid;
     std::int64_t held_from = -1, held_to = -1;  ///< a pause
 

@@ -2,6 +2,7 @@
 // Nodes that give events and nodes that take them.
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <cmath>
 #include <limits>
@@ -13,7 +14,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr Flicks ms = flicks_per_second / 1000;
 constexpr double nan_number = std::numeric_limits<double>::quiet_NaN();
 
 struct Given {

@@ -2,6 +2,7 @@
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -13,7 +14,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr Flicks ms = flicks_per_second / 1000;
 constexpr double right = std::numbers::pi / 2.0;
 
 const Pose somewhere{{0.1, -0.2, 0.3}, rotation_by(Vec3(0.3, -0.8, 0.5))};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guides keep their laws and their largest force, and give a hand on a simulated device no more energy than sampling
 // explains.
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/simulate/device_model.hpp"
@@ -24,8 +25,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3, pi = std::numbers::pi;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 struct Guide {
@@ -54,7 +53,7 @@ const std::vector<Guide>& guides() {
 /// The force of a guide on a hand at rest at `p`, or moving.
 Wrench felt(const char* type, const Settings& settings, const Pose& pose, const Twist& twist = {},
             const Pose& frame = {}) {
-    NodeHarness node(type, servo);
+    NodeHarness node(type, test::servo);
     for (const auto& [name, text] : settings) node.set(name, text);
     node.feed("pose", pose).feed("twist", twist).feed("frame", frame);
     node.prepare();
@@ -179,7 +178,7 @@ TEST_CASE("detents and a dial push to their notches by a sine") {
             felt("dial", {{"notches", "18"}, {"stiffness", "0.9 N m/rad"}}, {{}, rotation_by({0.0, 0.0, angle})});
         check_near(w.torque, {0.0, 0.0, -0.9 / 18.0 * std::sin(18.0 * angle)});
     }
-    NodeHarness node("dial", servo);
+    NodeHarness node("dial", test::servo);
     node.disconnect_optional().feed("pose", Pose{{}, rotation_by({0.0, 0.0, -0.6})});
     node.prepare();
     node.run(1);
@@ -205,7 +204,7 @@ TEST_CASE("no guide exceeds its largest force, however far or fast the hand is")
     const Random random{3};
     for (const Guide& guide : guides()) {
         const bool is_dial = guide.type == std::string("dial");
-        NodeHarness node(guide.type, servo);
+        NodeHarness node(guide.type, test::servo);
         for (const auto& [name, text] : guide.settings) node.set(name, text);
         node.set(is_dial ? "max_torque" : "max_force", is_dial ? "0.05 N m" : "1.5 N").disconnect("frame");
         node.set("stiffness", is_dial ? "20 N m/rad" : "20 N/mm");
@@ -258,7 +257,7 @@ TEST_CASE("guides keep to what sampling explains from 250 Hz to 2 kHz") {
 TEST_CASE("no guide turns its force at once while the hand moves slowly") {
     for (const Guide& guide : guides()) {
         if (guide.type == std::string("dial")) continue;
-        NodeHarness node(guide.type, servo);
+        NodeHarness node(guide.type, test::servo);
         for (const auto& [name, text] : guide.settings) node.set(name, text);
         node.disconnect("frame");
         // 0.1 m/s at most, through all of the shape.
@@ -283,7 +282,7 @@ TEST_CASE("no guide turns its force at once while the hand moves slowly") {
 }
 
 TEST_CASE("drag is against the velocity, within its largest force, and always takes") {
-    NodeHarness node("viscosity", servo);
+    NodeHarness node("viscosity", test::servo);
     node.set("damping", "5 N s/m").set("angular_damping", "0.01 N m s/rad").set("max_force", "1 N");
     node.feed<Twist>(
         "twist", [](std::int64_t k) { return Twist{{0.02 * static_cast<double>(k), 0.0, -0.01}, {0.0, 1.0, 0.0}}; });
@@ -309,7 +308,7 @@ TEST_CASE("a hand that nobody sees feels no guide") {
 
 TEST_CASE("a guide without a shape is refused") {
     const auto refusal = [](const char* type, const char* name, const char* text) -> std::string {
-        NodeHarness node(type, servo);
+        NodeHarness node(type, test::servo);
         try {
             node.set(name, text);
             node.prepare();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <limits>
 #include <string>
@@ -10,8 +11,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 /// "..#.": true where there is a '#'; beyond the end the last one.
 NodeHarness& feed(NodeHarness& node, const std::string& input, const std::string& pattern) {

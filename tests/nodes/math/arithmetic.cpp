@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +11,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr Flicks ms = flicks_per_second / 1000;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// What a node with the inputs a and b gives for two numbers.

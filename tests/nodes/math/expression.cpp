@@ -4,6 +4,7 @@
 #include "nodes/catalogue.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,6 @@ using Catch::Matchers::ContainsSubstring;
 using test::NodeHarness;
 
 namespace {
-
-constexpr Flicks ms = flicks_per_second / 1000;
 
 std::string refusal(const char* formula, const char* inputs = "x m", const char* unit = "m") {
     NodeHarness node("expression", {.period = ms});

@@ -9,7 +9,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
@@ -30,7 +29,7 @@ TEST_CASE("record writes every sample of a signal, in order, to a sound file nam
 }
 
 TEST_CASE("record writes one value per tick of anything else, to a table") {
-    test::HarnessOptions options = servo;
+    test::HarnessOptions options = test::servo;
     options.any = &value::wrench;
     NodeHarness node("record", options);
     node.feed<Wrench>("in", [](std::int64_t k) { return Wrench{{static_cast<double>(k), 0.0, 0.0}, {}}; });
@@ -59,7 +58,7 @@ TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted"
 }
 
 TEST_CASE("a probe tells least, greatest, mean and last of each column, and counts what is not finite") {
-    test::HarnessOptions options = servo;
+    test::HarnessOptions options = test::servo;
     NodeHarness number("probe", options);
     number.feed<double>(
         "in", [](std::int64_t k) { return k == 4 ? static_cast<double>(not_a_number) : static_cast<double>(k); });

@@ -4,6 +4,7 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "tests/support/catch.hpp"
@@ -20,9 +21,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// From one tick to the next, from `first` on.
 double largest_step(const std::vector<Wrench>& felt, std::size_t first) {
@@ -70,7 +68,7 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
         scene.content_hash = coupling::hash_of(scene);
         return scene;
     };
-    NodeHarness node("snap_to_fit", servo);
+    NodeHarness node("snap_to_fit", test::servo);
     node.asset("moving", std::make_shared<const bone::Bone>(bones[1]))
         .asset("fixed", std::make_shared<const bone::Bone>(bones[0]));
     node.set("held", "1").set("target", "0");
@@ -111,7 +109,7 @@ TEST_CASE("a target behind a thin plate pulls nothing through it, neither does a
     scene.objects[1] = {{&box.first, &box.second, nullptr, {}, 1, 2}, {{0.0, 0.0, 10.0 * mm}, {1, 0, 0, 0}}};
     scene.version = 1;
     scene.content_hash = coupling::hash_of(scene);
-    NodeHarness node("quasi_static_coupling", servo);
+    NodeHarness node("quasi_static_coupling", test::servo);
     node.set("held", "1");
     for (const char* open : {"grip", "holding", "strength", "has_target", "target_of"}) node.disconnect(open);
     node.feed("scene", scene);
@@ -145,7 +143,7 @@ TEST_CASE("a fragment that is taken deep inside of another and led comes out wit
     const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
     for (const double depth : {3.0 * mm, 5.0 * mm}) {
         CAPTURE(depth);
-        NodeHarness node("quasi_static_coupling", servo);
+        NodeHarness node("quasi_static_coupling", test::servo);
         node.set("held", "1");
         for (const char* open : {"holding", "strength", "has_target", "target_of"}) node.disconnect(open);
         node.feed("scene", scene).feed("grip", grip);

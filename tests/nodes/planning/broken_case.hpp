@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/library/fragments.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "graph/node/assets.hpp"
 #include "tests/support/node_harness.hpp"
@@ -13,9 +14,6 @@
 #include <memory>
 
 namespace tactus::test {
-
-constexpr double mm = 1e-3;
-constexpr HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// The bundled fracture, coarse, its left half locked; a third one, a copy of the left, lies far away.
 inline std::shared_ptr<const cases::CaseBones> broken() {

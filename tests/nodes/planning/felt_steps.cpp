@@ -3,6 +3,7 @@
 // or goes in a step, whatever the break.
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
@@ -20,9 +21,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// A break with teeth, coarse, and where a hand stops 5 mm and 10 degrees beside its place.
 struct Broken {
@@ -97,7 +95,7 @@ struct Times {
 
 /// `kind`: of the node. The hand pulls along x from tick `pull` on, at 100 mm/s.
 Felt felt_by(const char* kind, const Broken& broken, const Times& at, std::int64_t pull = 1'000'000) {
-    NodeHarness node(kind, servo);
+    NodeHarness node(kind, test::servo);
     const bool by_target = std::string_view(kind) == "quasi_static_coupling";
     node.set("held", "1");
     if (by_target) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The matcher and the scene of a case in which nothing is locked, or a fit has become void.
 #include "assets/library/fragments.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/notice.hpp"
@@ -16,10 +17,8 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3;
-
 /// The bundled fracture, coarse; `locked`: the left half is.
-std::shared_ptr<cases::CaseBones> broken(bool locked) {
+std::shared_ptr<cases::CaseBones> broken_or_locked(bool locked) {
     auto c = std::make_shared<cases::CaseBones>();
     c->bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
     for (const char* name : {"left", "right"}) c->plan.fragments.push_back({name, name, 0, Vec3(1.0)});
@@ -44,7 +43,7 @@ coupling::Scene shown(const std::shared_ptr<const cases::CaseBones>& plan) {
 
 TEST_CASE("a matcher that has nothing to fit to says so, with what to do") {
     for (const bool locked : {false, true}) {
-        const std::shared_ptr<const cases::CaseBones> plan = broken(locked);
+        const std::shared_ptr<const cases::CaseBones> plan = broken_or_locked(locked);
         NodeHarness node("case_scene", {.period = flicks_per_second / 1000});
         node.asset("plan", plan);
         node.disconnect_optional();
@@ -73,7 +72,7 @@ TEST_CASE("a matcher that has nothing to fit to says so, with what to do") {
 }
 
 TEST_CASE("a fragment whose partner has moved away no longer stands") {
-    const auto plan = broken(false);
+    const auto plan = broken_or_locked(false);
     cases::PlanStep fitted = cases::placing(plan->plan, 1, {}, "snap");
     fitted.fit = cases::PlanFit{"left", "fit", 0.8, 0.5, 1e-4, 0.0, 0.0, 1e-4};
     cases::add_step(plan->plan, fitted);

@@ -2,6 +2,7 @@
 // The margin of a tumour: it stops a hand that comes from a stump, lets others pass, and gives no energy.
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/simulate/device_model.hpp"
 #include "graph/node/assets.hpp"
@@ -23,7 +24,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3, pi = std::numbers::pi;
 const Quat upright{1.0, 0.0, 0.0, 0.0};
 
 bone::Bone ball(const Vec3& centre, double radius) {

@@ -2,6 +2,7 @@
 // A vessel under the hand: what is felt is what is reported, it gives no energy, and it rests while nobody holds it.
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/rope/rope_shape.hpp"
@@ -27,8 +28,7 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double mm = 1e-3, pi = std::numbers::pi;
-const Quat upright{1.0, 0.0, 0.0, 0.0};
+const Quat vessel_upright{1.0, 0.0, 0.0, 0.0};
 
 /// A rod along z.
 bone::Bone rod(double x, double low, double high) {
@@ -95,10 +95,10 @@ struct Shown {
 
 constexpr double site_z = 160.0;  // mm: 60 mm above the upper segment
 
-struct Rig {
+struct VesselRig {
     Shown shown;
     NodeHarness node;
-    explicit Rig(int rate = 1000, double held = 2.0) : node("vessel", {.period = flicks_per_second / rate}) {
+    explicit VesselRig(int rate = 1000, double held = 2.0) : node("vessel", {.period = flicks_per_second / rate}) {
         node.asset("plan", flap()).asset("course", course());
         node.disconnect_optional();
         node.set("pieces", "segment").set("pedicle", "60 mm").set("site_at", "0 mm, 0 mm, 160 mm");
@@ -116,7 +116,7 @@ struct Rig {
 
 TEST_CASE("what is felt over the gain is the tension that is reported, within 2 percent", "[slow]") {
     for (const char* gain : {"1", "3", "6"}) {
-        Rig rig;
+        VesselRig rig;
         rig.node.set("gain", gain).set("max_force", "30 N");
         rig.at({});
         rig.node.prepare();
@@ -124,7 +124,7 @@ TEST_CASE("what is felt over the gain is the tension that is reported, within 2 
         double worst = 0.0, greatest = 0.0;
         for (int n = 0; n <= 30; ++n) {
             // Aside and down, as a hand does: 1 mm in 50 ms.
-            rig.at({Vec3(0.4 * n, -0.3 * n, -n) * mm, upright});
+            rig.at({Vec3(0.4 * n, -0.3 * n, -n) * mm, vessel_upright});
             rig.node.run(50);
             const double felt = glm::length(rig.node.last<Wrench>("wrench").force) / std::stod(gain);
             const auto reported = rig.node.last<double>("tension");
@@ -143,9 +143,9 @@ TEST_CASE("what is felt over the gain is the tension that is reported, within 2 
 }
 
 TEST_CASE("the pull acts where the vessel leaves the bone, fades with the grip, and is limited") {
-    Rig rig;
+    VesselRig rig;
     rig.node.set("max_force", "0.9 N");
-    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
     rig.node.prepare();
     rig.node.run(1500);
     const auto felt = rig.node.last<Wrench>("wrench");
@@ -168,16 +168,16 @@ TEST_CASE("the pull acts where the vessel leaves the bone, fades with the grip, 
 }
 
 TEST_CASE("a vein gives its reach and no newtons") {
-    Rig rig;
+    VesselRig rig;
     rig.node.set("kind", "vein");
-    rig.at({Vec3(0.0, 0.0, -30.0 * mm), upright});
+    rig.at({Vec3(0.0, 0.0, -30.0 * mm), vessel_upright});
     rig.node.prepare();
     rig.node.run(1500);
     CHECK(rig.node.last<Wrench>("wrench").force == Vec3(0.0));
     CHECK(rig.node.last<double>("tension") == 0.0);
     CHECK(rig.node.last<double>("verdict") == 3.0);
     CHECK_FALSE(rig.node.last<bool>("reaches"));
-    rig.at({Vec3(0.0, 0.0, 10.0 * mm), upright});
+    rig.at({Vec3(0.0, 0.0, 10.0 * mm), vessel_upright});
     rig.node.run(1000);
     CHECK(rig.node.last<double>("verdict") == 0.0);
     CHECK(rig.node.last<double>("slack") == Approx((0.89 * 60.0 - 50.5) * mm).margin(1.0 * mm));
@@ -190,7 +190,7 @@ TEST_CASE("a vein gives its reach and no newtons") {
 
 TEST_CASE("a vessel of which the hand holds no piece is solved 200 times a second") {
     for (const double held : {-1.0, 2.0}) {
-        Rig rig(1000, held);
+        VesselRig rig(1000, held);
         rig.at({});
         rig.node.prepare();
         rig.node.run(1);
@@ -201,9 +201,9 @@ TEST_CASE("a vessel of which the hand holds no piece is solved 200 times a secon
 }
 
 TEST_CASE("a vessel that has not been solved yet tells the way to its site, not to the origin") {
-    Rig rig(1000, -1.0);
+    VesselRig rig(1000, -1.0);
     rig.node.set("idle_rate", "1 Hz").connect("sewn").connect("site");
-    rig.node.feed("sewn", false).feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), upright});
+    rig.node.feed("sewn", false).feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), vessel_upright});
     rig.at({});
     rig.node.prepare();
     rig.node.run(1);
@@ -214,19 +214,19 @@ TEST_CASE("a vessel that has not been solved yet tells the way to its site, not 
 
 TEST_CASE("poses that are none give no force that is none") {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    Rig rig;
-    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    VesselRig rig;
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
     rig.node.prepare();
     rig.node.run(1000);
     const double before = glm::length(rig.node.last<Wrench>("wrench").force);
-    const Pose none{Vec3(nan), upright};
+    const Pose none{Vec3(nan), vessel_upright};
     rig.node.feed("pose", none);
     rig.node.run(1);
     CHECK(glm::length(rig.node.last<Wrench>("wrench").force) == Approx(before).epsilon(0.01));
     rig.node.feed("hand", none);
     rig.node.run(1);
     CHECK(rig.node.last<Wrench>("wrench").force == Vec3(0.0));
-    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
     rig.node.run(100);
     CHECK(glm::length(rig.node.last<Wrench>("wrench").force) == Approx(before).epsilon(0.01));
     CHECK(rig.node.finite());
@@ -234,14 +234,14 @@ TEST_CASE("poses that are none give no force that is none") {
 
 TEST_CASE("a vessel whose site was never there is not sewn, and pulls at nothing") {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    Rig rig;
-    rig.node.feed("site", Pose{Vec3(nan), upright}).connect("site");
-    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    VesselRig rig;
+    rig.node.feed("site", Pose{Vec3(nan), vessel_upright}).connect("site");
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
     rig.node.prepare();
     rig.node.run(1500);
     CHECK(glm::length(rig.node.last<Wrench>("wrench").force) < 0.1);
     CHECK_FALSE(rig.node.last<bool>("reaches"));
-    rig.node.feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), upright});
+    rig.node.feed("site", Pose{Vec3(0.0, 0.0, site_z * mm), vessel_upright});
     rig.node.run(1500);
     CHECK(glm::length(rig.node.last<Wrench>("wrench").force) > 0.5);
 }
@@ -270,7 +270,7 @@ TEST_CASE("a vessel gives a hand on a simulated device no energy, at 250 to 2000
             for (const bool is_seen : {true, false})
                 for (const simulate::DeviceModel& model : devices) {
                     const double dt = 1.0 / rate;
-                    Rig rig(rate);
+                    VesselRig rig(rate);
                     rig.node.set("max_force", "30 N");
                     simulate::ModelledDevice device(model, {});
                     rig.at({});
@@ -295,12 +295,12 @@ TEST_CASE("a vessel gives a hand on a simulated device no energy, at 250 to 2000
                         acting = felt.force;
                         const double t = time + 0.5 * h;
                         time += h;
-                        return simulate::Intention{{intended(t), upright},
+                        return simulate::Intention{{intended(t), vessel_upright},
                                                    {(intended(t + 1e-5) - intended(t - 1e-5)) / 2e-5, Vec3(0.0)}};
                     };
                     coupling::Scene seen = rig.shown.moved({});
                     for (int tick = 0; tick < static_cast<int>((seconds + 2.0 * rest) * rate); ++tick) {
-                        const Pose here{device.pose().position, upright};
+                        const Pose here{device.pose().position, vessel_upright};
                         if (tick % std::max(1, rate / pieces) == 0) seen = rig.shown.moved(here);
                         rig.node.feed("scene", seen).feed("pose", here * home).feed("hand", here * home);
                         rig.node.run(1);
@@ -334,9 +334,9 @@ TEST_CASE("a vessel is sewn to a site of the plan by its name, and one of the ot
     step.fragments = {0, 1, 2};
     step.reconstruction = all;
     cases::add_step(with_sites->plan, step);
-    Rig rig;
+    VesselRig rig;
     rig.node.asset("plan", with_sites).set("plan_site", "facial artery").set("site_at", "0 mm, 0 mm, 500 mm");
-    rig.at({Vec3(0.0, 0.0, -20.0 * mm), upright});
+    rig.at({Vec3(0.0, 0.0, -20.0 * mm), vessel_upright});
     rig.node.prepare();
     rig.node.run(1500);
     const Vec3 root(0.0, 0.0, 79.5 * mm);
@@ -370,7 +370,7 @@ TEST_CASE("a piece between two others keeps the one that it is put beside: its t
     int jumps = 0;
     double before = -1.0;
     const auto at = [&](double x) {
-        node.feed("pose", Pose{Vec3(x, 0.0, 0.0), upright} * home);
+        node.feed("pose", Pose{Vec3(x, 0.0, 0.0), vessel_upright} * home);
         node.run(1);
         const auto partner = node.last<double>("partner");
         jumps += before >= 0.0 && partner != before;

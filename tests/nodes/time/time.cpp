@@ -2,6 +2,7 @@
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
+#include "tests/support/times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr Flicks ms = flicks_per_second / 1000;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 double time_of(std::int64_t k) { return 1e-3 * static_cast<double>(k); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/training/attempt_row.hpp"
 #include "graph/node/task_asset.hpp"
@@ -13,8 +14,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 /// A cut into the top of a bone at z = 0, towards -z, along x; a ball to spare 8 mm below.
 training::Task sample() {

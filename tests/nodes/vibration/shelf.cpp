@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Filters, dynamics, transients and sounds of the shelf against their formulas.
 #include "assets/sound/sound.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
@@ -18,7 +19,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double rate = 48000.0, pi = std::numbers::pi;
+constexpr double rate = 48000.0;
 
 /// Complex gain of what a node makes of an impulse, by the definition of Fourier's transform.
 Complex gain_of(const std::vector<float>& impulse, double frequency) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "nodes/catalogue.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
@@ -11,8 +12,6 @@ using namespace tactus;
 using test::NodeHarness;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 float tone(double frequency, std::int64_t k) {
     return static_cast<float>(std::sin(2.0 * pi * frequency * static_cast<double>(k) / 48000.0));

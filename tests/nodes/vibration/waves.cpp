@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
@@ -12,7 +13,7 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double wave_rate = 48000.0;
 
 std::vector<float> wave(const char* shape, const char* frequency, const char* width = "50 %",
                         std::int64_t count = 48000) {
@@ -28,7 +29,7 @@ double amplitude_at(const std::vector<float>& samples, double frequency) {
     std::complex<double> sum = 0.0;
     for (std::size_t k = 0; k < samples.size(); ++k)
         sum += static_cast<double>(samples[k]) *
-               std::polar(1.0, -2.0 * std::numbers::pi * frequency * static_cast<double>(k) / rate);
+               std::polar(1.0, -2.0 * std::numbers::pi * frequency * static_cast<double>(k) / wave_rate);
     return 2.0 * std::abs(sum) / static_cast<double>(samples.size());
 }
 
@@ -41,7 +42,7 @@ double power_of(const std::vector<float>& samples) {
 /// Power that is at no harmonic of `frequency`, relative to all, in dB.
 double aliases_dB(const std::vector<float>& samples, double frequency) {
     double harmonic = 0.0;
-    for (double f = frequency; f < rate / 2.0; f += frequency)
+    for (double f = frequency; f < wave_rate / 2.0; f += frequency)
         harmonic += 0.5 * std::pow(amplitude_at(samples, f), 2.0);
     return 10.0 * std::log10(std::max(power_of(samples) - harmonic, 1e-12) / power_of(samples));
 }
@@ -51,7 +52,6 @@ double aliases_dB(const std::vector<float>& samples, double frequency) {
 TEST_CASE("the harmonics of a sawtooth, a pulse and a triangle are those of Fourier") {
     const auto saw = wave("sawtooth", "100 Hz"), pulse = wave("pulse", "100 Hz", "25 %"),
                tri = wave("triangle", "100 Hz");
-    const double pi = std::numbers::pi;
     for (int n = 1; n <= 20; ++n) {
         INFO(n);
         CHECK(amplitude_at(saw, 100.0 * n) == Approx(2.0 / (pi * n)).epsilon(0.02));
@@ -109,7 +109,7 @@ TEST_CASE("the oscillator's sine is a sine, its phase a phasor") {
     const auto wave = node.values<float>("signal"), phase = node.values<float>("phase");
     double off = 0.0, phase_off = 0.0;
     for (std::size_t k = 0; k < wave.size(); ++k) {
-        const double cycles = 123.4 * static_cast<double>(k) / rate, part = cycles - std::floor(cycles);
+        const double cycles = 123.4 * static_cast<double>(k) / wave_rate, part = cycles - std::floor(cycles);
         off = std::max(off, std::abs(static_cast<double>(wave[k]) - 2.0 * std::sin(2.0 * std::numbers::pi * part)));
         const double gap = std::abs(static_cast<double>(phase[k]) - part);
         phase_off = std::max(phase_off, std::min(gap, 1.0 - gap));

@@ -2,6 +2,7 @@
 #include "tools/picture/scene/surface_map.hpp"
 
 #include "assets/cases/plan_file.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/gap.hpp"
 #include "tests/support/catch.hpp"
@@ -21,8 +22,6 @@ using namespace tactus::picture;
 using namespace tactus::test;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Two boxes with 1 mm between them, as a run shows them: each in a frame of its own.
 struct Boxes {

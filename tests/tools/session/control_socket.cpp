@@ -52,7 +52,7 @@ void leave_socket(const fs::path& path) {
     ::close(socket);
 }
 
-const std::string patch = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = 0.5\n";
+const std::string half_patch = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = 0.5\n";
 
 }  // namespace
 
@@ -67,7 +67,7 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
     CHECK_THROWS_WITH(session::ControlSocket(), Catch::Matchers::ContainsSubstring("it is a link"));
     CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Matchers::ContainsSubstring("it is a link"));
     // As a program that knows nothing of this folder meets it.
-    const std::string file = runtime.folder.write("p.toml", patch).string();
+    const std::string file = runtime.folder.write("p.toml", half_patch).string();
     CHECK(runtime.folder
               .tactus("run " + file + " --audio none --seconds 0.1 --out " + (runtime.folder.path / "out").string())
               .code == 0);
@@ -128,7 +128,7 @@ TEST_CASE("a new folder is for its user only, whatever its path's length") {
 TEST_CASE("a run that is stopped keeps its socket while another begins and ends", "[live]") {
     const Runtime runtime;
     const Folder& folder = runtime.folder;
-    const std::string file = folder.write("p.toml", patch).string();
+    const std::string file = folder.write("p.toml", half_patch).string();
     Run run(folder, file + " --audio none --out " + (folder.path / "first").string());
     REQUIRE(wait_for([&] { return fs::exists(runtime.sockets) && !fs::is_empty(runtime.sockets); }));
     const std::string socket = fs::directory_iterator(runtime.sockets)->path().filename();
@@ -145,7 +145,7 @@ TEST_CASE("a run that is stopped keeps its socket while another begins and ends"
 TEST_CASE("a run without a folder for its socket says so and runs", "[live]") {
     const Runtime runtime;
     runtime.make(0777);
-    const std::string file = runtime.folder.write("p.toml", patch).string();
+    const std::string file = runtime.folder.write("p.toml", half_patch).string();
     const auto ran = runtime.folder.tactus("run " + file + " --audio none --seconds 0.1 --out " +
                                            (runtime.folder.path / "out").string());
     CHECK(ran.code == 0);

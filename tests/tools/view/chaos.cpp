@@ -116,7 +116,7 @@ struct Round {
     int width, height;
 };
 
-void play(const Display& display, Person& person, const Round& round, unsigned seed, double seconds) {
+void play(const VirtualDisplay& display, Person& person, const Round& round, unsigned seed, double seconds) {
     const Folder folder;
     copy_library(folder.path);
     // What can be opened: a patch of the library, also where it was written over, a new one, and the patch of a take.

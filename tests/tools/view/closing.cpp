@@ -15,7 +15,7 @@ namespace {
 constexpr const char* run_voice = "run voice.toml --view --audio file --overwrite --out out --view-script script";
 
 /// What the window did with a script that edits the patch first.
-Outcome edit_and(const Display& display, const Folder& folder, const std::string& script,
+Outcome edit_and(const VirtualDisplay& display, const Folder& folder, const std::string& script,
                  const std::string& options = {}) {
     folder.write("script", "set tone.frequency \"220 Hz\"\n" + script);
     Outcome done = on(display, folder, run_voice + (" " + options));
@@ -25,7 +25,7 @@ Outcome edit_and(const Display& display, const Folder& folder, const std::string
 }
 
 /// Starts the window beside the test.
-pid_t start(const Display& display, const Folder& folder) {
+pid_t start(const VirtualDisplay& display, const Folder& folder) {
     const std::string line =
         fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state exec {2} {3} >out.txt 2>err.txt", folder.path.string(),
                     display.environment(), tactus::test::command(), run_voice);

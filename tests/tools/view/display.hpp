@@ -11,9 +11,9 @@
 
 namespace tactus::test {
 
-class Display {
+class VirtualDisplay {
 public:
-    explicit Display(int width = 1800, int height = 1200) {
+    explicit VirtualDisplay(int width = 1800, int height = 1200) {
         const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
         int ends[2];
         if (::pipe(ends) != 0) return;
@@ -31,13 +31,13 @@ public:
         while (::read(ends[0], &c, 1) == 1 && c != '\n') number_ += c;
         ::close(ends[0]);
     }
-    ~Display() {
+    ~VirtualDisplay() {
         if (process_ <= 0) return;
         ::kill(process_, SIGTERM);
         ::waitpid(process_, nullptr, 0);
     }
-    Display(const Display&) = delete;
-    Display& operator=(const Display&) = delete;
+    VirtualDisplay(const VirtualDisplay&) = delete;
+    VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
     /// False when Xvfb is not installed.
     bool is_there() const { return !number_.empty(); }

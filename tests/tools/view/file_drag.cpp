@@ -65,7 +65,7 @@ std::string escaped(const std::string& path) {
 
 class Source {
 public:
-    Source(const Display& where, const std::vector<std::filesystem::path>& files)
+    Source(const VirtualDisplay& where, const std::vector<std::filesystem::path>& files)
         : display_(find<void*(const char*)>("XOpenDisplay")((":" + where.number()).c_str())) {
         for (const auto& file : files) list_ += "file://" + escaped(file.string()) + "\r\n";
         root_ = find<Name(void*)>("XDefaultRootWindow")(display_);
@@ -169,7 +169,7 @@ private:
 
 }  // namespace
 
-std::string drop_files(const Display& display, const std::string& title,
+std::string drop_files(const VirtualDisplay& display, const std::string& title,
                        const std::vector<std::filesystem::path>& files, int x, int y) {
     return Source(display, files).drop(title, x, y);
 }

@@ -13,7 +13,7 @@ namespace tactus::test {
 
 /// Drops the files at a place of the screen, onto the window of that title below it. Empty when the window took them;
 /// else what it did not do.
-std::string drop_files(const Display& display, const std::string& title,
+std::string drop_files(const VirtualDisplay& display, const std::string& title,
                        const std::vector<std::filesystem::path>& files, int x, int y);
 
 }  // namespace tactus::test

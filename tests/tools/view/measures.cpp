@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/signal/measures.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ using namespace tactus::view;
 
 namespace {
 
-constexpr double pi = std::numbers::pi, rate = 8000.0;
+constexpr double rate = 8000.0;
 
 /// Columns: a sine of 100 Hz and amplitude 2, a cosine of it with amplitude 0.5.
 Trace tones(double seconds, double frequency = 100.0) {

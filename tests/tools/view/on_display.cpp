@@ -16,7 +16,7 @@
 
 namespace tactus::test {
 
-Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s) {
+Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int most_s) {
     // Edits that a script does not save are kept there, not with the user's.
     const std::string command =
         fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state timeout {2} {3} {4} >stdout 2>stderr", folder.path.string(),
@@ -25,7 +25,7 @@ Outcome on(const Display& display, const Folder& folder, const std::string& argu
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
 }
 
-std::pair<std::string, std::int64_t> hash_of(const Display& display, const Folder& folder,
+std::pair<std::string, std::int64_t> hash_of(const VirtualDisplay& display, const Folder& folder,
                                              const std::string& arguments) {
     const Outcome done = on(display, folder, arguments);
     INFO(done.err);

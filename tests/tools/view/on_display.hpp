@@ -20,10 +20,10 @@
 namespace tactus::test {
 
 /// Runs the command in the folder on that display, for at most so long.
-Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s = 100);
+Outcome on(const VirtualDisplay& display, const Folder& folder, const std::string& arguments, int most_s = 100);
 
 /// Hash of what a run put out, and how often it was late, from its --json.
-std::pair<std::string, std::int64_t> hash_of(const Display& display, const Folder& folder,
+std::pair<std::string, std::int64_t> hash_of(const VirtualDisplay& display, const Folder& folder,
                                              const std::string& arguments);
 
 struct Picture {
@@ -49,7 +49,7 @@ void check_picture(const std::filesystem::path& png, int width, int height);
 }  // namespace tactus::test
 
 #define NEEDS_DISPLAY(display)                                          \
-    const Display display;                                              \
+    const VirtualDisplay display;                                       \
     if (!display.is_there()) {                                          \
         tactus::test::skip("Xvfb is not installed (apt install xvfb)"); \
         return;                                                         \

@@ -15,7 +15,8 @@ std::string open_file(const std::string& name) {
     return "key ctrl+o\nframes 4\ntype \"" + name + "\"\nframes 2\npress \"accept file\"\nframes 6\n";
 }
 
-Outcome window(const Display& display, const Folder& folder, const std::string& arguments, const std::string& script) {
+Outcome window(const VirtualDisplay& display, const Folder& folder, const std::string& arguments,
+               const std::string& script) {
     folder.write("script", script);
     Outcome done = on(display, folder, arguments + " --view-script script");
     INFO(done.err);

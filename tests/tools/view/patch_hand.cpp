@@ -138,7 +138,7 @@ rate = "60 Hz"
 )";
 
 /// With the nodes where a test can point at them.
-const std::string commented = voice + R"([window.places]
+const std::string with_comment = voice + R"([window.places]
 level = [20, 40]
 [window.comments.why]
 text = "why"
@@ -184,7 +184,7 @@ TEST_CASE("a wire led onto a node asks for the parameter and is not removed") {
 }
 
 TEST_CASE("a comment is chosen by a click, takes what lies in it along, and goes by Del") {
-    Table table(commented);
+    Table table(with_comment);
     const auto& comment = table.bench.window().comments;
     // Around the node 'level'.
     const Box box = table.shown("level").box;
@@ -212,7 +212,7 @@ TEST_CASE("a comment is chosen by a click, takes what lies in it along, and goes
 }
 
 TEST_CASE("a frame drawn over empty ground chooses nodes and comments") {
-    Table table(commented);
+    Table table(with_comment);
     patch::PatchComment comment = table.bench.window().comments[0];
     const Box all = table.bench.picture().bounds, loud = table.shown("loud").box;
     comment.place = {loud.right + 30.0, loud.top};
@@ -227,7 +227,7 @@ TEST_CASE("a frame drawn over empty ground chooses nodes and comments") {
 }
 
 TEST_CASE("a new comment is the one that is written, whatever the others are called") {
-    Table table(commented);
+    Table table(with_comment);
     table.panel.add_comment();
     table.frame();
     table.frame();

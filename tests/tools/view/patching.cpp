@@ -20,7 +20,7 @@ using tactus::test::voice;
 
 namespace {
 
-RunChoice choice_of(const Folder& folder, const std::string& text) {
+RunChoice patching_choice(const Folder& folder, const std::string& text) {
     RunChoice choice;
     choice.patch = folder.write("outer.toml", text).string();
     choice.out = folder.path / "out";
@@ -72,7 +72,7 @@ rate = "48 kHz"
 
 TEST_CASE("a counter of events waits for the node that feeds it, and runs as soon as another one does") {
     const Folder folder;
-    Workbench bench(choice_of(folder, ""));
+    Workbench bench(patching_choice(folder, ""));
     REQUIRE(bench.add_node("event_delay", "1 kHz") == "event_delay");
     REQUIRE(bench.add_node("event_counter", "1 kHz") == "event_counter");
     // The delay has no events yet: with it, its only wire does not run.
@@ -100,7 +100,7 @@ count = "count.count"
 type = "event_counter"
 rate = "1 kHz"
 )");
-    Workbench bench(choice_of(folder, R"(wires = ["a.events -> part.events"]
+    Workbench bench(patching_choice(folder, R"(wires = ["a.events -> part.events"]
 [nodes]
 a = { type = "button_events", rate = "1 kHz" }
 b = { type = "button_events", rate = "1 kHz" }
@@ -116,7 +116,7 @@ part = { type = "patch:count.toml" }
 TEST_CASE("a sub-patch may stand without its wires like any node") {
     const Folder folder;
     folder.write("ear.toml", ear);
-    Workbench bench(choice_of(folder, hears));
+    Workbench bench(patching_choice(folder, hears));
     REQUIRE_FALSE(bench.is_broken());
     CHECK(bench.unfinished().empty());
     REQUIRE(bench.disconnect("part.sound"));
@@ -143,7 +143,7 @@ TEST_CASE("a sub-patch may stand without its wires like any node") {
 TEST_CASE("the parameters that a sub-patch offers can be set, also at the nodes within") {
     const Folder folder;
     folder.write("ear.toml", ear);
-    Workbench bench(choice_of(folder, hears));
+    Workbench bench(patching_choice(folder, hears));
     const auto part = [&] {
         const auto fields = parameters_of_part(bench.written(), bench.written().nodes[1]);
         REQUIRE(fields.size() == 1);
@@ -168,7 +168,7 @@ TEST_CASE("a patch file becomes a node of the patch, with a rate where its nodes
     const Folder folder;
     folder.write("ear.toml", ear);
     folder.write("notes.toml", "what is this\n");
-    Workbench bench(choice_of(folder, voice));
+    Workbench bench(patching_choice(folder, voice));
     REQUIRE(bench.add_part(folder.path / "ear.toml", "") == "ear");
     CHECK(has(bench, "type = \"patch:ear.toml\"\nrate = \"1 kHz\""));
     CHECK(bench.unfinished().names() == std::vector<std::string>{"ear"});
@@ -183,7 +183,7 @@ TEST_CASE("a patch file becomes a node of the patch, with a rate where its nodes
 
 TEST_CASE("a node moves to another rate or group as one edit, and a rate that is none is refused") {
     const Folder folder;
-    Workbench bench(choice_of(folder, voice));
+    Workbench bench(patching_choice(folder, voice));
     REQUIRE(bench.has_lane("level"));
     REQUIRE(bench.move_to_lane({"level"}, "1 kHz", {{"level", {50.0, 60.0}}}));
     CHECK(has(bench, "type = \"constant\"\nrate = \"1 kHz\""));
@@ -195,7 +195,7 @@ TEST_CASE("a node moves to another rate or group as one edit, and a rate that is
 
 TEST_CASE("a node of sound that is put in a slow lane goes to a lane of sound") {
     const Folder folder;
-    Workbench bench(choice_of(folder, voice));
+    Workbench bench(patching_choice(folder, voice));
     CHECK(bench.lane_for("sine", "60 Hz") == "48 kHz");
     CHECK(bench.lane_for("sine", "48 kHz") == "48 kHz");
     CHECK(bench.lane_for("constant", "60 Hz") == "60 Hz");
@@ -204,7 +204,7 @@ TEST_CASE("a node of sound that is put in a slow lane goes to a lane of sound") 
 
 TEST_CASE("a node that is added at the end of a wire is one edit with it") {
     const Folder folder;
-    Workbench bench(choice_of(folder, voice));
+    Workbench bench(patching_choice(folder, voice));
     REQUIRE(bench.add_node("gain", "48 kHz", patch::PatchPlace{10.0, 40.0}, "tone.signal", "in") == "gain");
     CHECK(bench.unfinished().empty());
     CHECK(has(bench, "tone.signal -> gain.in"));
@@ -219,7 +219,7 @@ TEST_CASE("a wire led to another source keeps how it is delivered and where it i
     const Folder folder;
     std::string text = voice;
     text.replace(text.find("loud.factor"), 11, "loud.factor as linear");
-    Workbench bench(choice_of(folder, text + "[nodes.other]\ntype = \"constant\"\nrate = \"60 Hz\"\n"));
+    Workbench bench(patching_choice(folder, text + "[nodes.other]\ntype = \"constant\"\nrate = \"60 Hz\"\n"));
     REQUIRE(bench.reconnect_source("level.value", "other.value", "loud.factor"));
     CHECK(has(bench, "other.value -> loud.factor as linear"));
     CHECK_FALSE(has(bench, "level.value -> "));
@@ -229,7 +229,7 @@ TEST_CASE("a wire led to another source keeps how it is delivered and where it i
 
 TEST_CASE("of several sources of events only the one that is led away changes") {
     const Folder folder;
-    Workbench bench(choice_of(folder, R"(wires = ["a.events -> count.in", "b.events -> count.in"]
+    Workbench bench(patching_choice(folder, R"(wires = ["a.events -> count.in", "b.events -> count.in"]
 [nodes]
 a = { type = "button_events", rate = "1 kHz" }
 b = { type = "button_events", rate = "1 kHz" }
@@ -244,14 +244,14 @@ count = { type = "event_counter", rate = "1 kHz" }
 
 TEST_CASE("a comment that is added tells its own name, whatever others are called") {
     const Folder folder;
-    Workbench bench(choice_of(folder, voice + "[window.comments.why]\ntext = \"because\"\n"));
+    Workbench bench(patching_choice(folder, voice + "[window.comments.why]\ntext = \"because\"\n"));
     CHECK(bench.add_comment({0.0, 0.0}, "new") == "note");
     for (int i = 2; i <= 11; ++i) CHECK(bench.add_comment({0.0, 0.0}, "new") == fmt::format("note_{}", i));
 }
 
 TEST_CASE("nodes and comments move and go together as one edit") {
     const Folder folder;
-    Workbench bench(choice_of(folder, voice));
+    Workbench bench(patching_choice(folder, voice));
     REQUIRE(bench.add_comment({5.0, 6.0}, "why") == "note");
     patch::PatchComment comment = bench.window().comments[0];
     comment.place = {50.0, 60.0};
@@ -271,12 +271,12 @@ TEST_CASE("of a large patch the possible wires are listed up to a bound, and tha
             "\"60 Hz\"\n",
             i);
     const Folder folder;
-    const Workbench bench(choice_of(folder, text));
+    const Workbench bench(patching_choice(folder, text));
     const WireChoices some = wire_choices(bench.picture(), 4000);
     CHECK(some.list.size() == 4000);
     CHECK(some.has_more);
     const Folder other;
-    const Workbench small(choice_of(other, voice));
+    const Workbench small(patching_choice(other, voice));
     const WireChoices all = wire_choices(small.picture(), 4000);
     CHECK_FALSE(all.has_more);
     CHECK(std::ranges::any_of(all.list, [](const WireChoice& choice) {

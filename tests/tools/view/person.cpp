@@ -41,7 +41,7 @@ struct Person::Libraries {
     }
 };
 
-Person::Person(const Display& display) : x_(std::make_unique<Libraries>()) {
+Person::Person(const VirtualDisplay& display) : x_(std::make_unique<Libraries>()) {
     if (!x_->x11 || !x_->xtst) return;
     const std::string name = ":" + display.number();
     x_->display = x_->find<void*(const char*)>(x_->x11, "XOpenDisplay")(name.c_str());

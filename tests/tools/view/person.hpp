@@ -13,7 +13,7 @@ namespace tactus::test {
 
 class Person {
 public:
-    explicit Person(const Display& display);
+    explicit Person(const VirtualDisplay& display);
     ~Person();
     Person(const Person&) = delete;
     Person& operator=(const Person&) = delete;

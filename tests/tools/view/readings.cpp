@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every number that a scope shows, of signals whose numbers are known.
 #include "tools/view/signal/readings.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/view/signal/level_meter.hpp"
@@ -17,7 +18,7 @@ using namespace tactus::view;
 
 namespace {
 
-constexpr double pi = std::numbers::pi, rate = 48000.0;
+constexpr double rate = 48000.0;
 const Display volts{1.0, "V", 1};
 
 template <class F>

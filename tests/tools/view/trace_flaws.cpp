@@ -30,7 +30,7 @@ Trace two_stretches(F&& value) {
     return trace;
 }
 
-double tone(double t) { return std::sin(2.0 * std::numbers::pi * 100.0 * t); }
+double flawed_tone(double t) { return std::sin(2.0 * std::numbers::pi * 100.0 * t); }
 
 }  // namespace
 
@@ -47,7 +47,7 @@ TEST_CASE("nothing is read between two recorded stretches") {
 }
 
 TEST_CASE("a curve has no line across a gap, whether it is drawn as points or as an envelope") {
-    const Trace trace = two_stretches(tone);
+    const Trace trace = two_stretches(flawed_tone);
     for (const int pixels : {10'000, 100}) {
         const Plot plot = time_plot(trace, newtons, 4.0, 4.0, pixels);
         CAPTURE(pixels);
@@ -65,7 +65,7 @@ TEST_CASE("a trigger finds no crossing within a gap") {
 
 TEST_CASE("the spectrum of a tone in two stretches has no noise of the jump between them") {
     // To join the stretches would be a step of 100.
-    const Trace trace = two_stretches([](double t) { return tone(t) + (t < 2.0 ? 0.0 : 100.0); });
+    const Trace trace = two_stretches([](double t) { return flawed_tone(t) + (t < 2.0 ? 0.0 : 100.0); });
     const signal::Spectrum spectrum = spectrum_of(trace, 0, rate, {0.0, 4.0});
     REQUIRE(spectrum.power.size() > 50);
     for (std::size_t k = 2; k < spectrum.power.size(); ++k)
@@ -74,7 +74,7 @@ TEST_CASE("the spectrum of a tone in two stretches has no noise of the jump betw
 
 TEST_CASE("one value that is not finite leaves the rest of a spectrum as it is") {
     for (const double odd : {no_number, infinite}) {
-        Trace trace = two_stretches(tone);
+        Trace trace = two_stretches(flawed_tone);
         trace.columns[0][100] = odd;
         const Plot plot = spectrum_plot(trace, 0, newtons, rate, 4.0, 4.0, {});
         REQUIRE(plot.curves[0].points.size() > 50);
@@ -108,7 +108,7 @@ TEST_CASE("a value that is not finite erases no extreme of its pixel, and the ax
 }
 
 TEST_CASE("pairs are not joined across a gap, and a value of long ago is not held for ever") {
-    const Trace y = two_stretches(tone);
+    const Trace y = two_stretches(flawed_tone);
     Trace x = y;
     const Pairs both = pairs_of(x, 0, y, 0, {0.0, 4.0}, 10'000);
     CHECK(both.points.size() == 2000);

@@ -63,7 +63,7 @@ public:
 
     WalkWindow window;
     Folder folder;
-    Display display;
+    VirtualDisplay display;
     Person person;
     Eyes eyes;
 

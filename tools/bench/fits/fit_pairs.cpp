@@ -5,6 +5,7 @@
 #include "assets/library/fibula.hpp"
 #include "assets/library/mandible.hpp"
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/fit_steps.hpp"
@@ -22,8 +23,6 @@
 namespace tactus::bench {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 struct Piece {
     std::vector<contact::SurfacePoint> points;

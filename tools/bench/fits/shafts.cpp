@@ -3,6 +3,7 @@
 #include "assets/cases/case_bones.hpp"
 #include "assets/file/json.hpp"
 #include "assets/library/fibula.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tools/bench/bench.hpp"
@@ -24,7 +25,6 @@ namespace {
 
 using file::Json;
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double far_from_face = 0.15;  // m
 constexpr double goal_angle = 0.25, goal_error = 0.5e-3;  // degrees, m
 

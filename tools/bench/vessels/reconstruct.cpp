@@ -4,6 +4,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/reconstruct/fibula_inputs.hpp"
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
@@ -30,8 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace reconstruct;
-
-constexpr double mm = 1e-3;
 
 double thread_seconds() {
     timespec now{};

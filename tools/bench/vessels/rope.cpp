@@ -3,6 +3,7 @@
 #include "dsp/rope/rope.hpp"
 
 #include "assets/file/json.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/rope/banded.hpp"
 #include "dsp/rope/measure.hpp"
@@ -23,7 +24,7 @@ namespace {
 using rope::Rope;
 using rope::RopeMaterial;
 
-constexpr double mm = 1e-3, tick = 1e-3;
+constexpr double tick = 1e-3;
 constexpr std::uint64_t pulls_per_rope = 50, ticks_per_pull = 20;
 
 struct RopeBenchChoice {

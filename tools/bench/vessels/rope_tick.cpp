@@ -2,6 +2,7 @@
 #include "tools/bench/vessels/rope_tick.hpp"
 
 #include "assets/library/flap_plan.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "dsp/rope/attached_vessel.hpp"
@@ -19,7 +20,6 @@ namespace tactus::bench {
 
 namespace {
 
-constexpr double mm = 1e-3;
 const Quat upright{1.0, 0.0, 0.0, 0.0};
 
 double thread_microseconds() {

@@ -2,6 +2,7 @@
 // tactus plan plate, implant, vessel, site, margin, limits: each changes the reconstruction of a plan by one step; vessel
 // also a plan without one.
 #include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tools/command/planning/plan_options.hpp"
@@ -23,8 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using reconstruct::Flap;
 using reconstruct::Reconstruction;
-
-constexpr double mm = 1e-3;
 
 struct FlapChoice : PlanChoice {
     std::string name, kind, of_scan;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/flap/flap_drawing.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "tools/picture/flap/flap_scene.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ using display::Figure;
 using display::FigurePoint;
 
 constexpr Colour ink{34, 38, 46}, soft{130, 138, 150}, bone{236, 228, 208}, kept{250, 206, 140};
-constexpr double infinity = std::numeric_limits<double>::infinity(), to_mm = 1e3;
+constexpr double to_mm = 1e3;
 
 Colour of(const Vec3& c) {
     return {static_cast<std::uint8_t>(255 * c.x), static_cast<std::uint8_t>(255 * c.y),
@@ -155,7 +156,8 @@ Figure donor_drawing(const reconstruct::FibulaInputs& inputs, const reconstruct:
         for (const reconstruct::FlapVessel& vessel : flap.vessels) {
             std::vector<FigurePoint> line;
             for (const Vec3& p : vessel.points) line.push_back(place.point(view.at(p), view.aside(p)));
-            figure.line(line, of(vessel.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour), 1.4);
+            figure.line(
+                line, of(vessel.kind == reconstruct::VesselKind::artery ? flap_artery_colour : flap_vein_colour), 1.4);
         }
         std::vector<std::pair<double, std::string>> dimensions;
         for (std::size_t n = 0; n < plan.segments.size(); ++n) {

@@ -2,6 +2,7 @@
 #include "tools/picture/flap/flap_report.hpp"
 
 #include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/reconstruct/pedicle.hpp"
 #include "tools/picture/flap/flap_drawing.hpp"
 #include "tools/picture/flap/flap_scene.hpp"
@@ -23,13 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 using reconstruct::FibulaSegment;
 
-constexpr double to_mm = 1e3, to_deg = 180.0 / std::numbers::pi;
+constexpr double to_deg = 180.0 / std::numbers::pi;
 constexpr Vec3 from_front(0.25, 1.0, -0.35), from_left(-1.0, 0.25, -0.3), from_below(0.1, 0.3, 1.0);
 
-std::string mm(double metres) { return fmt::format("{:.1f}", metres * to_mm); }
+std::string in_mm(double metres) { return fmt::format("{:.1f}", metres / mm); }
 std::string degrees(double radians) { return fmt::format("{:.1f}", radians * to_deg + 0.0); }
 std::string mm2(const std::optional<double>& area) { return area ? fmt::format("{:.0f}", *area * 1e6) : "–"; }
-std::string mm(const std::optional<double>& metres) { return metres ? mm(*metres) : "–"; }
+std::string in_mm(const std::optional<double>& metres) { return metres ? in_mm(*metres) : "–"; }
 
 /// One alternative of the plan with what was measured of it.
 struct Measured {
@@ -86,8 +87,8 @@ ReportTable osteotomies(const Measured& m) {
         for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
             const FibulaSegment& s = segments[n];
             table.rows.push_back({fmt::format("segment {}, at plane {} of the jaw", n + 1, n + end + 1),
-                                  mm(s.along_line[end] - ankle), mm(s.along_line[end]), degrees(s.lean_medial[end]),
-                                  degrees(s.lean_anterior[end]), mm2(s.area[end])});
+                                  in_mm(s.along_line[end] - ankle), in_mm(s.along_line[end]),
+                                  degrees(s.lean_medial[end]), degrees(s.lean_anterior[end]), mm2(s.area[end])});
         }
     return table;
 }
@@ -99,11 +100,11 @@ ReportTable segments(const Measured& m) {
     const reconstruct::FibulaPlan& plan = m.study->fibula();
     for (std::size_t n = 0; n < plan.segments.size(); ++n) {
         const FibulaSegment& s = plan.segments[n];
-        std::vector<std::string> row{fmt::format("{}", n + 1), mm(s.length_centre), mm(s.length_shortest),
-                                     mm(s.length_longest), degrees(s.end_angle)};
+        std::vector<std::string> row{fmt::format("{}", n + 1), in_mm(s.length_centre), in_mm(s.length_shortest),
+                                     in_mm(s.length_longest), degrees(s.end_angle)};
         if (n < plan.wedges.size()) {
             row.push_back(degrees(plan.wedges[n]));
-            row.push_back(mm(plan.clearances[n]));
+            row.push_back(in_mm(plan.clearances[n]));
             row.push_back(mm2(plan.contact[n]));
         }
         row.resize(8);
@@ -117,11 +118,12 @@ ReportTable reaches(const Measured& m) {
                        "tension, N", "bend, mm", "twist, °", "on bone, mm", "to plate, mm", "to screw, mm"},
                       {}};
     for (const reconstruct::SiteReach& r : m.measures.reaches)
-        table.rows.push_back(
-            {r.vessel, r.site, reconstruct::name_of(r.reach), mm(r.in_situ), mm(r.free), mm(r.path), mm(r.slack),
-             fmt::format("{:.0f}", 100.0 * r.strain), r.tension ? fmt::format("{:.2f}", *r.tension) : "–",
-             std::isfinite(r.bend_radius) ? mm(r.bend_radius) : "straight",
-             r.twist ? fmt::format("{:.0f}", *r.twist * to_deg) : "–", mm(r.contact), mm(r.to_plate), mm(r.to_screw)});
+        table.rows.push_back({r.vessel, r.site, reconstruct::name_of(r.reach), in_mm(r.in_situ), in_mm(r.free),
+                              in_mm(r.path), in_mm(r.slack), fmt::format("{:.0f}", 100.0 * r.strain),
+                              r.tension ? fmt::format("{:.2f}", *r.tension) : "–",
+                              std::isfinite(r.bend_radius) ? in_mm(r.bend_radius) : "straight",
+                              r.twist ? fmt::format("{:.0f}", *r.twist * to_deg) : "–", in_mm(r.contact),
+                              in_mm(r.to_plate), in_mm(r.to_screw)});
     return table;
 }
 
@@ -132,7 +134,7 @@ ReportTable clearances(const Measured& m) {
             table.rows.push_back({c.object, "–", "–", "–", "–", "–", "–"});
         const std::size_t column = 1 + 2 * static_cast<std::size_t>(c.nearness);
         table.rows.back()[column] = c.other;
-        table.rows.back()[column + 1] = mm(c.distance);
+        table.rows.back()[column + 1] = in_mm(c.distance);
     }
     return table;
 }
@@ -146,34 +148,35 @@ ReportTable thresholds(const Measured& m) {
     const auto add = [&](const char* what, std::string value, const char* parameter, const char* source) {
         table.rows.push_back({what, std::move(value), parameter, source});
     };
-    add("bone between osteotomies", mm(in.between) + " mm", "between_space_mm", "BoneReconstructionPlanner");
-    add("bone left at the ankle", mm(in.distal_margin) + " mm", "distal_margin_mm", "BoneReconstructionPlanner");
-    add("bone left at the knee", mm(in.proximal_margin) + " mm", "proximal_margin_mm", placeholder);
-    add("kerf of the saw", mm(in.kerf) + " mm", "kerf_mm", placeholder);
-    add("short segment, very short segment", mm(in.short_segment) + " mm, " + mm(in.very_short_segment) + " mm", "–",
-        "a periosteal branch in 94 % and 83 % (Laugharne 2015)");
-    add("margin of the tumour", mm(flap.margin) + " mm", "plan margin --margin", placeholder);
-    add("clearance of plates, screws, implants", mm(flap.limits.clearance) + " mm", "plan limits --clearance",
+    add("bone between osteotomies", in_mm(in.between) + " mm", "between_space_mm", "BoneReconstructionPlanner");
+    add("bone left at the ankle", in_mm(in.distal_margin) + " mm", "distal_margin_mm", "BoneReconstructionPlanner");
+    add("bone left at the knee", in_mm(in.proximal_margin) + " mm", "proximal_margin_mm", placeholder);
+    add("kerf of the saw", in_mm(in.kerf) + " mm", "kerf_mm", placeholder);
+    add("short segment, very short segment", in_mm(in.short_segment) + " mm, " + in_mm(in.very_short_segment) + " mm",
+        "–", "a periosteal branch in 94 % and 83 % (Laugharne 2015)");
+    add("margin of the tumour", in_mm(flap.margin) + " mm", "plan margin --margin", placeholder);
+    add("clearance of plates, screws, implants", in_mm(flap.limits.clearance) + " mm", "plan limits --clearance",
         "BoneReconstructionPlanner");
-    add("perforator to osteotomy", mm(flap.limits.perforator_to_cut) + " mm", "plan limits --perforator", placeholder);
+    add("perforator to osteotomy", in_mm(flap.limits.perforator_to_cut) + " mm", "plan limits --perforator",
+        placeholder);
     add("a vessel no longer reaches over its length in the leg",
         fmt::format("{:.0f} %", 100.0 * flap.limits.over_in_situ), "plan limits --over", placeholder);
     add("kink, radii of the vessel", fmt::format("{:.1f}", flap.limits.kink), "plan limits --kink",
         "remembered, no source seen");
     add("twist", degrees(flap.limits.twist) + "°", "plan limits --twist", "flaps of rats (Güven 2012)");
     for (const reconstruct::Plate& plate : flap.plates) {
-        add("plate, width and thickness", mm(plate.width) + " mm, " + mm(plate.thickness) + " mm", "plates",
+        add("plate, width and thickness", in_mm(plate.width) + " mm, " + in_mm(plate.thickness) + " mm", "plates",
             "BoneReconstructionPlanner");
         if (!plate.screws.empty())
             add("its screws, length and diameter",
-                mm(plate.screws[0].length) + " mm, " + mm(plate.screws[0].diameter) + " mm",
+                in_mm(plate.screws[0].length) + " mm, " + in_mm(plate.screws[0].diameter) + " mm",
                 "plan plate --screw-length", placeholder);
     }
     for (const reconstruct::DentalImplant& implant : flap.implants)
-        add("implant, diameter and length", mm(implant.diameter) + " mm, " + mm(implant.length) + " mm",
+        add("implant, diameter and length", in_mm(implant.diameter) + " mm, " + in_mm(implant.length) + " mm",
             "plan implant --diameter, --length", "BoneReconstructionPlanner");
     if (flap.paddle)
-        add("skin paddle, length and width", mm(flap.paddle->length) + " mm, " + mm(flap.paddle->width) + " mm",
+        add("skin paddle, length and width", in_mm(flap.paddle->length) + " mm, " + in_mm(flap.paddle->width) + " mm",
             "paddle", placeholder);
     return table;
 }
@@ -205,7 +208,7 @@ ReportTable operation(const Measured& m) {
     std::ranges::sort(cuts);
     const double ankle = ankle_end(in);
     for (const auto& [at, name] : cuts)
-        add(fmt::format("Fibula: cut for {}, {} mm from the ankle.", name, mm(at - ankle)));
+        add(fmt::format("Fibula: cut for {}, {} mm from the ankle.", name, in_mm(at - ankle)));
     for (std::size_t n = 0; n < plan.segments.size(); ++n)
         add(fmt::format("Place segment {} between planes {} and {}.", n + 1, n + 1, n + 2));
     for (const reconstruct::Plate& plate : m.study->flap().plates)
@@ -223,7 +226,8 @@ std::string best_words(const Measured& m, reconstruct::VesselKind kind) {
     for (const reconstruct::SiteReach& r : m.measures.reaches)
         if (r.kind == kind && (!best || r.strain < best->strain || (r.strain == best->strain && r.slack > best->slack)))
             best = &r;
-    return best ? fmt::format("{}, {} mm to '{}'", reconstruct::name_of(best->reach), mm(best->path), best->site) : "–";
+    return best ? fmt::format("{}, {} mm to '{}'", reconstruct::name_of(best->reach), in_mm(best->path), best->site)
+                : "–";
 }
 
 ReportTable side_by_side(const std::vector<Measured>& all) {
@@ -240,14 +244,14 @@ ReportTable side_by_side(const std::vector<Measured>& all) {
     row("segments, mm", [](const Measured& m) {
         std::string lengths;
         for (const FibulaSegment& s : m.study->fibula().segments)
-            lengths += (lengths.empty() ? "" : " / ") + mm(s.length_centre);
+            lengths += (lengths.empty() ? "" : " / ") + in_mm(s.length_centre);
         return lengths;
     });
     row("bone lost to the kerf, mm³", [](const Measured& m) {
         return m.study->fibula().kerf_loss ? fmt::format("{:.0f}", *m.study->fibula().kerf_loss * 1e9) : "–";
     });
     row("left at the ankle / knee, mm", [](const Measured& m) {
-        return mm(m.study->fibula().left_distal) + " / " + mm(m.study->fibula().left_proximal);
+        return in_mm(m.study->fibula().left_distal) + " / " + in_mm(m.study->fibula().left_proximal);
     });
     row("artery", [](const Measured& m) { return best_words(m, reconstruct::VesselKind::artery); });
     row("vein", [](const Measured& m) { return best_words(m, reconstruct::VesselKind::vein); });
@@ -334,7 +338,7 @@ std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path
     }
     if (m.measures.tumour_margin)
         out.emplace_back(Paragraph{fmt::format("Tumour: {} mm to the nearest cut of the jaw; wanted: {} mm.",
-                                               mm(*m.measures.tumour_margin), mm(m.study->flap().margin))});
+                                               in_mm(*m.measures.tumour_margin), in_mm(m.study->flap().margin))});
     if (all.size() > 1) {
         out.emplace_back(Heading{"Alternatives side by side"});
         out.emplace_back(side_by_side(all));

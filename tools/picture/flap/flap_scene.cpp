@@ -110,7 +110,7 @@ void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<Picture
     for (const reconstruct::DentalImplant& implant : flap.implants)
         labels.push_back({implant.name, implant.head, implant_colour});
     for (const reconstruct::RecipientSite& site : flap.sites) {
-        const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+        const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? flap_artery_colour : flap_vein_colour;
         meshes.push_back(ball_mesh(site.at, site_radius, colour));
         labels.push_back({site.name, site.at, colour});
     }
@@ -119,7 +119,7 @@ void add_hardware(std::vector<display::PictureMesh>& meshes, std::vector<Picture
 std::vector<Hardware> sites_of(const reconstruct::Flap& flap) {
     std::vector<Hardware> all;
     for (const reconstruct::RecipientSite& site : flap.sites) {
-        const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+        const Vec3 colour = site.kind == reconstruct::VesselKind::artery ? flap_artery_colour : flap_vein_colour;
         all.push_back({"site " + site.name, colour, {ball_mesh(site.at, site_radius, colour)}});
     }
     return all;
@@ -128,7 +128,7 @@ std::vector<Hardware> sites_of(const reconstruct::Flap& flap) {
 void add_vessels(std::vector<display::PictureMesh>& meshes, std::vector<PictureLabel>& labels,
                  std::span<const reconstruct::PlacedVessel> vessels) {
     for (const reconstruct::PlacedVessel& vessel : vessels) {
-        const Vec3 colour = vessel.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+        const Vec3 colour = vessel.kind == reconstruct::VesselKind::artery ? flap_artery_colour : flap_vein_colour;
         for (const std::vector<Vec3>& line : vessel.lines)
             if (line.size() > 1) meshes.push_back(tube_mesh(line, vessel.radius, colour));
         if (!vessel.lines.empty() && !vessel.lines[0].empty())

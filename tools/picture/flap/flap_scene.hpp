@@ -13,9 +13,9 @@
 
 namespace tactus::picture {
 
-inline constexpr Vec3 artery_colour{0.78, 0.10, 0.12}, vein_colour{0.18, 0.28, 0.72}, plate_colour{0.62, 0.66, 0.70},
-    screw_colour{0.30, 0.32, 0.36}, implant_colour{0.85, 0.65, 0.20}, resected_colour{0.80, 0.30, 0.28},
-    site_colour{0.15, 0.55, 0.25};
+inline constexpr Vec3 flap_artery_colour{0.78, 0.10, 0.12}, flap_vein_colour{0.18, 0.28, 0.72},
+    plate_colour{0.62, 0.66, 0.70}, screw_colour{0.30, 0.32, 0.36}, implant_colour{0.85, 0.65, 0.20},
+    resected_colour{0.80, 0.30, 0.28}, site_colour{0.15, 0.55, 0.25};
 
 /// With smooth normals; `colours`: one for all vertices, or one each.
 display::PictureMesh picture_mesh(const geometry::TriangleSurface& surface, const Pose& pose,

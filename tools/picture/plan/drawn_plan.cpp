@@ -15,7 +15,7 @@ Vec3 DrawnPlan::middle(std::size_t n) const {
 }
 
 const Vec3& colour_of(const reconstruct::FlapVessel& vessel) {
-    return vessel.kind == reconstruct::VesselKind::artery ? artery_colour : vein_colour;
+    return vessel.kind == reconstruct::VesselKind::artery ? flap_artery_colour : flap_vein_colour;
 }
 
 display::PictureMesh placed(const mesh::Mesh& mesh, const Pose& pose, const Vec3& colour) {

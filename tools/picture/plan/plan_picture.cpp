@@ -2,6 +2,7 @@
 #include "tools/picture/plan/plan_picture.hpp"
 
 #include "devices/display/png.hpp"
+#include "dsp/core/constants.hpp"
 #include "tools/picture/report/html_report.hpp"
 
 #include <fmt/format.h>
@@ -63,12 +64,16 @@ void add_sides(Texts& texts, const Camera& camera) {
 void add_scale(LabelledPicture& picture, const Camera& camera) {
     const double most = 0.2 * width / camera.pixels_per_metre() * 1e3;
     const double ten = std::pow(10.0, std::floor(std::log10(most)));
-    const double mm = ten * (most >= 5.0 * ten ? 5.0 : most >= 2.0 * ten ? 2.0 : 1.0);
-    picture.bar_length = mm * 1e-3 * camera.pixels_per_metre();
+    const double length = ten * (most >= 5.0 * ten ? 5.0 : most >= 2.0 * ten ? 2.0 : 1.0);
+    picture.bar_length = length * mm * camera.pixels_per_metre();
     picture.bar_x = width - 14.0 - picture.bar_length;
     picture.bar_y = height - 14.0;
-    picture.texts.push_back(
-        {picture.bar_x + 0.5 * picture.bar_length, picture.bar_y - 12.0, 'm', 13.0, fmt::format("{:g} mm", mm), {}});
+    picture.texts.push_back({picture.bar_x + 0.5 * picture.bar_length,
+                             picture.bar_y - 12.0,
+                             'm',
+                             13.0,
+                             fmt::format("{:g} mm", length),
+                             {}});
 }
 
 /// Pixels of a name with its mark, about.

@@ -5,6 +5,7 @@
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
+#include "tools/picture/scene/node_of.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/section_grey.hpp"
 
@@ -20,8 +21,6 @@ namespace tactus::picture {
 using namespace scene_colours;
 
 namespace {
-
-std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
 geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
     return {layout.origin, layout.spacing, volume::brick_cells};

@@ -3,6 +3,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/picture/scene/node_of.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/study/leaving.hpp"
@@ -21,8 +22,6 @@ using namespace scene_colours;
 namespace {
 
 constexpr std::uint64_t most_in_legend = 6;
-
-std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
 }  // namespace
 

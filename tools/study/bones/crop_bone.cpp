@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/crop_bone.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +15,6 @@
 namespace tactus::study {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 volume::Grid part_of_grid(const volume::Grid& grid, const std::array<int, 3>& low, const std::array<int, 3>& high) {
     volume::Grid part{{}, grid.position(low[0], low[1], low[2]), grid.spacing, {}};

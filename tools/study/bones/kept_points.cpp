@@ -25,10 +25,10 @@ namespace tactus::study {
 namespace {
 
 // To be raised with every change of code that changes which points a file gives: import of meshes and scans, sampling.
-constexpr int sampling = 2;
+constexpr int points_sampling = 2;
 
 constexpr std::size_t most_files = 32;
-constexpr std::string_view format_line = "tactus kept points 1\n";
+constexpr std::string_view points_format = "tactus kept points 1\n";
 
 std::string checksum(std::string_view bytes) {
     Hash hash;
@@ -41,7 +41,7 @@ std::optional<std::vector<contact::SurfacePoint>> kept(const ResultKey& key, std
     std::error_code failure;
     if (file.empty() || !std::filesystem::exists(file, failure)) return std::nullopt;
     try {
-        const std::string text = file::read_whole_file(file), head = std::string(format_line) + key.text() + "\n\n";
+        const std::string text = file::read_whole_file(file), head = std::string(points_format) + key.text() + "\n\n";
         if (text.starts_with(head)) {
             const std::string_view rest = std::string_view(text).substr(head.size()), sum = rest.substr(0, 17),
                                    bytes = rest.substr(sum.size());
@@ -70,7 +70,7 @@ void keep(const ResultKey& key, const std::vector<contact::SurfacePoint>& points
         std::filesystem::create_directories(file.parent_path());
         drop_oldest(file.parent_path());
         const std::string bytes = bone::to_bytes(points);
-        file::write_whole_file(file, std::string(format_line) + key.text() + "\n\n" + checksum(bytes) + bytes);
+        file::write_whole_file(file, std::string(points_format) + key.text() + "\n\n" + checksum(bytes) + bytes);
     } catch (const std::exception&) {
         // Points that are not kept are made again.
     }
@@ -108,7 +108,7 @@ std::vector<contact::SurfacePoint> points_of_key(const ResultKey& key, std::stri
 }
 
 std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::path& path, std::string& note) {
-    ResultKey key("points of a fragment", sampling);
+    ResultKey key("points of a fragment", points_sampling);
     key.add_file(path);
     return points_of_key(key, note, [&] {
         std::vector<contact::SurfacePoint> points;

@@ -21,7 +21,7 @@ namespace {
 
 // To be raised with every change of code that changes a registration: dsp/fit/registration, dsp/fit/gap.cpp,
 // sampling and import of what is registered.
-constexpr int algorithm = 5;
+constexpr int mirror_algorithm = 5;
 
 // m: of surfaces that only a registration uses; it takes some thousand points, and distances are from their planes.
 constexpr double registered_spacing = 1e-3;
@@ -39,7 +39,7 @@ MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::pat
     cases::check_files(plan, folder);
     cases::CasePlan named;
     cases::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
-    ResultKey key("mirrored side on a fragment", algorithm);
+    ResultKey key("mirrored side on a fragment", mirror_algorithm);
     key.add_file(healthy).add_file(file_of_fragment(main));
     NumberReader read(known(key, mirror_fit_numbers,
                             [&] { return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), main_points())); }));
@@ -146,7 +146,7 @@ std::vector<double> numbers_of_comparison(const MirrorComparison& c) {
 MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
     constexpr std::size_t count = registration_numbers + 12;
     const auto key_at = [&](const Pose& pose) {
-        ResultKey key("fragment on the mirrored side", algorithm);
+        ResultKey key("fragment on the mirrored side", mirror_algorithm);
         for (const int n : {main_, other}) key.add_file(file_of_fragment(n));
         key.add_file(healthy_);
         for (const Pose& p : {target_.pose, stands_, pose}) add_pose(key, p);

@@ -21,7 +21,7 @@ namespace tactus::study {
 namespace {
 
 // To be raised with every change of code that changes what lies in what: import of meshes, sampling, dsp/fit/overlap.
-constexpr int algorithm = 2;
+constexpr int overlap_algorithm = 2;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -90,7 +90,7 @@ private:
     }
 
     ResultKey key_of(const char* what, std::initializer_list<int> of) const {
-        ResultKey key(what, algorithm);
+        ResultKey key(what, overlap_algorithm);
         for (const int n : of) key.add_file(cases::file_of(fragments_[static_cast<std::size_t>(n)].file, folder_));
         return key;
     }

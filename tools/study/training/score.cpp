@@ -4,6 +4,7 @@
 #include "assets/bone/content_hash.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/table/number_table.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/training/attempt_row.hpp"
 #include "tools/session/replayed_take.hpp"
@@ -26,8 +27,6 @@ namespace tactus::study {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double degree = 57.29577951308232;
 
 /// The bone that was cut: the one of the run that has the samples of the task's.
 bone::Bone bone_after(const fs::path& folder, const bone::Bone& before, bool refined) {
@@ -204,7 +203,7 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
     if (run.plane) {
         score.rms_mm = run.plane->rms * 1e3;
         score.max_mm = run.plane->max * 1e3;
-        if (run.plane->angle) score.angle_deg = *run.plane->angle * degree;
+        if (run.plane->angle) score.angle_deg = *run.plane->angle / degree;
         run.severance =
             training::severance_of(bone, cut, *run.plane, 0.5 * (run.task.blade.length + run.task.blade.stroke));
         if (run.severance.severed)

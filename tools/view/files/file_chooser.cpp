@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/files/file_chooser.hpp"
 
+#include "tools/view/frame/search.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,15 +12,6 @@
 namespace tactus::view {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-}  // namespace
 
 FileChooser::FileChooser(For what, fs::path folder, std::vector<std::string> endings)
     : what_(what), endings_(std::move(endings)) {

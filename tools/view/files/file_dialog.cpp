@@ -2,6 +2,7 @@
 #include "tools/view/files/file_dialog.hpp"
 
 #include "tools/session/load_plan.hpp"
+#include "tools/view/frame/pressed.hpp"
 #include "tools/view/frame/tooltip.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -20,8 +21,6 @@ namespace tactus::view {
 namespace fs = std::filesystem;
 
 namespace {
-
-bool pressed(ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
 
 std::string size_words(std::uintmax_t bytes) {
     const auto size = static_cast<double>(bytes);

@@ -2,6 +2,7 @@
 #include "tools/view/files/import_dialog.hpp"
 
 #include "tools/view/files/start_list.hpp"
+#include "tools/view/frame/pressed.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
@@ -20,11 +21,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* title = "Make a bone of a scan";
+constexpr const char* import_title = "Make a bone of a scan";
 constexpr std::array<const char*, 4> units{"as the file states", "mm", "cm", "m"};
 constexpr std::array<const char*, 2> parts{"largest", "all"};
-
-bool pressed(ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
 
 /// "300", "300 HU"; none: no number.
 std::optional<double> hounsfield(const std::string& text) {
@@ -125,11 +124,11 @@ void ImportDialog::draw(const Fonts& fonts) {
     if (!is_open_) return;
     // A question that came meanwhile has closed it.
     const bool is_closed = !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
-    if (std::exchange(wants_open_, false) || is_closed) ImGui::OpenPopup(title);
+    if (std::exchange(wants_open_, false) || is_closed) ImGui::OpenPopup(import_title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(vec({560.0 * fonts.scale, 0.0}));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts.scale, 6.0 * fonts.scale}));
-    if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
+    if (ImGui::BeginPopupModal(import_title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
         ImGui::PushTextWrapPos(0.0f);
         ImGui::TextDisabled("%s", scan_.c_str());
         ImGui::PopTextWrapPos();

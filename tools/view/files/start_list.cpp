@@ -2,6 +2,7 @@
 #include "tools/view/files/start_list.hpp"
 
 #include "graph/patch/patch.hpp"
+#include "tools/view/frame/search.hpp"
 
 #include <fmt/format.h>
 
@@ -16,11 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_found = 40;
-
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 std::vector<fs::path> sorted_content(const fs::path& folder) {
     std::vector<fs::path> all;

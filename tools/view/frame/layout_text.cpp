@@ -13,7 +13,8 @@ namespace tactus::view {
 namespace {
 
 // In the order of Panel.
-constexpr std::array<std::string_view, 8> names{"patch", "scopes", "scene", "node", "tree", "slices", "steps", "task"};
+constexpr std::array<std::string_view, 8> part_names{"patch", "scopes", "scene", "node",
+                                                     "tree",  "slices", "steps", "task"};
 
 bool is_share(double share) { return share > 0.0 && share <= 1.0; }
 
@@ -26,9 +27,9 @@ std::vector<LayoutColumn> columns_of_line(const std::string& line) {
         if (!is_share(share)) return {};
         LayoutColumn column{share, {}};
         for (std::string name; words >> name && name != "|";) {
-            const auto found = std::ranges::find(names, name);
-            if (found == names.end() || !(words >> share) || !is_share(share)) return {};
-            column.panels.push_back({static_cast<Panel>(found - names.begin()), share});
+            const auto found = std::ranges::find(part_names, name);
+            if (found == part_names.end() || !(words >> share) || !is_share(share)) return {};
+            column.panels.push_back({static_cast<Panel>(found - part_names.begin()), share});
         }
         if (column.panels.empty()) return {};
         columns.push_back(std::move(column));
@@ -45,7 +46,7 @@ std::string text_of_borders(const std::vector<std::vector<LayoutColumn>>& arrang
         for (const LayoutColumn& column : columns) {
             line += fmt::format("{}{:.4f}", line.empty() ? "" : " | ", column.share);
             for (const PanelPlace& place : column.panels)
-                line += fmt::format(" {} {:.4f}", names[static_cast<std::size_t>(place.panel)], place.share);
+                line += fmt::format(" {} {:.4f}", part_names[static_cast<std::size_t>(place.panel)], place.share);
         }
         text += line + "\n";
     }

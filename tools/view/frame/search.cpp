@@ -45,12 +45,6 @@ constexpr std::array<std::string_view, 30> synonyms{
     "open load",
 };
 
-std::string lower(std::string_view text) {
-    std::string made(text);
-    std::ranges::transform(made, made.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return made;
-}
-
 std::vector<std::string_view> words_of(std::string_view text) {
     std::vector<std::string_view> words;
     for (std::size_t at = 0; (at = text.find_first_not_of(" \t", at)) != std::string_view::npos;) {
@@ -87,6 +81,12 @@ double place_of_meaning(std::string_view word, std::string_view name, std::strin
 }
 
 }  // namespace
+
+std::string lower(std::string_view text) {
+    std::string made(text);
+    std::ranges::transform(made, made.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return made;
+}
 
 double suits(std::string_view typed, std::string_view name, std::string_view about) {
     const std::string wanted = lower(typed), in_name = lower(name), in_about = lower(about);

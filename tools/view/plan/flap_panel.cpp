@@ -2,6 +2,7 @@
 #include "tools/view/plan/flap_panel.hpp"
 
 #include "assets/reconstruct/flap_files.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/view/frame/tooltip.hpp"
@@ -18,8 +19,6 @@
 namespace tactus::view {
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 std::array<float, 3> in_mm(const Vec3& at) {
     return {static_cast<float>(at.x / mm), static_cast<float>(at.y / mm), static_cast<float>(at.z / mm)};

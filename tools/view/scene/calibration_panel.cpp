@@ -37,7 +37,7 @@ void field(const char* label, const char* hint, std::string& text) {
     mark_spot(label);
 }
 
-bool button(const char* label) {
+bool marked_button(const char* label) {
     const bool pressed = ImGui::Button(label);
     mark_spot(label);
     return pressed;
@@ -121,7 +121,7 @@ void CalibrationPanel::choose(const Feed& feed) {
     const bool has_steps =
         !places_.empty() || !source_.tracker.empty() || choice_.mirror || !screen_.empty() || !image_.empty();
     ImGui::BeginDisabled(!has_steps || source_.pose.empty() || file_.empty());
-    if (button("begin")) begin();
+    if (marked_button("begin")) begin();
     ImGui::EndDisabled();
 }
 
@@ -183,11 +183,11 @@ void CalibrationPanel::lead_on(const Feed& feed) {
     else
         words(tone::dim, fmt::format("Hold the tip there and press {}.",
                                      source_.button.empty() ? "Enter" : "the button of the device, or Enter"));
-    if (button("touch") ||
+    if (marked_button("touch") ||
         (!ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false)))
         watch_->ask();
     ImGui::SameLine();
-    if (!button("stop")) return;
+    if (!marked_button("stop")) return;
     lead_.reset();
     watch_.reset();
     marks_.reset();
@@ -223,10 +223,10 @@ void CalibrationPanel::write_elsewhere() {
     words(tone::text, "All touches are made, but the display file is not written. Choose another file.");
     choose_file();
     ImGui::BeginDisabled(file_.empty());
-    if (button("write")) write();
+    if (marked_button("write")) write();
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (button("discard")) {
+    if (marked_button("discard")) {
         is_unwritten_ = false;
         problem_.clear();
         fit_.reset();

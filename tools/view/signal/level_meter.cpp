@@ -9,11 +9,13 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double lowest_db = -60.0, highest_db = 6.0;
+constexpr double lowest_on_meter = -60.0, highest_on_meter = 6.0;
 
 }  // namespace
 
-double meter_share(double level_db) { return std::clamp((level_db - lowest_db) / (highest_db - lowest_db), 0.0, 1.0); }
+double meter_share(double level_db) {
+    return std::clamp((level_db - lowest_on_meter) / (highest_on_meter - lowest_on_meter), 0.0, 1.0);
+}
 
 void draw_level_meter(const Painter& paint, const Box& bar, const Level& level) {
     const auto height_of = [&](double db) { return bar.bottom - meter_share(db) * (bar.bottom - bar.top); };

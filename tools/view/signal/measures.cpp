@@ -8,13 +8,6 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double lowest_db = -240.0;
-
-/// First index at or after a time.
-std::size_t index_at(const Trace& trace, double time) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
-}
-
 /// Calls with each finite value of a column in a time range.
 template <class See>
 void for_each_value(const Trace& trace, std::size_t column, Range time, See&& see) {

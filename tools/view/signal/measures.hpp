@@ -13,6 +13,13 @@
 
 namespace tactus::view {
 
+inline constexpr double lowest_db = -240.0;  // what silence is shown as
+
+/// First index at or after a time.
+inline std::size_t index_at(const Trace& trace, double time) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
+}
+
 /// 20 log10 of an amplitude, dB re 1; -240 for 0 and what is smaller.
 double decibels(double amplitude);
 

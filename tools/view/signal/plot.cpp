@@ -15,14 +15,7 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double lowest_db = -240.0;
-
 double db(double power) { return power > 0.0 ? std::max(10.0 * std::log10(power), lowest_db) : lowest_db; }
-
-/// First index at or after a time.
-std::size_t index_at(const Trace& trace, double time) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
-}
 
 Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz,
                double shift_db) {

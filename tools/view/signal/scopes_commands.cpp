@@ -15,7 +15,7 @@ namespace tactus::view {
 
 namespace {
 
-std::string with_unit(double value, const std::string& unit) {
+std::string typed_text(double value, const std::string& unit) {
     return fmt::format("{:.9g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
@@ -49,8 +49,8 @@ void Scopes::set_cursor(Scope& scope, std::size_t index, bool is_up, const std::
     const std::string& unit = is_up ? plot.y_unit : plot.x_unit;
     const double value = typed_as(text, unit);
     if (value < shown.low || value > shown.high)
-        throw Error(fmt::format("{} is not shown; the scope shows {} to {}", with_unit(value, unit),
-                                fmt::format("{:.6g}", shown.low), with_unit(shown.high, unit)));
+        throw Error(fmt::format("{} is not shown; the scope shows {} to {}", typed_text(value, unit),
+                                fmt::format("{:.6g}", shown.low), typed_text(shown.high, unit)));
     if (index == scope.cursors.size())
         scope.cursors.push_back({middle(plot.x, plot.is_logarithmic), middle(plot.y, false)});
     (is_up ? scope.cursors[index].y : scope.cursors[index].x) = value;
@@ -70,7 +70,7 @@ void Scopes::add_value_commands(std::vector<Command>& all, std::size_t index) {
     };
     if (scope.view == Scope::View::wave)
         add_one("level of the trigger", "exact threshold value",
-                with_unit(scope.trigger ? scope.trigger->level : middle(scope.y, false), display(scope.port).unit),
+                typed_text(scope.trigger ? scope.trigger->level : middle(scope.y, false), display(scope.port).unit),
                 [this](Scope& of, const std::string& typed) { set_level(of, typed); });
     const auto add_cursor = [&](std::size_t which, bool is_up) {
         const char* const name = which == 0 ? "cursor A" : "cursor B";
@@ -82,7 +82,7 @@ void Scopes::add_value_commands(std::vector<Command>& all, std::size_t index) {
                             is_up                 ? "up at"
                             : is_flat(scope.view) ? "across at"
                                                   : "at"),
-                "measure read place", with_unit(there, is_up ? scope.plot.y_unit : scope.plot.x_unit),
+                "measure read place", typed_text(there, is_up ? scope.plot.y_unit : scope.plot.x_unit),
                 [which, is_up](Scope& of, const std::string& typed) { set_cursor(of, which, is_up, typed); });
     };
     for (std::size_t which = 0; which <= std::min<std::size_t>(scope.cursors.size(), 1); ++which) {

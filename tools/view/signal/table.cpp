@@ -12,7 +12,7 @@ namespace tactus::view {
 
 namespace {
 
-std::string with_unit(const std::string& name, const std::string& unit) {
+std::string column_name(const std::string& name, const std::string& unit) {
     return unit.empty() ? name : name.empty() ? unit : name + " " + unit;
 }
 
@@ -54,7 +54,7 @@ void write_csv(std::span<const TableTrace> traces, Range time, const std::filesy
         for (std::size_t c = 0; c < trace.columns.size(); ++c) {
             const std::string column = c < trace.names.size() ? trace.names[c] : "";
             const std::string name = from.name + (from.name.empty() || column.empty() ? "" : " ") + column;
-            text += "," + with_unit(name, c < from.units.size() ? from.units[c] : "");
+            text += "," + column_name(name, c < from.units.size() ? from.units[c] : "");
             part.columns.push_back(&trace.columns[c]);
         }
         parts.push_back(std::move(part));
@@ -68,7 +68,7 @@ void write_spectrum_csv(const Plot& plot, const std::filesystem::path& path) {
     std::vector<std::vector<double>> at(plot.curves.size()), levels(plot.curves.size());
     std::vector<Part> parts;
     for (std::size_t k = 0; k < plot.curves.size(); ++k) {
-        text += "," + with_unit(plot.curves[k].name, plot.level_unit);
+        text += "," + column_name(plot.curves[k].name, plot.level_unit);
         for (const Point& p : plot.curves[k].points) {
             at[k].push_back(p.x);
             levels[k].push_back(p.y);
@@ -96,7 +96,7 @@ void write_waterfall_csv(const Plot& plot, const std::filesystem::path& path) {
 }
 
 void write_histogram_csv(const Plot& plot, const std::filesystem::path& path) {
-    std::string text = fmt::format("{},{},share %\n", with_unit("from", plot.x_unit), with_unit("to", plot.x_unit));
+    std::string text = fmt::format("{},{},share %\n", column_name("from", plot.x_unit), column_name("to", plot.x_unit));
     // A part is four points: up at its left edge, down at its right one.
     for (const Curve& curve : plot.curves)
         for (std::size_t i = 0; i + 3 < curve.points.size(); i += 4)
@@ -105,7 +105,7 @@ void write_histogram_csv(const Plot& plot, const std::filesystem::path& path) {
 }
 
 void write_pairs_csv(const Plot& plot, const std::filesystem::path& path) {
-    std::string text = with_unit("x", plot.x_unit) + "," + with_unit("y", plot.y_unit) + "\n";
+    std::string text = column_name("x", plot.x_unit) + "," + column_name("y", plot.y_unit) + "\n";
     for (const Curve& curve : plot.curves)
         for (const Point& p : curve.points) text += fmt::format("{},{}\n", p.x, p.y);
     file::write_whole_file(path, text);

@@ -3,6 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "assets/volume/scan_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 #include "tools/picture/scene/section_grey.hpp"
@@ -35,7 +36,6 @@ PlanScanData read_plan_scan(const std::filesystem::path& scan) {
 }
 
 volume::Grid joined_grids(const std::vector<volume::Grid>& grids, std::size_t most_samples) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     Vec3 low(infinity), high(-infinity), spacing(infinity);
     for (const volume::Grid& grid : grids) {
         if (grid.values.empty()) continue;

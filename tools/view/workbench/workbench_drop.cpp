@@ -3,6 +3,7 @@
 #include "tools/view/workbench.hpp"
 
 #include "tools/view/files/start_list.hpp"
+#include "tools/view/frame/search.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,11 +23,6 @@ struct Taker {
     std::string node, param, asset;
     bool is_required;
 };
-
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 std::vector<Taker> takers_of(const patch::Patch& patch, const std::string& file) {
     const std::string name = lower(file);

@@ -13,7 +13,7 @@ namespace tactus::view {
 
 namespace {
 
-constexpr const char *tone = "force_tone", *sound = "force_sound", *audio = "48 kHz";
+constexpr const char *tone = "force_tone", *sound = "force_sound", *sound_rate = "48 kHz";
 
 /// "hand_out.applied"; empty: the patch has no hand.
 std::string force_of(const patch::Patch& patch) {
@@ -59,10 +59,13 @@ bool Workbench::hear_force(bool wanted) {
     return edit(
         [&](std::string_view text) {
             const std::string changed =
-                edit::with_node(text, {tone_name, tone, audio, "", {}, {{force, tone_name + ".wrench", {}}}});
-            return edit::with_node(
-                changed,
-                {sound_name, "audio_output", audio, "", {}, {{tone_name + ".signal", sound_name + ".signal", {}}}});
+                edit::with_node(text, {tone_name, tone, sound_rate, "", {}, {{force, tone_name + ".wrench", {}}}});
+            return edit::with_node(changed, {sound_name,
+                                             "audio_output",
+                                             sound_rate,
+                                             "",
+                                             {},
+                                             {{tone_name + ".signal", sound_name + ".signal", {}}}});
         },
         "the force is heard as a tone: the larger, the louder and higher");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/registration/registration.hpp"
 
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
@@ -18,8 +19,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A lump without any symmetry, about 30 mm across: points and normals by formula.
 Vec3 lump(double u, double v) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/filter/biquad_block.hpp"
 #include "dsp/signal/filter/one_pole.hpp"
@@ -20,7 +21,6 @@ using namespace tactus;
 namespace {
 
 constexpr double rate = 48000.0;
-constexpr double pi = std::numbers::pi;
 
 /// Gain of whatever maps a sample to a sample, in dB, measured with a sine after it has settled for a second.
 template <class Filter>

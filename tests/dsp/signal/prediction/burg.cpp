@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/prediction/burg.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/prediction/line_frequencies.hpp"
@@ -14,8 +15,6 @@
 using namespace tactus;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// a₁ … of resonances at these angles and radii.
 std::vector<double> resonator(const std::vector<std::pair<double, double>>& poles) {

@@ -10,18 +10,18 @@ using namespace tactus;
 
 namespace {
 
-constexpr double rate = 8000.0;
+constexpr double aligned_rate = 8000.0;
 
 signal::Alignment align(const std::vector<double>& a, const std::vector<double>& b) {
-    return signal::align_takes(a, b, rate, 40.0, 1000.0, 2.0);
+    return signal::align_takes(a, b, aligned_rate, 40.0, 1000.0, 2.0);
 }
 
 std::vector<double> take_in(double strokes, bool cutting, std::uint64_t seed, double start = 0.0) {
-    return signal::resample(test::saw(strokes, cutting, 6.0, 48000.0, seed), 48000.0, rate, start);
+    return signal::resample(test::saw(strokes, cutting, 6.0, 48000.0, seed), 48000.0, aligned_rate, start);
 }
 
 std::vector<double> played(const std::vector<float>& drive, double start = 0.0) {
-    return signal::resample(test::Plant{}(drive), 48000.0, rate, start);
+    return signal::resample(test::Plant{}(drive), 48000.0, aligned_rate, start);
 }
 
 }  // namespace
@@ -31,9 +31,9 @@ TEST_CASE("a take and what an actuator made of it are found to belong together, 
         for (const double delay : {0.0, 0.00123, 0.7, -0.4}) {
             INFO((cutting ? "cutting, " : "idle, ") << delay << " s");
             const std::vector<float> drive = test::saw(233.0, cutting, 6.0, 48000.0, 1);
-            const std::vector<double> reference = signal::resample(drive, 48000.0, rate, std::max(delay, 0.0));
+            const std::vector<double> reference = signal::resample(drive, 48000.0, aligned_rate, std::max(delay, 0.0));
             const signal::Alignment found =
-                align(reference, signal::resample(drive, 48000.0, rate, std::max(-delay, 0.0)));
+                align(reference, signal::resample(drive, 48000.0, aligned_rate, std::max(-delay, 0.0)));
             CHECK(found.significant);
             // What repeats itself 233 times a second tells the delay up to whole periods.
             const double error = found.delay - delay;

@@ -14,10 +14,10 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double compared_rate = 48000.0;
 
 std::vector<float> at_rate(const std::vector<float>& samples, double to) {
-    const std::vector<double> moved = signal::resample(samples, rate, to);
+    const std::vector<double> moved = signal::resample(samples, compared_rate, to);
     return {moved.begin(), moved.end()};
 }
 
@@ -48,11 +48,11 @@ TEST_CASE("distance and cosine of a known pair agree with scipy's spectra") {
 }
 
 TEST_CASE("a take is the same as itself at another level, rate and time") {
-    const std::vector<float> take = test::saw(233.0, true, 8.0, rate, 1);
+    const std::vector<float> take = test::saw(233.0, true, 8.0, compared_rate, 1);
     const std::vector<float> later = louder(at_rate({take.begin() + 5000, take.end()}, 44100.0), 0.1f);
-    const signal::Comparison same = signal::compare({take, rate}, {later, 44100.0});
+    const signal::Comparison same = signal::compare({take, compared_rate}, {later, 44100.0});
     CHECK(same.alignment.significant);
-    CHECK(same.alignment.delay == Approx(-5000.0 / rate).margin(2e-5));
+    CHECK(same.alignment.delay == Approx(-5000.0 / compared_rate).margin(2e-5));
     CHECK(same.gain_db == Approx(20.0).margin(0.02));
     CHECK(same.lsd_db < 0.1);
     CHECK(same.cosine_1000 > 0.9999);
@@ -71,9 +71,9 @@ TEST_CASE("a take is the same as itself at another level, rate and time") {
 TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw, and another saw does not") {
     for (const bool cutting : {false, true}) {
         INFO((cutting ? "cutting" : "idle"));
-        const std::vector<float> take = test::saw(233.0, cutting, 10.0, rate, 1);
-        const std::vector<float> another = test::saw(233.4, cutting, 10.0, rate, 2);
-        const signal::Comparison same = signal::compare({take, rate}, {another, rate});
+        const std::vector<float> take = test::saw(233.0, cutting, 10.0, compared_rate, 1);
+        const std::vector<float> another = test::saw(233.4, cutting, 10.0, compared_rate, 2);
+        const signal::Comparison same = signal::compare({take, compared_rate}, {another, compared_rate});
         CHECK_FALSE(same.alignment.significant);
         CHECK_FALSE(same.st_sim.has_value());
         CHECK_FALSE(same.spqi.has_value());
@@ -89,7 +89,7 @@ TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw, and a
         CHECK(same.lines.only_in_reference.empty());
 
         const signal::Comparison other =
-            signal::compare({take, rate}, {test::saw(150.0, cutting, 10.0, rate, 2), rate});
+            signal::compare({take, compared_rate}, {test::saw(150.0, cutting, 10.0, compared_rate, 2), compared_rate});
         CHECK(other.lsd_db > 5.0);
         CHECK(other.cosine_500 < 0.7);
         CHECK(other.lines.only_in_output.size() >= 3);
@@ -97,51 +97,56 @@ TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw, and a
 }
 
 TEST_CASE("mains hum that only the output has is found, and named by its frequency") {
-    const std::vector<float> take = test::saw(233.0, false, 10.0, rate, 1);
-    std::vector<float> hummed = test::saw(233.0, false, 10.0, rate, 3);
-    test::add_disturbance(hummed, rate, -40.0, -80.0, 5);
-    const signal::Comparison found = signal::compare({take, rate}, {hummed, rate});
+    const std::vector<float> take = test::saw(233.0, false, 10.0, compared_rate, 1);
+    std::vector<float> hummed = test::saw(233.0, false, 10.0, compared_rate, 3);
+    test::add_disturbance(hummed, compared_rate, -40.0, -80.0, 5);
+    const signal::Comparison found = signal::compare({take, compared_rate}, {hummed, compared_rate});
     REQUIRE(found.lines.only_in_output.size() == 1);
     CHECK(found.lines.only_in_output[0].frequency == Approx(50.0).margin(0.05));
     CHECK(signal::level_db(found.lines.only_in_output[0]) == Approx(-40.0).margin(0.2));
-    const signal::Comparison turned = signal::compare({hummed, rate}, {take, rate});
+    const signal::Comparison turned = signal::compare({hummed, compared_rate}, {take, compared_rate});
     REQUIRE(turned.lines.only_in_reference.size() == 1);
     CHECK(turned.lines.only_in_reference[0].frequency == Approx(50.0).margin(0.05));
 }
 
 TEST_CASE("a slow sensor is compared as far as it goes") {
-    const std::vector<float> take = test::saw(150.0, false, 6.0, rate, 1);
-    const signal::Comparison found = signal::compare({take, rate}, {at_rate(take, 1000.0), 1000.0});
+    const std::vector<float> take = test::saw(150.0, false, 6.0, compared_rate, 1);
+    const signal::Comparison found = signal::compare({take, compared_rate}, {at_rate(take, 1000.0), 1000.0});
     CHECK(found.highest == Approx(450.0));
     CHECK(found.third_octaves.back().hz < 450.0);
     CHECK(found.cosine_1000 > 0.999);
-    CHECK_THROWS_WITH(signal::compare({take, rate}, {at_rate(take, 160.0), 160.0}),
+    CHECK_THROWS_WITH(signal::compare({take, compared_rate}, {at_rate(take, 160.0), 160.0}),
                       ContainsSubstring("can be trusted to 72 Hz only"));
 }
 
 TEST_CASE("silence, and takes too short to tell, are refused by name") {
-    const std::vector<float> take = test::saw(233.0, false, 2.0, rate, 1), silent(96000, 0.0f), bit(1000, 0.1f);
-    CHECK_THROWS_WITH(signal::compare({silent, rate}, {take, rate}), ContainsSubstring("reference is silent"));
-    CHECK_THROWS_WITH(signal::compare({take, rate}, {silent, rate}), ContainsSubstring("output is silent"));
-    CHECK_THROWS_WITH(signal::compare({bit, rate}, {take, rate}), ContainsSubstring("reference is shorter"));
-    CHECK_THROWS_WITH(signal::compare({take, rate}, {std::vector<float>(), rate}),
+    const std::vector<float> take = test::saw(233.0, false, 2.0, compared_rate, 1), silent(96000, 0.0f),
+                             bit(1000, 0.1f);
+    CHECK_THROWS_WITH(signal::compare({silent, compared_rate}, {take, compared_rate}),
+                      ContainsSubstring("reference is silent"));
+    CHECK_THROWS_WITH(signal::compare({take, compared_rate}, {silent, compared_rate}),
+                      ContainsSubstring("output is silent"));
+    CHECK_THROWS_WITH(signal::compare({bit, compared_rate}, {take, compared_rate}),
+                      ContainsSubstring("reference is shorter"));
+    CHECK_THROWS_WITH(signal::compare({take, compared_rate}, {std::vector<float>(), compared_rate}),
                       ContainsSubstring("output is shorter"));
     const std::vector<float> direct(96000, 0.5f);
-    CHECK_THROWS_WITH(signal::compare({take, rate}, {direct, rate}), ContainsSubstring("output is silent"));
+    CHECK_THROWS_WITH(signal::compare({take, compared_rate}, {direct, compared_rate}),
+                      ContainsSubstring("output is silent"));
 }
 
 TEST_CASE("only the band that both takes can be trusted in is compared") {
-    const std::vector<float> take = test::saw(233.0, true, 6.0, rate, 1);
-    signal::Take trusted(take, rate);
+    const std::vector<float> take = test::saw(233.0, true, 6.0, compared_rate, 1);
+    signal::Take trusted(take, compared_rate);
     trusted.usable = 300.0;
-    const signal::Comparison found = signal::compare({take, rate}, trusted);
+    const signal::Comparison found = signal::compare({take, compared_rate}, trusted);
     CHECK(found.highest == 300.0);
     CHECK(found.touched() == 300.0);
     CHECK(found.third_octaves.back().hz * std::pow(10.0, 0.05) < 300.1);
     CHECK_FALSE(found.st_sim.has_value());
     for (const signal::SpectralLine& line : found.lines.in_both) CHECK(line.frequency < 300.0);
     trusted.usable = 42.0;
-    CHECK_THROWS_WITH(signal::compare({take, rate}, trusted), ContainsSubstring("output, sampled at 48 kHz"));
+    CHECK_THROWS_WITH(signal::compare({take, compared_rate}, trusted), ContainsSubstring("output, sampled at 48 kHz"));
 }
 
 TEST_CASE("noise has nothing above itself, and what a saw has above its noise is named") {
@@ -160,8 +165,9 @@ TEST_CASE("noise has nothing above itself, and what a saw has above its noise is
     CHECK(signal::compare({std::span<const double>(red).first(24000), 8000.0},
                           {std::span<const double>(red).last(24000), 8000.0})
               .above_noise.in_both.empty());
-    const std::vector<float> a = test::saw(233.0, false, 6.0, rate, 1), b = test::saw(233.0, false, 6.0, rate, 2);
-    CHECK(signal::compare({a, rate}, {b, rate}).above_noise.in_both.size() >= 2);
+    const std::vector<float> a = test::saw(233.0, false, 6.0, compared_rate, 1),
+                             b = test::saw(233.0, false, 6.0, compared_rate, 2);
+    CHECK(signal::compare({a, compared_rate}, {b, compared_rate}).above_noise.in_both.size() >= 2);
 }
 
 TEST_CASE("spectra of several axes add their powers") {

@@ -12,7 +12,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double rate = 8000.0;
+constexpr double record_rate = 8000.0;
 
 struct Tone {
     double amplitude, hz, phase;
@@ -23,7 +23,7 @@ std::vector<double> sum_of(std::initializer_list<Tone> tones, std::size_t count 
     for (std::size_t i = 0; i < count; ++i)
         for (const Tone& tone : tones)
             out[i] += tone.amplitude *
-                      std::sin(2.0 * std::numbers::pi * tone.hz * static_cast<double>(i) / rate + tone.phase);
+                      std::sin(2.0 * std::numbers::pi * tone.hz * static_cast<double>(i) / record_rate + tone.phase);
     return out;
 }
 
@@ -113,12 +113,12 @@ TEST_CASE("spectrograms agree for one course over time and not for another") {
     std::vector<double> swell(40000), later(40000), other(40000);
     const Random random{5};
     for (std::size_t i = 0; i < swell.size(); ++i) {
-        const double t = static_cast<double>(i) / rate, noise = random.normal(i);
+        const double t = static_cast<double>(i) / record_rate, noise = random.normal(i);
         swell[i] = noise * (1.2 + std::sin(2.0 * std::numbers::pi * t));
         later[i] = noise * (1.2 - std::sin(2.0 * std::numbers::pi * t));
         other[i] = 3.0 * swell[i];
     }
-    CHECK(signal::spectrogram_similarity(swell, swell, rate, 40.0, 1000.0) == Approx(1.0));
-    CHECK(signal::spectrogram_similarity(swell, other, rate, 40.0, 1000.0) == Approx(1.0));
-    CHECK(signal::spectrogram_similarity(swell, later, rate, 40.0, 1000.0) < 0.7);
+    CHECK(signal::spectrogram_similarity(swell, swell, record_rate, 40.0, 1000.0) == Approx(1.0));
+    CHECK(signal::spectrogram_similarity(swell, other, record_rate, 40.0, 1000.0) == Approx(1.0));
+    CHECK(signal::spectrogram_similarity(swell, later, record_rate, 40.0, 1000.0) < 0.7);
 }

@@ -2,6 +2,7 @@
 // Bones through the command: what is in a file, label maps in, meshes and volumes out.
 #include "assets/bone/bone.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 
@@ -25,10 +26,10 @@ using nlohmann::json;
 
 namespace {
 
-struct Folder {
+struct BoneFolder {
     fs::path path = fs::temp_directory_path() / ("tactus_bones_" + std::to_string(::getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
+    BoneFolder() { fs::create_directories(path); }
+    ~BoneFolder() { fs::remove_all(path); }
 
     std::string operator/(const std::string& name) const { return (path / name).string(); }
     static std::string slurp(const fs::path& file) {
@@ -36,28 +37,26 @@ struct Folder {
         text << std::ifstream(file, std::ios::binary).rdbuf();
         return text.str();
     }
-    struct Outcome {
+    struct BoneOutcome {
         int code;
         std::string out, err;
     };
-    Outcome tactus(const std::string& arguments) const {
+    BoneOutcome tactus(const std::string& arguments) const {
         const std::string command =
             tactus::test::command() + " " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr";
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(*this / "stdout"), slurp(*this / "stderr")};
     }
     json answer(const std::string& arguments) const {
-        const Outcome done = tactus(arguments);
+        const BoneOutcome done = tactus(arguments);
         INFO(arguments << "\n" << done.err);
         REQUIRE(done.code == 0);
         return json::parse(done.out);
     }
 };
 
-constexpr double mm = 1e-3;
-
 // Two balls of 6 and 4 mm radius, far from the origin: HU, or labels 1 and 2.
-volume::Grid two_balls(bool labels) {
+volume::Grid grid_of_two_balls(bool labels) {
     volume::Grid grid{{60, 36, 34}, Vec3(0.9, -0.2, 1.1), Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
     for (int k = 0; k < 34; ++k)
         for (int j = 0; j < 36; ++j)
@@ -77,9 +76,9 @@ double ball_mm3(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * 
 }  // namespace
 
 TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones", "[slow]") {
-    const Folder folder;
-    volume::write_volume(two_balls(false), volume::WrittenType::int16, folder / "ct.nrrd");
-    volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
+    const BoneFolder folder;
+    volume::write_volume(grid_of_two_balls(false), volume::WrittenType::int16, folder / "ct.nrrd");
+    volume::write_volume(grid_of_two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
     REQUIRE(folder
                 .tactus("import " + folder / "labels.nrrd" + " --label all --ct " + folder / "ct.nrrd" + " -o " +
                         folder / "two.vdb")
@@ -107,7 +106,7 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
             CHECK(x[1].get<double>() - x[0].get<double>() == Approx(2.0 * radius).margin(0.6));
             CHECK(0.5 * (x[1].get<double>() + x[0].get<double>()) == Approx(n == 0 ? 908.5 : 922.0).margin(0.5));
         }
-        CHECK(Folder::slurp(folder / "picture.png").substr(1, 3) == "PNG");
+        CHECK(BoneFolder::slurp(folder / "picture.png").substr(1, 3) == "PNG");
         fs::remove(folder / "picture.png");
     }
     const json ct = folder.answer("info " + folder / "ct.nrrd --json");
@@ -119,8 +118,8 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
 }
 
 TEST_CASE("a label map goes in and comes out: import, load by name, export, import again", "[slow]") {
-    const Folder folder;
-    volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
+    const BoneFolder folder;
+    volume::write_volume(grid_of_two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
     const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
     REQUIRE(made["bones"].size() == 2);
     CHECK(made["bones"][1]["label"] == 2);
@@ -143,11 +142,11 @@ TEST_CASE("a label map goes in and comes out: import, load by name, export, impo
 }
 
 TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mesh") {
-    const Folder folder;
+    const BoneFolder folder;
     REQUIRE(folder.tactus("render saw-training --seconds 3 --out " + folder / "saw").code == 0);
     const bone::Bone cut = bone::load_bone(folder / "saw/bone.vdb");
     const json mesh = folder.answer("export " + folder / "saw/bone.vdb --json -o " + folder / "cut.stl");
-    const json summary = json::parse(Folder::slurp(folder / "saw/summary.json"));
+    const json summary = json::parse(BoneFolder::slurp(folder / "saw/summary.json"));
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
     CHECK(summary["carve"]["removed_mm3"] > 5.0);
     CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);

@@ -3,6 +3,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
@@ -23,7 +24,7 @@ using nlohmann::json;
 
 namespace {
 
-struct Folder : test::Folder {
+struct SegmentFolder : test::Folder {
     std::string operator/(const std::string& name) const { return (path / name).string(); }
     test::Outcome tactus(const std::string& arguments) const { return test::Folder::tactus("segment " + arguments); }
     json answer(const std::string& arguments) const {
@@ -33,8 +34,6 @@ struct Folder : test::Folder {
         return json::parse(done.out);
     }
 };
-
-constexpr double mm = 1e-3;
 
 // Two thick-walled balls of bone that touch in a gap of 250 HU, marrow of 80 HU within, a third one far from both, and a
 // screw of metal. Noise of 15 HU.
@@ -74,7 +73,7 @@ double volume_of_ball(double radius) { return 4.0 / 3.0 * 3.14159265 * radius * 
 }  // namespace
 
 TEST_CASE("segment separates two bones that touch and takes in their marrow") {
-    const Folder folder;
+    const SegmentFolder folder;
     const volume::Grid scan = two_bones();
     volume::write_volume(scan, volume::WrittenType::int16, folder / "ct.nrrd");
     volume::write_volume(scan, volume::WrittenType::float32, folder / "float.nrrd");
@@ -126,7 +125,7 @@ TEST_CASE("segment separates two bones that touch and takes in their marrow") {
 }
 
 TEST_CASE("segment gives the same labels for values in other units, also where it chooses the threshold") {
-    const Folder folder;
+    const SegmentFolder folder;
     volume::Grid scan = two_bones();
     // Scanner numbers: no air, so that the unit of the values is not known.
     for (float& value : scan.values) value = std::clamp(value, -40.0f, 1000.0f);
@@ -176,7 +175,7 @@ TEST_CASE("segment gives the same labels for values in other units, also where i
 }
 
 TEST_CASE("segment says when its labels are on other axes than the file's") {
-    const Folder folder;
+    const SegmentFolder folder;
     volume::Grid scan = two_bones();
     volume::write_volume(scan, volume::WrittenType::int16, folder / "ct.nrrd");
     std::string header = test::slurp(folder / "ct.nrrd");
@@ -192,7 +191,7 @@ TEST_CASE("segment says when its labels are on other axes than the file's") {
 }
 
 TEST_CASE("segment proposes seeds that it can use") {
-    const Folder folder;
+    const SegmentFolder folder;
     volume::write_volume(two_bones(), volume::WrittenType::int16, folder / "ct.nrrd");
     const json proposed = folder.answer(folder / "ct.nrrd" + " --threshold 200 --propose " + folder / "seeds.json");
     CHECK(proposed["fragments"].get<int>() == 2);
@@ -204,7 +203,7 @@ TEST_CASE("segment proposes seeds that it can use") {
 
 TEST_CASE("segment refuses what it cannot use with one line and writes nothing", "[slow]") {
     using Catch::Matchers::ContainsSubstring;
-    const Folder folder;
+    const SegmentFolder folder;
     volume::write_volume(two_bones(), volume::WrittenType::int16, folder / "ct.nrrd");
     folder.write("seeds.json", seeds());
     const auto refused = [&](const std::string& arguments, const std::string& text) {
@@ -255,7 +254,7 @@ TEST_CASE("segment finds the two fragments of a real sacrum from six dabs each",
     const char* const data = std::getenv("TACTUS_SHARED_DATA");
     const fs::path ct = data ? fs::path(data) / "fragments/sacrum003_ct.nrrd" : "";
     if (!data || !fs::exists(ct)) return test::skip("TACTUS_SHARED_DATA does not name a folder with " + ct.string());
-    const Folder folder;
+    const SegmentFolder folder;
     const volume::Grid truth =
         volume::lps_grid(volume::read_volume(fs::path(data) / "fragments/sacrum003_labels.nrrd"));
     // Dabs of 3 mm, far enough from the other fragment.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Breaking a bone and putting it together, as scripts do it.
 #include "assets/bone/bone.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
@@ -22,12 +23,6 @@ using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::pose_in;
 using tactus::test::slurp;
-
-namespace {
-
-constexpr double mm = 1e-3;
-
-}  // namespace
 
 TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused", "[slow]") {
     const Folder folder;

@@ -3,6 +3,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/types.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
@@ -27,8 +28,6 @@ using tactus::test::pose_in;
 using tactus::test::slurp;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A case of two boxes, with commands on its plan.
 struct Boxes {

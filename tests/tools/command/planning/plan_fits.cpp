@@ -61,7 +61,7 @@ struct Row {
     }
 };
 
-bool says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+bool fit_says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
 }  // namespace
 
@@ -69,7 +69,7 @@ TEST_CASE("a fit is void when its partner moves away, holds in a moved group, an
     const Row row;
     row.fit("b", "a", "-1,0,0,1,0,0,0");
     CHECK(row.verdict(1) == "fit");
-    CHECK(says(row.run("show").out, "fit to a (0.08 mm rms)"));
+    CHECK(fit_says(row.run("show").out, "fit to a (0.08 mm rms)"));
     // Less than 0.05 mm and 0.05 degrees is the same place.
     REQUIRE(row.run("move", "a --pose 0.04,0,0,1,0,0,0").code == 0);
     CHECK(row.verdict(1) == "fit");
@@ -77,11 +77,11 @@ TEST_CASE("a fit is void when its partner moves away, holds in a moved group, an
     CHECK(row.verdict(1) == "void");
     const std::string shown = row.run("show").out;
     INFO(shown);
-    CHECK(says(shown, "fit to a is void: moved 12.00 mm and 0.00° from it since"));
-    CHECK_FALSE(says(shown, "0.08 mm rms"));
+    CHECK(fit_says(shown, "fit to a is void: moved 12.00 mm and 0.00° from it since"));
+    CHECK_FALSE(fit_says(shown, "0.08 mm rms"));
     CHECK(row.state()["fragments"][1]["fit"]["moved_since"]["distance_mm"].get<double>() == Approx(12.0));
     REQUIRE(row.run("report").code == 0);
-    CHECK(says(slurp(row.folder.path / "case.html"), "fit to a is void"));
+    CHECK(fit_says(slurp(row.folder.path / "case.html"), "fit to a is void"));
     CHECK(row.run("settle").code == 2);
     REQUIRE(row.run("undo", "--steps 2").code == 0);
     CHECK(row.verdict(1) == "fit");
@@ -102,32 +102,32 @@ TEST_CASE("a plan says what is connected to what, and fragments in several parts
     const Outcome shown = row.run("show");
     INFO(shown.out);
     CHECK(shown.code == 0);
-    CHECK(says(shown.out, "connected by fits: a, b\n"));
-    CHECK(says(shown.out, "connected by fits: c, d\n"));
+    CHECK(fit_says(shown.out, "connected by fits: a, b\n"));
+    CHECK(fit_says(shown.out, "connected by fits: c, d\n"));
     const Outcome apart = row.run("check");
     INFO(apart.out);
     CHECK(apart.code == 1);
-    CHECK(says(apart.out, "in 2 parts that no fit connects"));
+    CHECK(fit_says(apart.out, "in 2 parts that no fit connects"));
     REQUIRE(row.run("report").code == 0);
     const std::string page = slurp(row.folder.path / "case.html");
-    CHECK(says(page, "not all connected"));
+    CHECK(fit_says(page, "not all connected"));
     // Warnings come first; pictures have the sides of the patient, a scale and the names.
     CHECK(page.find(">Warnings</h2>") < page.find("<h2>Connections"));
     CHECK(page.find("<h2>Connections") < page.find("<h2>Fragments"));
     for (const char* written : {">R</text>", ">L</text>", ">S</text>", ">I</text>", " mm</text>", ">d</text>"}) {
         CAPTURE(written);
-        CHECK(says(page, written));
+        CHECK(fit_says(page, written));
     }
     row.fit("c", "b", "-2,0,0,1,0,0,0");
     // It moved from the one that was fitted to it: that fit is void, and d hangs on nothing.
     CHECK(row.state()["assemblies"] == json::array({{"a", "b", "c"}, {"d"}}));
-    CHECK(says(row.run("check").out, "d: fit to c is void"));
+    CHECK(fit_says(row.run("check").out, "d: fit to c is void"));
     row.fit("d", "c", "-3,0,0,1,0,0,0");
     CHECK(row.run("check").code == 0);
     CHECK(json::parse(row.run("check", "--json").out)["ok"] == true);
     REQUIRE(row.run("report").code == 0);
-    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "not all connected"));
-    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), ">Warnings</h2>"));
+    CHECK_FALSE(fit_says(slurp(row.folder.path / "case.html"), "not all connected"));
+    CHECK_FALSE(fit_says(slurp(row.folder.path / "case.html"), ">Warnings</h2>"));
     REQUIRE(row.run("undo").code == 0);
     CHECK(row.run("check").code == 1);
     REQUIRE(row.run("hide", "d").code == 0);
@@ -143,9 +143,9 @@ TEST_CASE("a plan is not finished while a fragment lies in another", "[slow]") {
     const Outcome deep = row.run("check");
     INFO(deep.out);
     CHECK(deep.code == 1);
-    CHECK(says(deep.out, "'a' and 'b' lie in each other with "));
-    CHECK_FALSE(says(deep.out, "'b' and 'c'"));
-    CHECK_FALSE(says(deep.out, "none lies in another"));
+    CHECK(fit_says(deep.out, "'a' and 'b' lie in each other with "));
+    CHECK_FALSE(fit_says(deep.out, "'b' and 'c'"));
+    CHECK_FALSE(fit_says(deep.out, "none lies in another"));
     const json told = json::parse(row.run("check", "--json").out);
     CHECK(told["ok"] == false);
     CHECK(told["problems"].size() == 1);
@@ -160,7 +160,7 @@ TEST_CASE("a fit to the healthy side is refused where the plan has none") {
         row.fit("b", "a", "-1,0,0,1,0,0,0");
         const Outcome refused = row.run(verb, std::string(verb) == "snap" ? "b a --healthy" : "--healthy");
         CHECK(refused.code == 2);
-        CHECK(says(refused.err, "the plan has no healthy side: lay it on a fragment with 'tactus plan mirror'"));
+        CHECK(fit_says(refused.err, "the plan has no healthy side: lay it on a fragment with 'tactus plan mirror'"));
     }
 }
 
@@ -169,8 +169,8 @@ TEST_CASE("a gap between fragments that do not face each other is not told as a 
     REQUIRE(row.run("move", "b --pose 0,0,90,1,0,0,0").code == 0);
     const Outcome gap = row.run("gap", "a b");
     INFO(gap.out);
-    CHECK(says(gap.out, "a and b: do not face each other within 3 mm"));
-    CHECK_FALSE(says(gap.out, "gap 0.00 mm"));
+    CHECK(fit_says(gap.out, "a and b: do not face each other within 3 mm"));
+    CHECK_FALSE(fit_says(gap.out, "gap 0.00 mm"));
     const json pair = json::parse(row.run("gap", "a b --json").out)[0];
     CHECK(pair["gap_median_mm"].is_null());
     CHECK(pair["gap_p95_mm"].is_null());
@@ -186,8 +186,8 @@ TEST_CASE("a fragment deep inside of another is told by its overlap, though no s
     REQUIRE(folder.tactus("plan new " + plan + " " + file("large.stl") + " " + file("small.stl")).code == 0);
     const Outcome gap = folder.tactus("plan gap " + plan);
     INFO(gap.out << gap.err);
-    CHECK(says(gap.out, "large and small: do not face each other within 3 mm; 27"));
-    CHECK_FALSE(says(gap.out, "no two shown fragments"));
+    CHECK(fit_says(gap.out, "large and small: do not face each other within 3 mm; 27"));
+    CHECK_FALSE(fit_says(gap.out, "no two shown fragments"));
     // The small one's points are deep in the large one; those of the large one are nowhere in the small one.
     CHECK(json::parse(folder.tactus("plan gap " + plan + " --json").out)[0]["deepest_mm"].get<double>() > 4.0);
     CHECK(folder.tactus("plan check " + plan).code == 1);
@@ -210,8 +210,8 @@ TEST_CASE("a healthy side that does not lie on the fragment leaves the plan as i
         const Outcome refused = folder.tactus(call);
         INFO(wrong << ": " << refused.out << refused.err);
         CHECK(refused.code == 1);
-        CHECK(says(refused.out, "! the mirrored side lies more than 2 mm away from half of 'bar'"));
-        CHECK(says(refused.out, "the plan is unchanged"));
+        CHECK(fit_says(refused.out, "! the mirrored side lies more than 2 mm away from half of 'bar'"));
+        CHECK(fit_says(refused.out, "the plan is unchanged"));
         CHECK(json::parse(folder.tactus(call + " --json").out)["others"].empty());
         CHECK(slurp(plan) == before);
     }
@@ -219,8 +219,8 @@ TEST_CASE("a healthy side that does not lie on the fragment leaves the plan as i
     // The report says which file the step laid, and how well.
     REQUIRE(folder.tactus("plan report " + plan).code == 0);
     const std::string page = slurp(folder.path / "case.html");
-    CHECK(says(page, "bar.vdb, "));
-    CHECK(says(page, " mm median residual</td>"));
+    CHECK(fit_says(page, "bar.vdb, "));
+    CHECK(fit_says(page, " mm median residual</td>"));
 }
 
 TEST_CASE("a plan of which nothing is shown is not finished", "[slow]") {
@@ -229,7 +229,7 @@ TEST_CASE("a plan of which nothing is shown is not finished", "[slow]") {
     const Outcome check = row.run("check");
     INFO(check.out);
     CHECK(check.code == 1);
-    CHECK(says(check.out, "no fragment is shown; show some with 'tactus plan unhide'"));
+    CHECK(fit_says(check.out, "no fragment is shown; show some with 'tactus plan unhide'"));
     CHECK(row.run("assemble").code == 2);
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("a pose too far away for a body is refused, and the plan is as it was"
         CHECK(moved.code == 2);
         CHECK(std::ranges::count(moved.err, '\n') == 1);
     }
-    CHECK(says(row.run("move", "b --pose 1e308,0,0,1,0,0,0").err, "100 m away"));
+    CHECK(fit_says(row.run("move", "b --pose 1e308,0,0,1,0,0,0").err, "100 m away"));
     CHECK(slurp(row.plan) == before);
 }
 
@@ -262,20 +262,20 @@ TEST_CASE("a fragment does not go where a third one is, is told why it stays, an
     const Outcome blocked = folder.tactus("plan snap " + plan + " two one");
     INFO(blocked.out << blocked.err);
     CHECK(blocked.code == 1);
-    CHECK(says(blocked.out, "two to one: blocked"));
-    CHECK(says(blocked.out, "it would lie in 'third' with"));
+    CHECK(fit_says(blocked.out, "two to one: blocked"));
+    CHECK(fit_says(blocked.out, "it would lie in 'third' with"));
     REQUIRE(folder.tactus("plan hide " + plan + " third").code == 0);
     // Nothing fits from too far away, and no distance is told.
     REQUIRE(folder.tactus("plan move " + plan + " two --pose 60,0,0,1,0,0,0").code == 0);
     const Outcome far = folder.tactus("plan snap " + plan + " two one");
     INFO(far.out);
     CHECK(far.code == 1);
-    CHECK(says(far.out, "too far away"));
-    CHECK(says(far.out, "--mode global"));
+    CHECK(fit_says(far.out, "too far away"));
+    CHECK(fit_says(far.out, "--mode global"));
     const json told = json::parse(folder.tactus("plan snap " + plan + " two one --json").out);
     CHECK(told["rms_mm"].is_null());
     CHECK(told["moved"].is_null());
-    CHECK(says(told["reason"].get<std::string>(), "too far away"));
+    CHECK(fit_says(told["reason"].get<std::string>(), "too far away"));
     REQUIRE(folder.tactus("plan undo " + plan).code == 0);
     const Outcome fits = folder.tactus("plan snap " + plan + " two");
     INFO(fits.out);
@@ -288,7 +288,7 @@ TEST_CASE("a fragment does not go where a third one is, is told why it stays, an
     const Outcome settled = folder.tactus("plan settle " + plan);
     INFO(settled.out);
     CHECK(settled.code == 1);
-    CHECK(says(settled.out, "connected to nothing: third"));
+    CHECK(fit_says(settled.out, "connected to nothing: third"));
 }
 
 TEST_CASE("a pair of fragments has the same gap from plan gap, in either order, and from plan mirror", "[slow]") {
@@ -330,7 +330,7 @@ TEST_CASE("check loads no fragment that cannot lie in another, and none of which
     const auto problems = [&] { return json::parse(row.run("check", "--json").out)["problems"]; };
     const json first = problems();
     INFO(first);
-    CHECK(says(first.dump(), "'a' and 'b' lie in each other with "));
+    CHECK(fit_says(first.dump(), "'a' and 'b' lie in each other with "));
     // One file per fragment and pair whose boxes meet.
     const auto kept = [&] {
         std::map<std::string, std::string> all;
@@ -346,11 +346,11 @@ TEST_CASE("check loads no fragment that cannot lie in another, and none of which
     REQUIRE(row.run("move", "b --pose -2,0,0,1,0,0,0").code == 0);
     const json second = problems();
     CHECK(second != first);
-    CHECK(says(second.dump(), "'a' and 'b' lie in each other with "));
+    CHECK(fit_says(second.dump(), "'a' and 'b' lie in each other with "));
     REQUIRE(row.run("undo").code == 0);
     CHECK(problems() == first);
     REQUIRE(row.run("move", "b --pose 0,0,0,1,0,0,0").code == 0);
-    CHECK_FALSE(says(problems().dump(), "lie in each other"));
+    CHECK_FALSE(fit_says(problems().dump(), "lie in each other"));
     CHECK(kept().size() == 4);
 }
 
@@ -363,7 +363,7 @@ TEST_CASE("the report of a trauma case is a PDF file too, with all of the page",
     const Outcome made = row.run("report", "--pdf " + pdf);
     INFO(made.err);
     REQUIRE(made.code == 0);
-    CHECK(says(made.out, "case.pdf"));
+    CHECK(fit_says(made.out, "case.pdf"));
     const std::string bytes = slurp(pdf);
     REQUIRE(bytes.starts_with("%PDF-1.4"));
     CHECK(bytes.ends_with("%%EOF\n"));
@@ -389,7 +389,7 @@ TEST_CASE("the report of a trauma case is a PDF file too, with all of the page",
     for (const char* written : {"R) Tj", "L) Tj", "S) Tj", "I) Tj", " mm) Tj", "d) Tj", "fit to a is void",
                                 "The fragments are not all connected"}) {
         CAPTURE(written);
-        CHECK(says(bytes, written));
+        CHECK(fit_says(bytes, written));
     }
-    CHECK(says(slurp(row.folder.path / "case.html"), "<h2 class=\"fail\">Warnings"));
+    CHECK(fit_says(slurp(row.folder.path / "case.html"), "<h2 class=\"fail\">Warnings"));
 }

@@ -18,7 +18,7 @@ using tactus::test::slurp;
 
 namespace {
 
-bool says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+bool repaint_says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
 /// Two boxes in a plan; the second has been moved.
 struct Two {
@@ -56,7 +56,7 @@ TEST_CASE("corrected paint comes into a plan as a step, its poses stay, and undo
     const Outcome taken = two.run("repaint", "b " + two.file("painted.vdb"));
     INFO(taken.out << taken.err);
     REQUIRE(taken.code == 0);
-    CHECK(says(taken.out, "1 painted face; poses stay"));
+    CHECK(repaint_says(taken.out, "1 painted face; poses stay"));
     const json after = two.state();
     CHECK(after["fragments"][1]["file"] == "painted.vdb");
     CHECK(after["fragments"][1]["pose"] == before["fragments"][1]["pose"]);
@@ -87,9 +87,9 @@ TEST_CASE("another bone is not taken for a fragment, and the plan is as it was",
         const Outcome refused = two.run("repaint", "b " + two.file(other));
         INFO(other << refused.out << refused.err);
         CHECK(refused.code == 2);
-        CHECK(says(refused.err, other));
+        CHECK(repaint_says(refused.err, other));
     }
-    CHECK(says(two.run("repaint", "b " + two.file("c.stl")).err, "it is another bone, or in another place"));
+    CHECK(repaint_says(two.run("repaint", "b " + two.file("c.stl")).err, "it is another bone, or in another place"));
     CHECK(two.run("repaint", "x " + two.file("painted.vdb")).code == 2);
     CHECK(slurp(two.plan) == before);
 }
@@ -101,10 +101,10 @@ TEST_CASE("a file that was painted anew in its place is taken when one says that
     // Every verb that needs it names the way on.
     const Outcome lost = two.run("gap", "");
     CHECK(lost.code == 2);
-    CHECK(says(lost.err, "'tactus plan repaint'"));
+    CHECK(repaint_says(lost.err, "'tactus plan repaint'"));
     const Outcome unsure = two.run("repaint", "b " + two.file("painted.vdb"));
     CHECK(unsure.code == 2);
-    CHECK(says(unsure.err, "--same-bone"));
+    CHECK(repaint_says(unsure.err, "--same-bone"));
     const Outcome taken = two.run("repaint", "b " + two.file("painted.vdb") + " --same-bone");
     INFO(taken.err);
     REQUIRE(taken.code == 0);

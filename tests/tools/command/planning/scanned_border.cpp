@@ -2,6 +2,7 @@
 // A label border through solid bone beside a true fracture: fits leave the border out, and say so.
 #include "assets/bone/bone.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -18,8 +19,6 @@ using nlohmann::json;
 using test::Outcome;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 double wave(double place, double length) { return std::sin(2.0 * pi * place / length); }
 
@@ -53,14 +52,14 @@ void write_bar(const std::string& path) {
                          std::vector<volume::Segment>{{1, "left", {}}, {2, "middle", {}}, {3, "right", {}}}, path);
 }
 
-struct Folder : test::Folder {
+struct BorderFolder : test::Folder {
     std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 
 }  // namespace
 
 TEST_CASE("fits leave the border between two labels out, say so, and join the true fracture beside it", "[slow]") {
-    const Folder folder;
+    const BorderFolder folder;
     write_bar(folder / "labels.nrrd");
     REQUIRE(folder.tactus("import " + folder / "labels.nrrd" + " --label all -o " + folder / "bones.vdb").code == 0);
     const auto bones = bone::load_bones(folder / "bones.vdb");
@@ -104,7 +103,7 @@ TEST_CASE("fits leave the border between two labels out, say so, and join the tr
 }
 
 TEST_CASE("no paint covers what touches in the scan, and the mark stays in the painted file", "[slow]") {
-    const Folder folder;
+    const BorderFolder folder;
     write_bar(folder / "labels.nrrd");
     REQUIRE(folder.tactus("import " + folder / "labels.nrrd" + " --label all -o " + folder / "bones.vdb").code == 0);
     const auto surface = [&](const std::string& bone, const std::string& how) {

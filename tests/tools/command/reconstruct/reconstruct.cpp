@@ -2,6 +2,7 @@
 // tactus plan reconstruct on a jaw and a fibula of known shape.
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/command/reconstruct/jaw_case.hpp"
 
@@ -19,12 +20,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 using test::half_ring;
 using Case = test::JawCase;
-
-namespace {
-
-constexpr double mm = 1e-3, pi = std::numbers::pi;
-
-}  // namespace
 
 TEST_CASE("plan reconstruct makes a plan of the pieces with each segment in place", "[slow]") {
     const Case made;

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -181,9 +182,9 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
 )")
                                  .string();
     Server server(folder, 256);
-    Recorder there;
+    std::optional<Recorder> there(std::in_place);
     INFO(server.said());
-    REQUIRE(there.is_there());
+    REQUIRE(there->is_there());
     const Outcome outcome =
         folder.tactus("run " + file + " --seconds 1.5 --audio default --out " + (folder.path / "live").string());
     INFO(outcome.err);
@@ -193,6 +194,7 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
     CHECK(summary["sound"][0]["frames_written"] > 60'000);
     CHECK(summary["sound"][0]["heard"]["channels"] == 2);
     const std::string take = (folder.path / "cut").string();
+    there.reset();  // a server that loses a client lets others wait for long when they leave
     const std::string killed = "timeout -s KILL 2 " + tactus::test::command() + " run " + file +
                                " --seconds 20 --audio default --out " + (folder.path / "k").string() + " --record " +
                                take + " >/dev/null 2>&1";

@@ -23,7 +23,7 @@ using tactus::test::slurp;
 
 namespace {
 
-const std::string patch =
+const std::string channel_patch =
     R"(wires = [ "low.signal -> left.signal", "middle.signal -> centre.signal", "high.signal -> right.signal" ]
 [actuators.wrist]
 channel = 3
@@ -92,7 +92,7 @@ TEST_CASE("each channel of a card plays its own node, sample by sample with the 
           "[live]") {
     if (!has_server()) return;
     const Folder folder;
-    const std::string file = folder.write("channels.toml", patch).string();
+    const std::string file = folder.write("channels.toml", channel_patch).string();
     const Outcome done = folder.tactus("render " + file + " --seconds 1.5 --out " + (folder.path / "r").string());
     INFO(done.err);
     REQUIRE(done.code == 0);
@@ -106,7 +106,7 @@ TEST_CASE("each channel of a card plays its own node, sample by sample with the 
 TEST_CASE("an edit takes a channel away and brings it back, and the others play on sample by sample", "[live]") {
     if (!has_server()) return;
     const Folder folder;
-    const std::string file = folder.write("channels.toml", patch).string();
+    const std::string file = folder.write("channels.toml", channel_patch).string();
     const Outcome done = folder.tactus("render " + file + " --seconds 3 --out " + (folder.path / "r").string());
     REQUIRE(done.code == 0);
     const Server server(folder, 256, 8);
@@ -121,14 +121,14 @@ TEST_CASE("an edit takes a channel away and brings it back, and the others play 
     CHECK(recorder.listen_to("tactus:left", 0));
     CHECK(recorder.listen_to("tactus:centre", 1));
     recorder.wait_for(10'000);
-    std::string without = patch;
+    std::string without = channel_patch;
     const std::string wire = "\"middle.signal -> centre.signal\", ", node = "centre = ";
     without.erase(without.find(wire), wire.size());
     const std::size_t line = without.find(node);
     without.erase(line, without.find('\n', line) + 1 - line);
     folder.write("channels.toml", without);
     recorder.wait_for(70'000);
-    folder.write("channels.toml", patch);
+    folder.write("channels.toml", channel_patch);
     const Outcome outcome = playing.get();
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
@@ -180,10 +180,10 @@ u = { type = "sine", rate = "%R", frequency = "100 Hz" }
 a = { type = "audio_output", rate = "48 kHz", %A }
 b = { type = "audio_output", rate = "%R", %B }
 )";
-        std::string patch = text;
+        std::string channel_patch = text;
         for (const auto& [name, value] : {std::pair{"%A", a}, {"%B", b}, {"%R", rate}, {"%R", rate}})
-            patch.replace(patch.find(name), 2, value);
-        const Outcome outcome = folder.tactus("check " + folder.write("p.toml", patch).string());
+            channel_patch.replace(channel_patch.find(name), 2, value);
+        const Outcome outcome = folder.tactus("check " + folder.write("p.toml", channel_patch).string());
         CHECK(outcome.code == 2);
         return outcome.err;
     };

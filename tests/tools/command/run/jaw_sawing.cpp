@@ -16,8 +16,6 @@
 
 using namespace tactus;
 
-namespace {}  // namespace
-
 TEST_CASE("carving at 60 Hz is no line in the force of a saw on the jaw, pushed gently or hard", "[slow]") {
     for (const char* thrust : {"7.5 N", "20 N"}) {
         const test::Folder folder;

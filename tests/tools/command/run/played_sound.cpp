@@ -33,7 +33,7 @@ type = "audio_output"
 rate = "48 kHz"
 )";
 
-std::vector<float> rendered(const Folder& folder, const std::string& patch) {
+std::vector<float> rendered_sound(const Folder& folder, const std::string& patch) {
     const Outcome done =
         folder.tactus("render " + patch + " --seconds 1.5 --overwrite --out " + (folder.path / "r").string());
     INFO(done.err);
@@ -81,7 +81,7 @@ bool plays_the_same(const Folder& folder, int period, bool freewheel, const std:
 void check_playing(bool freewheel, std::initializer_list<int> periods) {
     if (!has_server()) return;
     const Folder folder;
-    const std::vector<float> wanted = rendered(folder, folder.write("tone.toml", tone).string());
+    const std::vector<float> wanted = rendered_sound(folder, folder.write("tone.toml", tone).string());
     REQUIRE(wanted.size() > 70'000);
     for (const int period : periods) {
         INFO("period " << period);

@@ -14,7 +14,7 @@ using tactus::test::slurp;
 namespace {
 
 /// Records a value of each type that has columns; signals become sound files.
-constexpr const char* patch = R"(title = "Every type"
+constexpr const char* every_type = R"(title = "Every type"
 wires = [
   "hand.pose        -> ball.pose",
   "ball.wrench      -> out.wrench",
@@ -82,7 +82,7 @@ TEST_CASE("Python's csv module reads the table of each value type, one name per 
     const Folder folder;
     const std::string out = (folder.path / "out").string();
     const Outcome rendered =
-        folder.tactus("render " + folder.write("all.toml", patch).string() + " --seconds 0.05 --out " + out);
+        folder.tactus("render " + folder.write("all.toml", every_type).string() + " --seconds 0.05 --out " + out);
     INFO(rendered.err);
     REQUIRE(rendered.code == 0);
     const std::string read = (folder.path / "read.json").string();

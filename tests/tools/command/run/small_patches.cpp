@@ -92,13 +92,13 @@ TEST_CASE("small patches of forces follow their laws") {
         return 1.5 * u * std::exp(0.5 - 0.5 * u * u);
     });
     check_law("button-click", z, [](const Row& p, const Row&) {
-        const double mm = -1e3 * p[z];
+        const double depth = -1e3 * p[z];
         const double points[][2] = {{0.0, 0.0}, {2.0, 1.2}, {2.6, 0.5}, {3.5, 0.6}, {5.5, 3.0}};
-        if (mm <= 0.0) return 0.0;
+        if (depth <= 0.0) return 0.0;
         for (std::size_t i = 1; i < std::size(points); ++i)
-            if (mm <= points[i][0])
-                return points[i - 1][1] +
-                       (points[i][1] - points[i - 1][1]) * (mm - points[i - 1][0]) / (points[i][0] - points[i - 1][0]);
+            if (depth <= points[i][0])
+                return points[i - 1][1] + (points[i][1] - points[i - 1][1]) * (depth - points[i - 1][0]) /
+                                              (points[i][0] - points[i - 1][0]);
         return 3.0;
     });
 }

@@ -18,9 +18,9 @@ using tactus::test::slurp;
 namespace {
 
 /// A hand that goes 2 mm into a ball, on a device that states that it can be 5 N/mm stiff.
-std::string touch(const std::string& ball, const std::string& damping, const std::string& more = "",
-                  const std::string& wire = "") {
-    return R"(title = "touch"
+std::string touch_patch(const std::string& ball, const std::string& damping, const std::string& more = "",
+                        const std::string& wire = "") {
+    return R"(title = "touch_patch"
 wires = [
   "hand.pose   -> ball.pose",
   "ball.wrench -> out.wrench",
@@ -84,7 +84,7 @@ double most_in(const std::string& csv, std::size_t column) {
 TEST_CASE(
     "check says that stiffness is unknown where the device states no damping, and what other devices could feel") {
     const Folder folder;
-    const std::string patch = folder.write("touch.toml", touch("stiffness = \"2 N/mm\"", "0 N s/m")).string();
+    const std::string patch = folder.write("touch.toml", touch_patch("stiffness = \"2 N/mm\"", "0 N s/m")).string();
     const Outcome asked = folder.tactus("check --json " + patch);
     CAPTURE(asked.out, asked.err);
     const json checked = json::parse(asked.out);
@@ -102,7 +102,7 @@ TEST_CASE(
 
 TEST_CASE("a stiffness beyond what the device states is refused with the place, and check calls it too stiff") {
     const Folder folder;
-    const std::string patch = folder.write("touch.toml", touch("stiffness = \"8 N/mm\"", "30 N s/m")).string();
+    const std::string patch = folder.write("touch.toml", touch_patch("stiffness = \"8 N/mm\"", "30 N s/m")).string();
     const Outcome checked = folder.tactus("check " + patch);
     CHECK(checked.code == 1);
     CHECK_THAT(checked.out, ContainsSubstring("TOO STIFF: the device states 5 N/mm"));
@@ -118,8 +118,8 @@ TEST_CASE("a wire cannot drive a stiffness beyond what the device states") {
     const std::string patch =
         folder
             .write("touch.toml",
-                   touch("", "30 N s/m", "[nodes.level]\ntype = \"constant\"\nrate = \"60 Hz\"\nnumber = 19e3\n",
-                         "  \"level.value -> ball.stiffness\",\n"))
+                   touch_patch("", "30 N s/m", "[nodes.level]\ntype = \"constant\"\nrate = \"60 Hz\"\nnumber = 19e3\n",
+                               "  \"level.value -> ball.stiffness\",\n"))
             .string();
     const Outcome run = folder.tactus("render " + patch + " --seconds 2 --out " + (folder.path / "out").string());
     INFO(run.err);
@@ -138,9 +138,9 @@ TEST_CASE("check names the law of contact: per area unless the patch gives a sti
             "rate = \"1 kHz\"\n[nodes.coupling]\ntype = \"quasi_static_coupling\"\nrate = \"1 kHz\"\n"
             "stiffness = \"3 N/mm\"\n" +
             std::string(by_point ? "point_stiffness = \"7 N/mm\"\n" : "");
-        const std::string unwired = touch("", "30 N s/m", more,
-                                          "  \"ball2.body -> scene.a\",\n  \"scene.scene -> coupling.scene\",\n"
-                                          "  \"hand.pose -> coupling.device\",\n");
+        const std::string unwired = touch_patch("", "30 N s/m", more,
+                                                "  \"ball2.body -> scene.a\",\n  \"scene.scene -> coupling.scene\",\n"
+                                                "  \"hand.pose -> coupling.device\",\n");
         std::string wired = unwired;
         const std::string wire = "ball.wrench -> out.wrench";
         wired.replace(wired.find(wire), wire.size(), "coupling.wrench -> out.wrench");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // 'tactus score' over whole runs: blades on known paths, hands that differ, and takes.
 #include "assets/bone/bone.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/coupling/placement.hpp"
 #include "tests/dsp/training/block.hpp"
 #include "tests/support/catch.hpp"
@@ -21,8 +22,6 @@ using json = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 /// A block of 20 by 24 by 16 mm, and a task: a cut through its middle from above.
 void write_block(const Folder& folder, double voxel) {

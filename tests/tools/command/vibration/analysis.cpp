@@ -19,17 +19,17 @@
 namespace fs = std::filesystem;
 using nlohmann::json;
 using tactus::test::add_noise;
+using tactus::test::RecordFolder;
+using tactus::test::RecordOutcome;
 using tactus::test::slurp;
 using tactus::test::tones;
-using Folder = tactus::test::RecordFolder;
-using Outcome = tactus::test::RecordOutcome;
 
 TEST_CASE("spectrum reports what its contract names, in calibrated units") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{233.0, 0.5}, {466.0, 0.25}, {699.0, 0.1}, {50.0, 0.02}}, 6.0);
     add_noise(x, 0.005);
     folder.sound("saw.wav", x);
-    const Outcome outcome = folder.tactus(
+    const RecordOutcome outcome = folder.tactus(
         "spectrum saw.wav --json --full-scale '20 m/s^2' --csv "
         "psd.csv --envelope 200:700");
     REQUIRE(outcome.code == 0);
@@ -62,7 +62,7 @@ TEST_CASE("spectrum reports what its contract names, in calibrated units") {
 }
 
 TEST_CASE("spectrum draws SVG and PNG") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("a.wav", tones({{233.0, 0.5}}, 2.0));
     REQUIRE(folder.tactus("spectrum a.wav --plot a.svg").code == 0);
     CHECK(slurp(folder.path / "a.svg").find("limit of touch") != std::string::npos);
@@ -71,12 +71,12 @@ TEST_CASE("spectrum draws SVG and PNG") {
 }
 
 TEST_CASE("a batch goes on past a bad file, says so, and writes one table") {
-    const Folder folder;
+    const RecordFolder folder;
     fs::create_directories(folder.path / "set");
     folder.sound("set/a.wav", tones({{100.0, 0.5}}, 2.0));
     folder.text("set/b.wav", "no sound");
     folder.sound("set/c.flac", tones({{120.0, 0.5}}, 2.0), 1, 48000, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
-    const Outcome outcome = folder.tactus("spectrum set --json --jobs 2 --table t.csv");
+    const RecordOutcome outcome = folder.tactus("spectrum set --json --jobs 2 --table t.csv");
     CHECK(outcome.code == 2);
     const json answer = outcome.answer()["rows"];
     REQUIRE(answer.size() == 3);
@@ -88,9 +88,9 @@ TEST_CASE("a batch goes on past a bad file, says so, and writes one table") {
 }
 
 TEST_CASE("odd records get an answer that says what is odd", "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     const auto first = [&](const std::string& arguments) {
-        const Outcome outcome = folder.tactus("spectrum --json " + arguments);
+        const RecordOutcome outcome = folder.tactus("spectrum --json " + arguments);
         CAPTURE(arguments, outcome.err);
         REQUIRE(outcome.code == 0);
         return outcome.only("rows")["channels"][0];
@@ -130,7 +130,7 @@ TEST_CASE("odd records get an answer that says what is odd", "[slow]") {
 }
 
 TEST_CASE("records that cannot be used end with one error and exit code 2", "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("good.wav", tones({{100.0, 0.5}}, 2.0));
     folder.sound("nan.wav", {0.0, std::nan(""), 0.0});
     folder.sound("empty.wav", {});
@@ -141,7 +141,7 @@ TEST_CASE("records that cannot be used end with one error and exit code 2", "[sl
           "good.wav --envelope 100:90000", "good.wav --envelope x", "good.wav --window round",
           "good.wav --full-scale 5", "good.wav --full-scale '0 m/s^2'", "good.wav --segment 0", "good.wav --plot x.gif",
           "good.wav --csv /nowhere/x.csv"}) {
-        const Outcome outcome = folder.tactus(std::string("spectrum ") + arguments);
+        const RecordOutcome outcome = folder.tactus(std::string("spectrum ") + arguments);
         CAPTURE(arguments, outcome.err);
         CHECK(outcome.code == 2);
         CHECK_FALSE(outcome.err.empty());
@@ -149,7 +149,7 @@ TEST_CASE("records that cannot be used end with one error and exit code 2", "[sl
 }
 
 TEST_CASE("an uneven log is resampled and says how far it can be trusted") {
-    const Folder folder;
+    const RecordFolder folder;
     std::string text = "timestamp_ms,accel_x\n";
     double t = 0.0;
     for (int i = 0; i < 6000; ++i) {
@@ -168,14 +168,14 @@ TEST_CASE(
     "exposure weights three axes, knows bounds, and refuses what is not "
     "calibrated",
     "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     const std::vector<double> x = tones({{100.0 / (2.0 * std::numbers::pi) * 5.0, 0.5}}, 4.0);
     std::vector<double> axes;
     for (const double v : x)
         for (const double share : {1.0, 0.5, 0.0}) axes.push_back(share * v);
     folder.sound("saw.wav", axes, 3);
     CHECK(folder.tactus("exposure saw.wav").code == 2);
-    const Outcome outcome = folder.tactus("exposure saw.wav --json --full-scale '100 m/s^2' --duration '30 min'");
+    const RecordOutcome outcome = folder.tactus("exposure saw.wav --json --full-scale '100 m/s^2' --duration '30 min'");
     REQUIRE(outcome.code == 0);
     const json answer = outcome.only("operations");
   // 500 rad/s is the norm's check point: weight 0.2020.
@@ -209,7 +209,7 @@ TEST_CASE(
 }
 
 TEST_CASE("orders follow a tachometer, a ridge, or a stated rate", "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     constexpr double rate = 8000.0;
     std::vector<double> both;
     for (int i = 0; i < 48000; ++i) {
@@ -219,7 +219,7 @@ TEST_CASE("orders follow a tachometer, a ridge, or a stated rate", "[slow]") {
     }
     folder.sound("run_up.wav", both, 2, 8000);
     for (const char* how : {"--tacho 2", "--channel 1"}) {
-        const Outcome outcome = folder.tactus(fmt::format("orders run_up.wav --json {}", how));
+        const RecordOutcome outcome = folder.tactus(fmt::format("orders run_up.wav --json {}", how));
         CAPTURE(how, outcome.err);
         REQUIRE(outcome.code == 0);
         const json answer = outcome.answer();
@@ -237,7 +237,7 @@ TEST_CASE("orders follow a tachometer, a ridge, or a stated rate", "[slow]") {
 }
 
 TEST_CASE("one sine has one level in every verb: its rms, in dB re full scale or re 1 µm/s²") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> tone = tones({{100.0, 0.1}}, 4.0);
     add_noise(tone, 1e-4);
     folder.sound("tone.wav", tone);
@@ -267,7 +267,7 @@ TEST_CASE("one sine has one level in every verb: its rms, in dB re full scale or
 }
 
 TEST_CASE("third-octave bands add up to the rms, wherever in the record the vibration is") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{200.0, 0.5}}, 5.0);
     add_noise(x, 0.2);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.1 + x[i] * std::exp(-static_cast<double>(i) / 9600.0);
@@ -280,7 +280,7 @@ TEST_CASE("third-octave bands add up to the rms, wherever in the record the vibr
 }
 
 TEST_CASE("a log has the level of its rows, and rows at the ends of 16 bits are clipped") {
-    const Folder folder;
+    const RecordFolder folder;
     std::string text = "time_ms,a\n";
     double square = 0.0;
     for (int i = 0; i < 3000; ++i) {
@@ -299,7 +299,7 @@ TEST_CASE("a log has the level of its rows, and rows at the ends of 16 bits are 
 }
 
 TEST_CASE("one file has one fundamental in every verb, and orders above half the sample rate have no level") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{332.0, 0.3}, {498.0, 0.02}, {664.0, 0.2}, {830.0, 0.1}}, 4.0, 8000.0);  // of 166 Hz
     add_noise(x, 0.02);
     folder.sound("saw.wav", x, 1, 8000);
@@ -323,7 +323,7 @@ TEST_CASE("the recordings of real saws have the fundamental that their spectrogr
         tactus::test::skip("needs recordings in TACTUS_SHARED_DATA");
         return;
     }
-    const Folder folder;
+    const RecordFolder folder;
     const auto fundamental = [&](const std::string& file) {
         return folder.tactus(fmt::format("spectrum --json {}/recordings/{}", data, file)).only("rows")["channels"];
     };
@@ -349,7 +349,7 @@ TEST_CASE("the recordings of real saws have the fundamental that their spectrogr
 }
 
 TEST_CASE("exposure of a second with an offset is that of a minute, by transform and by filter") {
-    const Folder folder;
+    const RecordFolder folder;
     const auto record = [&](const char* name, double seconds) {
         std::vector<double> x = tones({{30.0, 0.2}, {125.0, 0.3}}, seconds, 20000.0);
         for (double& v : x) v += 0.4;
@@ -368,7 +368,7 @@ TEST_CASE("exposure of a second with an offset is that of a minute, by transform
 }
 
 TEST_CASE("orders needs no more memory for a longer recording", "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     const auto kilobytes = [&](double seconds) {
         folder.sound("long.wav", tones({{100.0, 0.3}, {200.0, 0.2}}, seconds, 8000.0), 1, 8000,
                      SF_FORMAT_WAV | SF_FORMAT_PCM_16);
@@ -382,7 +382,7 @@ TEST_CASE("orders needs no more memory for a longer recording", "[slow]") {
 }
 
 TEST_CASE("orders and exposure answer odd records or refuse them with one line", "[slow]") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.text("empty.wav", "");
     folder.text("words.wav", "RIFF");
     folder.text("words.csv", "time,a\n0,1\n1,word\n");
@@ -395,7 +395,7 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line",
     for (const char* file :
          {"empty.wav", "words.wav", "words.csv", "no_samples.wav", "nan.wav", "cut.wav", "missing.wav"})
         for (const char* verb : {"orders --rate 100", "orders", "exposure --uncalibrated"}) {
-            const Outcome outcome = folder.tactus(fmt::format("{} {}", verb, file));
+            const RecordOutcome outcome = folder.tactus(fmt::format("{} {}", verb, file));
             CAPTURE(verb, file, outcome.out, outcome.err);
             CHECK(outcome.code == 2);
             CHECK(outcome.out.empty());
@@ -403,7 +403,7 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line",
         }
 
     const auto weighted = [&](const char* file) {
-        const Outcome outcome =
+        const RecordOutcome outcome =
             folder.tactus(fmt::format("exposure --json --channel 1 --full-scale '1 m/s^2' {}", file));
         CAPTURE(file, outcome.err);
         REQUIRE(outcome.code == 0);
@@ -431,7 +431,7 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line",
     for (const char* file : {"u8.wav", "b24.flac", "k192.wav", "seven.wav", "k3.wav"}) {
         CAPTURE(file);
         CHECK(weighted(file) == Approx(wanted).epsilon(0.01));
-        const Outcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
+        const RecordOutcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
         CAPTURE(outcome.err);
         REQUIRE(outcome.code == 0);
         CHECK(outcome.answer()["channels"][0]["orders"][1]["amplitude"].get<double>() == Approx(0.2).epsilon(0.02));
@@ -439,7 +439,7 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line",
     CHECK(weighted("loud.wav") == Approx(40.0 * wanted).epsilon(1e-6));
     CHECK(folder.tactus("orders --rate 100 one.wav").code == 2);
     for (const char* file : {"silent.wav", "dc.wav"}) {
-        const Outcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
+        const RecordOutcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
         CAPTURE(file, outcome.err);
         REQUIRE(outcome.code == 0);
         CHECK(outcome.answer()["channels"][0]["orders"][0]["amplitude"].get<double>() == Approx(0.0).margin(1e-9));

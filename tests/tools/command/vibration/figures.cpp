@@ -10,10 +10,10 @@
 using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
 using tactus::test::add_noise;
+using tactus::test::RecordFolder;
+using tactus::test::RecordOutcome;
 using tactus::test::slurp;
 using tactus::test::tones;
-using Folder = tactus::test::RecordFolder;
-using Outcome = tactus::test::RecordOutcome;
 
 namespace {
 
@@ -34,7 +34,7 @@ std::vector<double> bearing() {
 }  // namespace
 
 TEST_CASE("several records are drawn in one figure, each with its name and colour") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("first.wav", tones({{100.0, 0.5}}, 2.0, 8000.0), 1, 8000);
     folder.sound("second.wav", tones({{200.0, 0.5}}, 2.0), 1);
     folder.sound("third.wav", tones({{300.0, 0.5}}, 2.0, 8000.0), 1, 8000);
@@ -58,12 +58,12 @@ TEST_CASE("several records are drawn in one figure, each with its name and colou
 }
 
 TEST_CASE("records in different units are not drawn on one axis") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("sound.wav", tones({{100.0, 0.5}}, 2.0, 8000.0), 1, 8000);
     std::string text = "time_s,a\n";
     for (int i = 0; i < 4000; ++i) text += fmt::format("{},{}\n", 0.001 * i, std::sin(0.3 * i));
     folder.text("log.csv", text);
-    const Outcome outcome = folder.tactus("spectrum sound.wav log.csv --plot all.svg");
+    const RecordOutcome outcome = folder.tactus("spectrum sound.wav log.csv --plot all.svg");
     CHECK(outcome.code == 2);
     CHECK_THAT(outcome.err, ContainsSubstring("sound.wav is in full scale and log.csv in count"));
     CHECK_FALSE(std::filesystem::exists(folder.path / "all.svg"));
@@ -74,9 +74,9 @@ TEST_CASE("records in different units are not drawn on one axis") {
 }
 
 TEST_CASE("a mark states the level of the spectrum and of the envelope at its frequency, and the nearest line") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("bearing.wav", bearing(), 1, 16000);
-    const Outcome outcome = folder.tactus(
+    const RecordOutcome outcome = folder.tactus(
         "spectrum --json bearing.wav --envelope 2500:3500 --mark '118.9 Hz:BPFI:2' --mark 30:shaft --mark 9000:none "
         "--plot marked.svg");
     INFO(outcome.err);
@@ -115,7 +115,7 @@ TEST_CASE("a mark states the level of the spectrum and of the envelope at its fr
 }
 
 TEST_CASE("a plot goes to half the sample rate, or over the band that is asked for") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{100.0, 0.3}, {15000.0, 0.2}}, 2.0);
     add_noise(x, 0.01);
     folder.sound("a.wav", x);
@@ -125,17 +125,17 @@ TEST_CASE("a plot goes to half the sample rate, or over the band that is asked f
     const std::string part = slurp(folder.path / "part.svg");
     CHECK_THAT(part, ContainsSubstring(">2k<"));
     CHECK_THAT(part, !ContainsSubstring(">5k<"));
-    const Outcome beyond = folder.tactus("spectrum a.wav --plot no.svg --band 30000:40000");
+    const RecordOutcome beyond = folder.tactus("spectrum a.wav --plot no.svg --band 30000:40000");
     CHECK(beyond.code == 2);
     CHECK_THAT(beyond.err, ContainsSubstring("ends at 24 kHz"));
 }
 
 TEST_CASE("text and pages write numbers without exponents") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{100.0, 2e-5}, {12000.0, 1e-5}}, 3.0, 96000.0);
     add_noise(x, 1e-6);
     folder.sound("quiet.wav", x, 1, 96000);
-    const Outcome outcome = folder.tactus(
+    const RecordOutcome outcome = folder.tactus(
         "spectrum quiet.wav --full-scale '49 m/s^2' --report page.html --plot a.svg --envelope 10000:20000");
     REQUIRE(outcome.code == 0);
     CHECK_THAT(outcome.out, ContainsSubstring("3.000 s at 96 kHz"));
@@ -153,7 +153,7 @@ TEST_CASE("text and pages write numbers without exponents") {
 
 TEST_CASE(
     "the figure of a comparison goes beyond the judged band, which it shows, or over the band that is asked for") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{100.0, 0.3}, {2500.0, 0.2}}, 2.0);
     add_noise(x, 0.01);
     folder.sound("a.wav", x);
@@ -165,7 +165,7 @@ TEST_CASE(
     const std::string part = slurp(folder.path / "part.svg");
     CHECK_THAT(part, !ContainsSubstring(">2k<"));
     CHECK_THAT(part, !ContainsSubstring("not judged"));
-    const Outcome beyond = folder.tactus("compare a.wav a.wav --plot no.svg --band 5000:6000");
+    const RecordOutcome beyond = folder.tactus("compare a.wav a.wav --plot no.svg --band 5000:6000");
     CHECK(beyond.code == 2);
     CHECK_THAT(beyond.err, ContainsSubstring("end at 4 kHz"));
 }

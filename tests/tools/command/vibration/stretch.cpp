@@ -8,9 +8,9 @@
 
 using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
+using tactus::test::RecordFolder;
+using tactus::test::RecordOutcome;
 using tactus::test::tones;
-using Folder = tactus::test::RecordFolder;
-using Outcome = tactus::test::RecordOutcome;
 
 namespace {
 
@@ -28,7 +28,7 @@ constexpr double strong_rms = 0.5 / std::numbers::sqrt2, weak_rms = 0.1 / std::n
 }  // namespace
 
 TEST_CASE("spectrum, orders and exposure analyse the stretch from --from to --to and say so") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("parts.wav", three_parts(), 1, 8000);
     const json row = folder.tactus("spectrum --json --from '2 s' --to '4000 ms' parts.wav").only("rows");
     CHECK(row["duration_s"] == 2.0);
@@ -41,7 +41,7 @@ TEST_CASE("spectrum, orders and exposure analyse the stretch from --from to --to
                ContainsSubstring("of the record: 4.5 s to 6 s of 6 s"));
     CHECK_FALSE(folder.tactus("spectrum parts.wav").out.find("of the record") != std::string::npos);
 
-    const Outcome orders = folder.tactus("orders --json --rate 150 --from 2 --to 4 parts.wav");
+    const RecordOutcome orders = folder.tactus("orders --json --rate 150 --from 2 --to 4 parts.wav");
     CHECK(orders.answer()["channels"][0]["orders"][0]["rms"].get<double>() == Approx(strong_rms).epsilon(1e-3));
     CHECK(orders.answer()["stretch"]["to_s"] == 4.0);
     CHECK_THAT(folder.tactus("orders --rate 150 --from 2 --to 4 parts.wav").out,
@@ -60,7 +60,7 @@ TEST_CASE("spectrum, orders and exposure analyse the stretch from --from to --to
 }
 
 TEST_CASE("a stretch of a log counts from its first row, whatever its clock says") {
-    const Folder folder;
+    const RecordFolder folder;
     const std::vector<double> x = three_parts();
     std::string text = "time_ms,a\n";
     for (std::size_t i = 0; i < x.size(); i += 8)
@@ -75,10 +75,10 @@ TEST_CASE("a stretch of a log counts from its first row, whatever its clock says
 }
 
 TEST_CASE("compare takes one stretch of both records, or one of each from its own start") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("parts.wav", three_parts(), 1, 8000);
     folder.sound("strong.wav", tones({{150.0, 0.5}}, 2.0, 8000.0), 1, 8000);
-    const Outcome same = folder.tactus("compare --json --from 2,0 --to 4,2 parts.wav strong.wav");
+    const RecordOutcome same = folder.tactus("compare --json --from 2,0 --to 4,2 parts.wav strong.wav");
     CHECK(same.code == 0);
     const json pair = same.only("pairs");
     CHECK(pair["rms"]["reference"].get<double>() == Approx(strong_rms).epsilon(0.01));
@@ -87,17 +87,17 @@ TEST_CASE("compare takes one stretch of both records, or one of each from its ow
     CHECK(folder.tactus("compare --to 2 parts.wav strong.wav").code == 1);
     CHECK_THAT(folder.tactus("compare --from 2,0 --to 4,2 parts.wav strong.wav").out,
                ContainsSubstring("compared: 2 s to 4 s of 6 s of the reference, 0 s to 2 s of 2 s of the output"));
-    const Outcome outside = folder.tactus("compare --from 2 --to 4 parts.wav strong.wav");
+    const RecordOutcome outside = folder.tactus("compare --from 2 --to 4 parts.wav strong.wav");
     CHECK(outside.code == 2);
     CHECK_THAT(outside.err, ContainsSubstring("strong.wav: is 2 s long"));
 }
 
 TEST_CASE("a stretch outside of the record is refused with the length of the record") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("parts.wav", three_parts(), 1, 8000);
     for (const char* verb : {"spectrum", "orders --rate 100", "exposure --uncalibrated"})
         for (const char* stretch : {"--from 6", "--from 7", "--to 6.1", "--from 3 --to 2", "--from 3 --to 3"}) {
-            const Outcome outcome = folder.tactus(fmt::format("{} {} parts.wav", verb, stretch));
+            const RecordOutcome outcome = folder.tactus(fmt::format("{} {} parts.wav", verb, stretch));
             CAPTURE(verb, stretch, outcome.err);
             CHECK(outcome.code == 2);
             CHECK_THAT(outcome.err, ContainsSubstring("6 s long"));

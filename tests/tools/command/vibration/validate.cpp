@@ -52,11 +52,11 @@ std::size_t lines_of(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-std::string bundled_set() { return (tactus::test::library_folder() / "saw/reciprocating.toml").string(); }
+std::string validated_set() { return (tactus::test::library_folder() / "saw/reciprocating.toml").string(); }
 
 /// What full scale of the bundled recordings is worth.
 std::string scale() {
-    const std::string set = slurp(bundled_set());
+    const std::string set = slurp(validated_set());
     const std::size_t at = set.find("full_scale = \"") + 14;
     return set.substr(at, set.find('"', at) - at);
 }
@@ -182,10 +182,10 @@ TEST_CASE("validate says what is missing") {
     };
     refused("saw-vibration", "--reference");
     refused("saw-vibration --reference none.toml", "none.toml");
-    refused("touch-sphere --reference " + bundled_set(), "--saw NODE");
-    refused("saw-vibration --saw equaliser --reference " + bundled_set(), "type 'saw'");
-    refused("saw-vibration --out handle:sum.in1 --reference " + bundled_set(), "input");
-    refused("saw-vibration --out load.value --reference " + bundled_set(), "signal");
+    refused("touch-sphere --reference " + validated_set(), "--saw NODE");
+    refused("saw-vibration --saw equaliser --reference " + validated_set(), "type 'saw'");
+    refused("saw-vibration --out handle:sum.in1 --reference " + validated_set(), "input");
+    refused("saw-vibration --out load.value --reference " + validated_set(), "signal");
 }
 
 TEST_CASE("compare takes folders: files are paired by name, and one that is bad does not stop the rest", "[slow]") {

@@ -10,10 +10,10 @@
 
 using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
+using tactus::test::RecordFolder;
+using tactus::test::RecordOutcome;
 using tactus::test::slurp;
 using tactus::test::tones;
-using Folder = tactus::test::RecordFolder;
-using Outcome = tactus::test::RecordOutcome;
 
 namespace {
 
@@ -33,9 +33,9 @@ std::vector<double> run_up() {
 }  // namespace
 
 TEST_CASE("a waterfall over orders has in each row the level of each order at that time and rate") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("run_up.wav", run_up(), 2, 8000);
-    const Outcome outcome = folder.tactus(
+    const RecordOutcome outcome = folder.tactus(
         "orders run_up.wav --tacho 2 --orders 5 --json --waterfall w.csv --waterfall w.json --waterfall w.svg");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
@@ -70,10 +70,10 @@ TEST_CASE("a waterfall over orders has in each row the level of each order at th
 }
 
 TEST_CASE("a waterfall against speed has rows of one rate each, also over frequency") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("run_up.wav", run_up(), 2, 8000);
     const auto fall = [&](const char* over) {
-        const Outcome outcome = folder.tactus(fmt::format(
+        const RecordOutcome outcome = folder.tactus(fmt::format(
             "orders run_up.wav --tacho 2 --orders 5 --json --against speed --over {} --waterfall w.png", over));
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
@@ -102,7 +102,7 @@ TEST_CASE("a waterfall against speed has rows of one rate each, also over freque
 }
 
 TEST_CASE("a waterfall over frequency reads the rms of a line, with the times of the whole record") {
-    const Folder folder;
+    const RecordFolder folder;
     std::vector<double> x = tones({{70.0, 0.1}}, 2.0, rate);
     const std::vector<double> loud = tones({{70.0, 0.5}}, 2.0, rate);
     x.insert(x.end(), loud.begin(), loud.end());
@@ -129,10 +129,10 @@ TEST_CASE("a waterfall over frequency reads the rms of a line, with the times of
 }
 
 TEST_CASE("a waterfall that cannot be made says why") {
-    const Folder folder;
+    const RecordFolder folder;
     folder.sound("steady.wav", tones({{70.0, 0.5}}, 3.0, rate), 1, 8000);
     const auto error = [&](const char* arguments) {
-        const Outcome outcome = folder.tactus(std::string("orders steady.wav --rate 70 ") + arguments);
+        const RecordOutcome outcome = folder.tactus(std::string("orders steady.wav --rate 70 ") + arguments);
         CHECK(outcome.code == 2);
         return outcome.err;
     };
@@ -140,7 +140,7 @@ TEST_CASE("a waterfall that cannot be made says why") {
     CHECK_THAT(error("--against speed"), ContainsSubstring("--waterfall"));
     CHECK_THAT(error("--waterfall w.pdf"), ContainsSubstring(".svg, .png, .csv or .json"));
     // Above half the sample rate there is nothing, in tables and in figures.
-    const Outcome high = folder.tactus("orders steady.wav --rate 70 --orders 80 --json --waterfall w.svg");
+    const RecordOutcome high = folder.tactus("orders steady.wav --rate 70 --orders 80 --json --waterfall w.svg");
     const json row = high.answer()["channels"][0]["waterfall"]["rows"][0]["rms"];
     CHECK(row.front().is_number());
     CHECK(row.back().is_null());

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-std::future<Outcome> begin(const Display& display, const Folder& folder, const std::string& arguments) {
+std::future<Outcome> begin(const VirtualDisplay& display, const Folder& folder, const std::string& arguments) {
     return std::async(std::launch::async, [&display, &folder, arguments] { return on(display, folder, arguments); });
 }
 

@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// The ball patch with a hand on another device, which tells where it is wanted.
-struct Rig {
+struct PulledRig {
     Workbench bench{choice()};
     std::shared_ptr<observe::Observer> observer = std::make_shared<observe::Observer>();
     std::shared_ptr<haptic::PullLink> link = std::make_shared<haptic::PullLink>();
@@ -35,7 +35,7 @@ struct Rig {
         choice.overrides.settings = {"hand.device=gamepad"};
         return choice;
     }
-    Rig() {
+    PulledRig() {
         REQUIRE(bench.plan());
         hands.follow(observer, picture::outline_of(*bench.plan()), *bench.plan());
         status.state = RunStatus::State::runs;
@@ -53,7 +53,7 @@ struct Rig {
 }  // namespace
 
 TEST_CASE("a hand that a device pulls is seen where it is and wanted, with its force and its limit") {
-    Rig rig;
+    PulledRig rig;
     CHECK(rig.shown(second_ns) == 0);  // it has told nothing yet
     rig.tell(second_ns);
     REQUIRE(rig.shown(second_ns) == 1);
@@ -69,7 +69,7 @@ TEST_CASE("a hand that a device pulls is seen where it is and wanted, with its f
 }
 
 TEST_CASE("a pulled hand that nobody reads any more is gone, but not in a pause") {
-    Rig rig;
+    PulledRig rig;
     rig.tell(second_ns);
     REQUIRE(rig.shown(second_ns) == 1);
     rig.status.state = RunStatus::State::stands;

@@ -15,7 +15,7 @@ using namespace tactus::test;
 using namespace tactus::view;
 
 TEST_CASE("a pause that begins while the window is minimised leaves the hand where it is", "[display][slow]") {
-    const tactus::test::Display display;
+    const tactus::test::VirtualDisplay display;
     if (!display.is_there()) {
         tactus::test::skip("Xvfb is not installed (apt install xvfb)");
         return;

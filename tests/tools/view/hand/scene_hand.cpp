@@ -103,7 +103,7 @@ struct Rig {
     }
 };
 
-constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t one_second_ns = 1'000'000'000;
 
 }  // namespace
 
@@ -162,15 +162,15 @@ TEST_CASE("a hand holds what it holds through a pause of any length and goes on 
     rig.picture();
     rig.hand.stand(true);
     rig.picture();
-    rig.picture(3 * second_ns);
+    rig.picture(3 * one_second_ns);
     CHECK(rig.hand.is_there());
     rig.hand.go_to({0.1, 0.0, 0.0});
-    rig.picture(3 * second_ns);
+    rig.picture(3 * one_second_ns);
     CHECK((rig.wanted().buttons & button_trigger) != 0);
-    CHECK(hosted::steady_ns() - rig.wanted().at_ns < second_ns);
+    CHECK(hosted::steady_ns() - rig.wanted().at_ns < one_second_ns);
     CHECK(rig.wanted().pose.position == rig.felt.pose.position);
     // Without a pause it is gone.
     rig.hand.stand(false);
-    rig.picture(3 * second_ns);
+    rig.picture(3 * one_second_ns);
     CHECK_FALSE(rig.hand.is_there());
 }

@@ -3,6 +3,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/segment/seeds_file.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/view/on_display.hpp"
@@ -20,8 +21,6 @@ using view::PaintBench;
 using view::Painting;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Three blocks of bone apart from each other, the last of 4 x 4 x 4 voxels; and two voxels of metal.
 volume::Grid three_blocks() {

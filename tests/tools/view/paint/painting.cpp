@@ -6,6 +6,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/segment/erase_strokes.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/support/catch.hpp"
@@ -33,8 +34,6 @@ using view::Painting;
 
 namespace {
 
-constexpr double mm = 1e-3;
-
 /// Two blocks of bone of 20 x 24 x 24 mm that touch over a part of their faces; HU.
 volume::Grid two_blocks() {
     volume::Grid grid{{52, 34, 34}, Vec3(-0.03, 0.1, -0.2), Vec3(mm), {}};
@@ -51,8 +50,8 @@ volume::Grid two_blocks() {
     return grid;
 }
 
-struct Scene {
-    Scene() {
+struct PaintedScene {
+    PaintedScene() {
         volume::write_volume(two_blocks(), volume::WrittenType::int16, folder.path / "ct.nrrd");
         settings.scan = folder.path / "ct.nrrd";
         settings.threshold = 200.0;
@@ -79,7 +78,7 @@ void dab(Painting& painting, std::size_t label, const Vec3& at, double radius = 
 }
 
 /// Waits for the solver; most a minute.
-void settle(PaintBench& bench) {
+void settle_paint(PaintBench& bench) {
     for (int n = 0; n < 6000; ++n) {
         bench.tend();
         if (!bench.is_busy() && !bench.makes_plan()) return;
@@ -91,7 +90,7 @@ void settle(PaintBench& bench) {
 }  // namespace
 
 TEST_CASE("strokes are kept in the file that segment takes, and undo restores its bytes") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     CHECK(painting.labels().size() == 2);
     CHECK_FALSE(std::filesystem::exists(scene.seeds()));
@@ -125,7 +124,7 @@ TEST_CASE("strokes are kept in the file that segment takes, and undo restores it
 }
 
 TEST_CASE("a stroke that meets no bone changes nothing, nor does one that is not finished") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block);
     const std::string before = file::read_whole_file(scene.seeds());
@@ -142,7 +141,7 @@ TEST_CASE("a stroke that meets no bone changes nothing, nor does one that is not
 }
 
 TEST_CASE("a stroke to a place that the file cannot hold changes nothing") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block);
     const std::string before = file::read_whole_file(scene.seeds());
@@ -163,7 +162,7 @@ TEST_CASE("a stroke to a place that the file cannot hold changes nothing") {
 }
 
 TEST_CASE("what the eraser leaves of a stroke beside the bone is dropped, so that segment takes the file") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block + Vec3(0.0, 6e-3, 0.0));
     dab(painting, 1, right_block);
@@ -178,7 +177,7 @@ TEST_CASE("what the eraser leaves of a stroke beside the bone is dropped, so tha
 }
 
 TEST_CASE("a stroke that the chosen threshold leaves without bone is named") {
-    Scene scene;
+    PaintedScene scene;
     {
         Painting painting = scene.painting();
         dab(painting, 0, left_block);
@@ -193,7 +192,7 @@ TEST_CASE("a stroke that the chosen threshold leaves without bone is named") {
 }
 
 TEST_CASE("a refusal is told again when it happens again") {
-    const Scene scene;
+    const PaintedScene scene;
     PaintBench bench(scene.scan, scene.settings, scene.seeds());
     for (int n = 0; n < 2; ++n) {
         bench.tell("something else");
@@ -206,7 +205,7 @@ TEST_CASE("a refusal is told again when it happens again") {
 }
 
 TEST_CASE("labels by a watershed are shown while the walks are being computed") {
-    const Scene scene;
+    const PaintedScene scene;
     std::vector<segment::SeedLabel> labels(2);
     labels[0] = {"left", {}, {{2e-3, {left_block}}}};
     labels[1] = {"right", {}, {{2e-3, {right_block}}}};
@@ -261,7 +260,7 @@ TEST_CASE("the lines of a painting script are checked before the first one runs"
 }
 
 TEST_CASE("the eraser cuts strokes and takes dabs away") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     painting.begin(1e-3, left_block);
     painting.extend(left_block + Vec3(0.0, 12e-3, 0.0));
@@ -285,7 +284,7 @@ TEST_CASE("the eraser cuts strokes and takes dabs away") {
 }
 
 TEST_CASE("labels are added, named, coloured and removed, and names that the file cannot hold are refused") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting = scene.painting();
     dab(painting, 0, left_block);
     REQUIRE(painting.add_label());
@@ -308,7 +307,7 @@ TEST_CASE("labels are added, named, coloured and removed, and names that the fil
 }
 
 TEST_CASE("a painting that cannot be written is kept in the window and says so") {
-    const Scene scene;
+    const PaintedScene scene;
     Painting painting(scene.folder.path / "none/seeds.json", [](const segment::Stroke&) { return true; });
     painting.begin(1e-3, left_block);
     CHECK(painting.end());
@@ -324,23 +323,23 @@ TEST_CASE("a painting that cannot be written is kept in the window and says so")
 }
 
 TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
-    const Scene scene;
+    const PaintedScene scene;
     {
         PaintBench bench(scene.scan, scene.settings, scene.seeds());
-        settle(bench);
+        settle_paint(bench);
         REQUIRE(bench.labels());
         CHECK(bench.labels()->label.empty());
         CHECK_FALSE(bench.labels()->problem.empty());
         dab(bench.painting(), 0, left_block);
         dab(bench.painting(), 1, right_block);
-        settle(bench);
+        settle_paint(bench);
         REQUIRE(bench.labels()->problem.empty());
         CHECK(bench.labels()->version == bench.painting().version());
         CHECK_FALSE(bench.labels()->is_preview);
         CHECK(bench.labels()->residual < 1e-3);
         // A later dab is solved from the walks before it, and agrees with a solution from nothing.
         dab(bench.painting(), 1, right_block + Vec3(0.0, 8e-3, 8e-3));
-        settle(bench);
+        settle_paint(bench);
         std::optional<segment::Walks> none;
         const auto fresh = view::live_labelling(scene.scan, bench.painting().labels(), none, run_in_turn);
         std::size_t other = 0;
@@ -365,9 +364,9 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
         }
         // In one step to a plan, also with a name that divides a file from its bone.
         REQUIRE(bench.painting().rename(1, "wing ##2, 50 % s"));
-        settle(bench);
+        settle_paint(bench);
         bench.make_plan();
-        settle(bench);
+        settle_paint(bench);
         INFO(bench.message());
         CHECK_FALSE(bench.is_problem());
     }
@@ -380,26 +379,26 @@ TEST_CASE("labels follow what is painted, and are those of segment", "[slow]") {
 }
 
 TEST_CASE("look here goes to the largest uncertain region, and a dab there settles it", "[slow]") {
-    const Scene scene;
+    const PaintedScene scene;
     PaintBench bench(scene.scan, scene.settings, scene.seeds());
-    settle(bench);
+    settle_paint(bench);
     CHECK_FALSE(bench.look_here());
     // Both seeds in one block, as far from the bridge: the other block could be either's.
     dab(bench.painting(), 0, Vec3(-0.015, 0.1095, -0.1835), 1.5e-3);
     dab(bench.painting(), 1, Vec3(-0.015, 0.1235, -0.1835), 1.5e-3);
-    settle(bench);
+    settle_paint(bench);
     REQUIRE_FALSE(bench.labels()->uncertain.empty());
     const std::size_t before = bench.labels()->uncertain.front().voxels;
     REQUIRE(bench.look_here());
     CHECK(bench.cursor.x > -4e-3);  // in the other block
     dab(bench.painting(), 1, bench.cursor);
-    settle(bench);
+    settle_paint(bench);
     const std::size_t after = bench.labels()->uncertain.empty() ? 0 : bench.labels()->uncertain.front().voxels;
     CHECK(after < before / 2);
 }
 
 TEST_CASE("a slice shows the patient's left on the right, and its pixels are places") {
-    const Scene scene;
+    const PaintedScene scene;
     for (const view::Slice slice : {view::Slice::axial, view::Slice::coronal, view::Slice::sagittal}) {
         const view::SlicePlane plane{slice, Vec3(0.01, 0.12, -0.18), 3000.0};
         const view::SliceAxes axes = view::axes_of(slice);
@@ -430,7 +429,7 @@ TEST_CASE("a slice shows the patient's left on the right, and its pixels are pla
 }
 
 TEST_CASE("the surface of the bone is closed, and a ray meets it where it is") {
-    const Scene scene;
+    const PaintedScene scene;
     const view::BoneMesh mesh = view::bone_mesh(scene.scan);
     REQUIRE_FALSE(mesh.patch.triangles.empty());
     double volume = 0.0;
@@ -486,14 +485,14 @@ TEST_CASE("a line of sight meets a vessel, unless bone lies before it") {
         CHECK_FALSE(bench.follow_vessel_on(Vec3(31, -200, 20) * mm, Vec3(0, 1, 0)));
         CHECK(bench.message().find("bone lies before") != std::string::npos);
         CHECK(bench.follow_vessel_on(Vec3(31, 200, 20) * mm, Vec3(0, -1, 0)));
-        settle(bench);
+        settle_paint(bench);
         REQUIRE(bench.vessels().size() == 1);
         CHECK(bench.vessels()[0]->track.length() > 25 * mm);
     }
 }
 
 TEST_CASE("a program that is killed while it paints leaves a whole file with every finished stroke") {
-    const Scene scene;
+    const PaintedScene scene;
     for (int round = 0; round < 5; ++round) {
         std::filesystem::remove(scene.seeds());
         int ends[2];

@@ -18,7 +18,7 @@ namespace {
 
 /// A CT with voxels of 1 x 1 x 2 mm: a plate of bone in two halves that touch over a part of their faces, an artery of radius
 /// 3 mm in front of it.
-void write_scan(const std::filesystem::path& folder) {
+void write_raw_scan(const std::filesystem::path& folder) {
     WrittenVolume scan;
     scan.size = {80, 60, 40};
     scan.step[2].z = 2.0;
@@ -55,7 +55,7 @@ void check_vessel(const json& plan, const std::string& name) {
 TEST_CASE("commands lead from a DICOM folder to a plan of fragments and a vessel, and its report shows both",
           "[slow]") {
     const Folder folder;
-    write_scan(folder.path / "ct");
+    write_raw_scan(folder.path / "ct");
     folder.write("seeds.json", seeds);
     const auto at = [&](const char* name) { return (folder.path / name).string(); };
     const auto done = [&](const std::string& arguments) {
@@ -115,7 +115,7 @@ TEST_CASE("commands lead from a DICOM folder to a plan of fragments and a vessel
 TEST_CASE("the window leads from a DICOM folder to a plan of fragments and a vessel", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
-    write_scan(folder.path / "ct");
+    write_raw_scan(folder.path / "ct");
     folder.write("script", R"(size 1000 700
 label "fragment 1"
 brush 4
@@ -155,7 +155,7 @@ close
 TEST_CASE("a person leads from a DICOM folder to a plan with mouse and keyboard", "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
-    write_scan(folder.path / "ct");
+    write_raw_scan(folder.path / "ct");
     folder.write("script", watching_script("", 25.0));
     auto done = std::async(std::launch::async, [&] {
         return on(display, folder, "segment ct --threshold 500 --paint case.seeds.json --view-script script");
@@ -165,10 +165,10 @@ TEST_CASE("a person leads from a DICOM folder to a plan with mouse and keyboard"
     const Eyes eyes{folder.path};
     const Spot axial = eyes.spot("axial");
     // The slice shows the bone, 70 mm wide, on 92 % of its panel; its middle is that of the bone.
-    const double mm = 0.92 * std::min(axial.right - axial.left, axial.bottom - axial.top) / 70.0;
+    const double pixels = 0.92 * std::min(axial.right - axial.left, axial.bottom - axial.top) / 70.0;
     const auto click = [&](double x, double y) {
-        person.click(0.5 * (axial.left + axial.right) + (x + 0.5) * mm,
-                     0.5 * (axial.top + axial.bottom) + (y - 125.5) * mm);
+        person.click(0.5 * (axial.left + axial.right) + (x + 0.5) * pixels,
+                     0.5 * (axial.top + axial.bottom) + (y - 125.5) * pixels);
         Person::wait(0.4);
     };
     click(-20.0, 126.0);

@@ -2,6 +2,7 @@
 // Slices beside the scene of a plan: their scan and the outlines in them.
 #include "assets/cases/plan_file.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
@@ -23,8 +24,6 @@ using namespace tactus::view;
 using tactus::test::Folder;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// Distances of a ball about the origin; `hollow`: the radius of a cavity.
 volume::Grid ball(double radius, double hollow = 0.0) {
