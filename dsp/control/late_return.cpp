@@ -41,6 +41,9 @@ void LateReturn::tick(bool is_late, bool is_quiet, double elapsed_s) noexcept {
         left_out_ = 0;
     } else on_time_ += elapsed_s;
     quiet_ = is_quiet ? quiet_ + elapsed_s : 0.0;
+    if (!is_attended_ || now_s_ - attended_since_ <= wait_s_ + attended_s) return;
+    needs_hand_ = needs_hand_ || (is_lost_ && needed_hand_);
+    is_attended_ = needed_hand_ = false;
 }
 
 void LateReturn::lose() noexcept {
@@ -58,7 +61,7 @@ bool LateReturn::returns() noexcept {
         --count_;
     }
     at_[static_cast<std::size_t>(count_++)] = now_s_;
-    is_lost_ = false;
+    is_lost_ = is_attended_ = needed_hand_ = false;
     comes_in_ = true;
     return true;
 }
@@ -70,7 +73,10 @@ void LateReturn::come_in(bool are_on, bool are_full) noexcept {
 
 void LateReturn::forgive() noexcept {
     count_ = 0;
+    needed_hand_ = needed_hand_ || needs_hand_;
     needs_hand_ = false;
+    is_attended_ = true;
+    attended_since_ = now_s_;
 }
 
 }  // namespace tactus::control

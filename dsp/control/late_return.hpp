@@ -19,6 +19,8 @@ public:
     static constexpr double ramp_s = 0.5;  ///< in which they then come in, at least
     static constexpr int most_returns = 3;  ///< in `window_s`; the next loss waits for a person
     static constexpr double window_s = 60.0;
+    /// A person who lets forces come back is there for this long after they may come at the earliest.
+    static constexpr double attended_s = 10.0;
 
     /// `period_s`: nominal, of the ticks. `at_least_s`: forces stay away for this long, at least `on_time_s`. Earlier
     /// returns still count; the waits begin anew.
@@ -41,20 +43,24 @@ public:
     void come_in(bool are_on, bool are_full) noexcept;
     /// Forces come back by themselves no more: they did so `most_returns` times within `window_s` before they were lost.
     bool needs_hand() const noexcept { return needs_hand_; }
-    /// A person lets forces come back: earlier returns are forgotten.
+    /// A person lets forces come back: earlier returns are forgotten. If they do not come back in the time of
+    /// `is_attended`, forces that needed a person before need one again.
     void forgive() noexcept;
+    /// Since `forgive`, until `returns`, for at most the wait and `attended_s`.
+    bool is_attended() const noexcept { return is_attended_; }
 
 private:
     /// So many ticks were left out. True when they are too many at once, or within `on_time_s`.
     bool leaves_out_too_many(double ticks) noexcept;
 
     double period_s_ = 0.001, wait_s_ = on_time_s;
-    double now_s_ = 0.0, on_time_ = 0.0, quiet_ = 0.0;
+    double now_s_ = 0.0, on_time_ = 0.0, quiet_ = 0.0, attended_since_ = 0.0;
     std::array<double, most_returns> at_{};  // times of the last returns
     std::array<double, most_left_out> left_out_at_{};  // times of the last ticks that were left out, a ring
     std::size_t next_left_out_ = 0;
     int count_ = 0, left_out_ = 0;  // entries of the two
     bool needs_hand_ = false, is_lost_ = false, comes_in_ = false;
+    bool is_attended_ = false, needed_hand_ = false;
 };
 
 }  // namespace tactus::control

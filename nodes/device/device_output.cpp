@@ -221,12 +221,15 @@ private:
     /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
     /// there. Then they wait for the hand to leave it.
     void return_from_lateness(bool is_good) noexcept {
-        if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let_) || !port_->late.returns()) return;
+        if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
         if (energy_cap && !must_engage_) limiter_.recover_slowly(control::LateReturn::ramp_s);
         else limiter_.recover(control::LateReturn::ramp_s);
         in_fault_ = is_let_ = false;
         ++returns_;
     }
+
+    /// A person let forces return a short while ago.
+    bool is_let() const noexcept { return is_let_ && port_->late.is_attended(); }
 
     control::ForceState state() const noexcept {
         using control::Fault, control::ForceState;
@@ -235,7 +238,7 @@ private:
             case Fault::not_finite: return ForceState::never;
             case Fault::late_commit:
             case Fault::late_source: {
-                const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let_);
+                const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let());
                 if (waits_for_hand) return ForceState::by_hand;
                 return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;
             }

@@ -188,6 +188,48 @@ TEST_CASE("forces come back three times a minute, then by hand") {
     }
 }
 
+TEST_CASE("who lets forces return and goes away is not given a force") {
+    Waiting waiting;
+    for (int n = 0; n < 3; ++n) {
+        waiting.lose();
+        REQUIRE(waiting.ticks_until_return() == 1000);
+    }
+    waiting.lose();
+    REQUIRE(waiting.late.needs_hand());
+    waiting.late.forgive();
+    // Forces may come back a second later at the earliest, and the press holds for ten seconds more.
+    const auto be_late_for = [&](int ticks) {
+        for (int n = 0; n < ticks; ++n) waiting.lose();
+    };
+    SECTION("in time they come back") {
+        be_late_for(9'900);
+        CHECK(waiting.ticks_until_return() == 1000);
+        CHECK_FALSE(waiting.late.is_attended());
+    }
+    SECTION("later they need a person again") {
+        be_late_for(10'100);
+        CHECK(waiting.ticks_until_return() == 5000);
+        CHECK(waiting.late.needs_hand());
+        waiting.late.forgive();
+        CHECK(waiting.ticks_until_return() == 1);
+    }
+    SECTION("a second press counts anew") {
+        be_late_for(9'000);
+        waiting.late.forgive();
+        be_late_for(9'900);
+        CHECK(waiting.ticks_until_return() == 1000);
+    }
+    SECTION("no press makes forces that come back by themselves need a person") {
+        waiting.late.forgive();
+        REQUIRE(waiting.ticks_until_return(1000) == 1000);
+        waiting.lose();
+        waiting.late.forgive();
+        be_late_for(12'000);
+        CHECK_FALSE(waiting.late.needs_hand());
+        CHECK(waiting.ticks_until_return() == 1000);
+    }
+}
+
 TEST_CASE("a return counts from when the hand may feel forces") {
     Waiting waiting;
     waiting.lose();

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double rounding = 1e-9;
 constexpr std::int64_t stale_ticks = 10, engage_ticks = 3;
+constexpr std::int64_t attended = 10'002;  // ms; times are sums of ticks
 constexpr double small = 0.5;  // N
 constexpr std::size_t most_left_out = 10;
 
@@ -71,8 +72,10 @@ void HandRules::note_loss(const TickSeen& seen) {
     most_asked_ = 0.0;
     if (seen.is_pressed && is_late_) {
         returns_.clear();
+        needed_person_ = needed_person_ || needs_person_;
         needs_person_ = false;
         is_let_ = true;
+        pressed_ = seen.logical;
     }
 }
 
@@ -93,11 +96,16 @@ void HandRules::come_back(const TickSeen& seen) {
         if (limits_.recover_after == 0) breaks("forces are to come back to a bad device although the patch says never");
         if (seen.logical - last_bad_ < limits_.recover_after) breaks("forces are to come back to a device too soon");
     }
+    if (is_late_) needed_person_ = false;
     is_late_ = is_bad_ = false;
     repeats_ = 0;
 }
 
 void HandRules::tick(const TickSeen& seen, const DevicePort& port) {
+    if (seen.logical - pressed_ > std::max(on_time, limits_.recover_after) + attended) {
+        needs_person_ = needs_person_ || (is_late_ && needed_person_);
+        needed_person_ = is_let_ = false;
+    }
     note_loss(seen);
     if (has_lost() && port.fault == control::Fault::none) come_back(seen);
     if (!has_lost() && port.fault != control::Fault::none) breaks("there is a fault without a reason");

@@ -62,9 +62,9 @@ private:
     std::string broken_;
     bool is_late_ = false, is_bad_ = false, is_nan_ = false, is_held_ = false;  // why forces are away
     bool must_engage_ = true, was_engaged_ = false;
-    bool was_by_watchdog_ = false, comes_in_ = false, needs_person_ = false, is_let_ = false;
+    bool was_by_watchdog_ = false, comes_in_ = false, needs_person_ = false, needed_person_ = false, is_let_ = false;
     std::int64_t last_late_ = -1, last_bad_ = 0, counter_ = -1, repeats_ = 0, small_ticks_ = 0, ramped_ = 0;
-    std::int64_t quiet_ticks_ = 0, zero_by_ms_ = 0, all_returns_ = 0, given_ms_ = 0;
+    std::int64_t quiet_ticks_ = 0, pressed_ = 0, zero_by_ms_ = 0, all_returns_ = 0, given_ms_ = 0;
     double most_asked_ = 0.0, given_ = 0.0, wanted_ = 0.0, fades_from_ = 0.0;
     std::deque<std::int64_t> left_out_, returns_;
 };

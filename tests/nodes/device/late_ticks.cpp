@@ -96,6 +96,22 @@ TEST_CASE("the fourth late tick in a minute takes the force away until a person 
     CHECK(out.node.values<Wrench>("applied").back().force.x == Approx(asked));
 }
 
+TEST_CASE("a press that lets forces return is forgotten when they could not for ten seconds") {
+    LateOutput out;
+    const bool never = GENERATE(false, true);
+    if (never) out.node.set("recover_after", "0 s");
+    for (int n = 0; n < 4; ++n) out.taken.insert(600 + 2000 * n);
+    const int late_for = GENERATE(9'000, 12'000);
+    for (int n = 0; n < late_for; n += 500) out.taken.insert(8001 + n);
+    out.run(8000);
+    REQUIRE(out.port().state == control::ForceState::by_hand);
+    out.node.set("recover", "1");
+    out.node.run(16'000);
+    const double force = out.node.values<Wrench>("applied").back().force.x;
+    CHECK(force == Approx(late_for < 10'000 ? asked : 0.0));
+    CHECK((out.port().state == control::ForceState::by_hand) == (late_for > 10'000));
+}
+
 TEST_CASE("nothing but lateness brings a force back to a hand that stays in the body") {
     LateOutput out;
     control::ForceState expected = control::ForceState::on;

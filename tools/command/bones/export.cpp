@@ -98,7 +98,7 @@ int export_bone(const ExportChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_export(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
     verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
@@ -114,6 +114,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb export_verb() { return {"export", "write a bone, cut or not, as a mesh or a volume", add}; }
+Verb export_verb() { return {"export", "write a bone, cut or not, as a mesh or a volume", declare_export}; }
 
 }  // namespace tactus::command

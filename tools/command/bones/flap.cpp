@@ -62,7 +62,7 @@ int flap(const FlapChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_flap(VerbOptions& verb) {
     const auto choice = std::make_shared<FlapChoice>();
     verb.add("-o,--out", choice->out, "folder for the files").required();
     verb.add("--leg", choice->leg, "leg that the fibula is taken from").shows_default().one_of({"left", "right"});
@@ -80,7 +80,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb flap_verb() {
-    return {"flap", "make a synthetic case for 'plan reconstruct': jaw, fibula, vessels, recipient sites", add};
+    return {"flap", "make a synthetic case for 'plan reconstruct': jaw, fibula, vessels, recipient sites",
+            declare_flap};
 }
 
 }  // namespace tactus::command

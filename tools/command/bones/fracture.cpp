@@ -80,7 +80,7 @@ int fracture(const FractureChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_fracture(VerbOptions& verb) {
     const auto choice = std::make_shared<FractureChoice>();
     verb.add("bone", choice->bone, "bone file, or anything that import reads").required();
     verb.add("-o,--out", choice->out, "folder for the fragments and truth.json").required();
@@ -120,7 +120,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb fracture_verb() {
-    return {"fracture", "break a bone into pieces and simulate scans of them, with ground truth", add};
+    return {"fracture", "break a bone into pieces and simulate scans of them, with ground truth", declare_fracture};
 }
 
 }  // namespace tactus::command

@@ -107,7 +107,7 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     return faces.empty() || is_doubtful(found) ? answer_is_no : done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_fracture_surface(VerbOptions& verb) {
     const auto choice = std::make_shared<FractureSurfaceChoice>();
     study::FractureSurfaceSettings& settings = choice->settings;
     verb.add("bone", settings.bone, "bone file or closed mesh").required();
@@ -148,7 +148,8 @@ Action add(VerbOptions& verb) {
 
 Verb fracture_surface_verb() {
     return {"fracture-surface",
-            "propose the fracture surface of a fragment; 1: none found, or the unbroken bone does not lie on it", add};
+            "propose the fracture surface of a fragment; 1: none found, or the unbroken bone does not lie on it",
+            declare_fracture_surface};
 }
 
 }  // namespace tactus::command

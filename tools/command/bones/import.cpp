@@ -124,7 +124,7 @@ int import_bone(const ImportChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_import(VerbOptions& verb) {
     const auto choice = std::make_shared<ImportChoice>();
     verb.add("input", choice->input, "the file").required();
     verb.add("-o,--out", choice->out, "OpenVDB file for the bone").required();
@@ -160,7 +160,7 @@ Action add(VerbOptions& verb) {
 Verb import_verb() {
     return {"import",
             "make a bone from a CT (DICOM folder or zip, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)",
-            add};
+            declare_import};
 }
 
 }  // namespace tactus::command

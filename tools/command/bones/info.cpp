@@ -109,7 +109,7 @@ int info(const InfoChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_info(VerbOptions& verb) {
     const auto choice = std::make_shared<InfoChoice>();
     verb.add("file", choice->input, "the file").required();
     verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it");
@@ -123,6 +123,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb info_verb() { return {"info", "summarise a CT, label map, mesh or bone file", add}; }
+Verb info_verb() { return {"info", "summarise a CT, label map, mesh or bone file", declare_info}; }
 
 }  // namespace tactus::command

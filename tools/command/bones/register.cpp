@@ -78,7 +78,7 @@ int register_surfaces(const RegisterChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_register(VerbOptions& verb) {
     const auto choice = std::make_shared<RegisterChoice>();
     study::RegisterSettings& settings = choice->settings;
     verb.add("moving", settings.moving, "bone file or mesh, which need not be closed").required();
@@ -102,6 +102,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb register_verb() { return {"register", "register a surface to another one of the same shape", add}; }
+Verb register_verb() { return {"register", "register a surface to another one of the same shape", declare_register}; }
 
 }  // namespace tactus::command

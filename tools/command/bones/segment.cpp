@@ -217,7 +217,7 @@ int segment_bone(const SegmentChoice& given) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_segment(VerbOptions& verb) {
     const auto choice = std::make_shared<SegmentChoice>();
     study::SegmentSettings& settings = choice->settings;
     verb.add("scan", settings.scan, "a CT: DICOM folder or zip, NRRD, NIfTI, InVesalius").required();
@@ -259,6 +259,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb segment_verb() { return {"segment", "separate the fragments of a CT by random walks from painted seeds", add}; }
+Verb segment_verb() {
+    return {"segment", "separate the fragments of a CT by random walks from painted seeds", declare_segment};
+}
 
 }  // namespace tactus::command

@@ -125,7 +125,7 @@ int snap(const SnapChoice& choice) {
     return found.fit.verdict == fit::FitVerdict::fit ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_snap(VerbOptions& verb) {
     const auto choice = std::make_shared<SnapChoice>();
     verb.add("moving", choice->settings.moving, "the moving fragment: bone file or closed mesh").required();
     verb.add("fixed", choice->settings.fixed, "the fixed fragment").required();
@@ -145,6 +145,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb snap_verb() { return {"snap", "fit a fragment to another one, with a verdict", add}; }
+Verb snap_verb() { return {"snap", "fit a fragment to another one, with a verdict", declare_snap}; }
 
 }  // namespace tactus::command

@@ -214,7 +214,7 @@ int follow(const VesselChoice& given) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_vessel(VerbOptions& verb) {
     const auto choice = std::make_shared<VesselChoice>();
     verb.add("scan", choice->settings.scan, "CT or MR angiography, in a format of import").required();
     verb.add("--seed", choice->seed, "a place in the vessel, mm, LPS").required().value_name("X,Y,Z");
@@ -250,6 +250,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb vessel_verb() { return {"vessel", "follow a vessel in a scan from one seed", add}; }
+Verb vessel_verb() { return {"vessel", "follow a vessel in a scan from one seed", declare_vessel}; }
 
 }  // namespace tactus::command

@@ -120,7 +120,7 @@ int calibrate(const CalibrateChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_calibrate(VerbOptions& verb) {
     const auto choice = std::make_shared<CalibrateChoice>();
     verb.add("-o,--out", choice->out, "TOML file for the display").required();
     const Option device = verb.add("--device", choice->device, "driver of the touching device; 'devices' lists them");
@@ -155,7 +155,8 @@ Action add(VerbOptions& verb) {
 
 Verb calibrate_verb() {
     return {"calibrate",
-            "calibrate a display: find screens, mirror and device by touching them; writes a file for --display", add};
+            "calibrate a display: find screens, mirror and device by touching them; writes a file for --display",
+            declare_calibrate};
 }
 
 }  // namespace tactus::command

@@ -78,7 +78,7 @@ int judge(const RigChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_gripper(VerbOptions& verb) {
     const auto choice = std::make_shared<RigChoice>();
     add_patch_options(verb, choice->patch);
     verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
@@ -98,7 +98,7 @@ Verb gripper_verb() {
     return {.name = "gripper",
             .about =
                 "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
-            .add = add,
+            .add = declare_gripper,
             .old_name = "rig"};
 }
 

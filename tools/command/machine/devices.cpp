@@ -53,7 +53,7 @@ int devices(bool json) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_devices(VerbOptions& verb) {
     struct Choice {
         std::string probe, verify;
         DeviceLook look;
@@ -81,6 +81,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb devices_verb() { return {"devices", "list haptic drivers and sound cards of this machine", add}; }
+Verb devices_verb() { return {"devices", "list haptic drivers and sound cards of this machine", declare_devices}; }
 
 }  // namespace tactus::command

@@ -28,7 +28,7 @@ int generate(const GenerateChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_generate(VerbOptions& verb) {
     const auto choice = std::make_shared<GenerateChoice>();
     verb.add("what", choice->what, "what to write").required().one_of({"man", "bash", "zsh", "fish"});
     verb.add("folder", choice->folder, "output folder; made if missing").required();
@@ -38,8 +38,10 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb generate_verb() {
-    return {
-        .name = "generate", .about = "write manual pages, or the completion of a shell", .add = add, .is_hidden = true};
+    return {.name = "generate",
+            .about = "write manual pages, or the completion of a shell",
+            .add = declare_generate,
+            .is_hidden = true};
 }
 
 }  // namespace tactus::command

@@ -135,7 +135,7 @@ int nodes(const std::string& wanted, bool json) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_nodes(VerbOptions& verb) {
     struct Choice {
         std::string type;
         bool json = false;
@@ -148,6 +148,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb nodes_verb() { return {"nodes", "list the node types with ports, parameters, units and ranges", add}; }
+Verb nodes_verb() { return {"nodes", "list the node types with ports, parameters, units and ranges", declare_nodes}; }
 
 }  // namespace tactus::command

@@ -56,7 +56,7 @@ int go_to_alternative(const AlternativeChoice& choice) {
     return show_change(choice);
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_alternative(VerbOptions& verb) {
     const auto choice = std::make_shared<AlternativeChoice>();
     add_plan_options(verb, *choice);
     verb.add("name", choice->alternative, "name of the alternative (default: list all)");
@@ -68,7 +68,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_alternative_verb() {
-    return {"alternative", "begin an alternative at the current state, or switch to another", add};
+    return {"alternative", "begin an alternative at the current state, or switch to another", declare_plan_alternative};
 }
 
 }  // namespace tactus::command

@@ -131,7 +131,7 @@ int assemble(const PlanChoice& choice) {
     return is_done ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_assemble(VerbOptions& verb) {
     const auto choice = std::make_shared<PlanChoice>();
     add_plan_options(verb, *choice);
     add_fit_options(verb, *choice);
@@ -144,7 +144,7 @@ Verb plan_assemble_verb() {
     return {
         "assemble",
         "put all shown fragments together, the surest fits first; 1: they are in several parts, or lie in each other",
-        add};
+        declare_plan_assemble};
 }
 
 }  // namespace tactus::command

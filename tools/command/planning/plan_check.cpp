@@ -48,7 +48,7 @@ int check(const PlanChoice& choice) {
     return problems.empty() ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_check(VerbOptions& verb) {
     const auto choice = std::make_shared<PlanChoice>();
     add_plan_options(verb, *choice);
     return [choice] { return check(*choice); };
@@ -59,7 +59,7 @@ Action add(VerbOptions& verb) {
 Verb plan_check_verb() {
     return {"check",
             "check that fits connect all shown fragments and hold, and that none lies in another; 1: it is not so",
-            add};
+            declare_plan_check};
 }
 
 }  // namespace tactus::command

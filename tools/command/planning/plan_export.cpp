@@ -35,7 +35,7 @@ int export_plan(const ExportChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_export(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     add_plan_options(verb, *choice);
     verb.add("-o,--out", choice->out, "folder for meshes and tables").required();
@@ -46,7 +46,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_export_verb() {
-    return {"export", "write the shown fragments as placed, vessels, transforms and landmarks for other programs", add};
+    return {"export", "write the shown fragments as placed, vessels, transforms and landmarks for other programs",
+            declare_plan_export};
 }
 
 }  // namespace tactus::command

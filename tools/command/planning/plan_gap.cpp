@@ -60,7 +60,7 @@ int gap(const PlanChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_gap(VerbOptions& verb) {
     const auto choice = std::make_shared<PlanChoice>();
     add_plan_options(verb, *choice);
     verb.add("fragments", choice->names, "two fragments (default: all pairs that face each other)");
@@ -69,6 +69,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_gap_verb() { return {"gap", "measure gap, contact and overlap of placed fragments", add}; }
+Verb plan_gap_verb() { return {"gap", "measure gap, contact and overlap of placed fragments", declare_plan_gap}; }
 
 }  // namespace tactus::command

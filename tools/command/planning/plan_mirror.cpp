@@ -126,7 +126,7 @@ int mirror(const MirrorChoice& choice) {
     return is_doubtful(laid.fit()) ? answer_is_no : done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_mirror(VerbOptions& verb) {
     const auto choice = std::make_shared<MirrorChoice>();
     add_plan_options(verb, *choice);
     verb.add("healthy", choice->healthy, "bone file or mesh of the other side").required();
@@ -139,7 +139,7 @@ Action add(VerbOptions& verb) {
 
 Verb plan_mirror_verb() {
     return {"mirror", "mirror the healthy side and register it to a fragment, as a target; 1: it does not lie on it",
-            add};
+            declare_plan_mirror};
 }
 
 }  // namespace tactus::command

@@ -20,7 +20,7 @@ int move_fragment(const MoveChoice& choice) {
     return show_change(choice);
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_move(VerbOptions& verb) {
     const auto choice = std::make_shared<MoveChoice>();
     add_plan_options(verb, *choice);
     add_fragments(verb, *choice, "which one").count(1);
@@ -30,6 +30,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_move_verb() { return {"move", "place a fragment and its group", add}; }
+Verb plan_move_verb() { return {"move", "place a fragment and its group", declare_plan_move}; }
 
 }  // namespace tactus::command

@@ -86,7 +86,7 @@ int make_plan(const NewChoice& choice) {
     return show_change(choice);
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_new(VerbOptions& verb) {
     const auto choice = std::make_shared<NewChoice>();
     add_plan_options(verb, *choice);
     verb.add("files", choice->names, "bone files or closed meshes, FILE or NAME=FILE").required();
@@ -96,6 +96,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_new_verb() { return {"new", "make a plan of fragments at their scanned poses", add}; }
+Verb plan_new_verb() { return {"new", "make a plan of fragments at their scanned poses", declare_plan_new}; }
 
 }  // namespace tactus::command

@@ -30,7 +30,7 @@ int repaint_fragment(const RepaintChoice& choice) {
     return show_change(choice);
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_repaint(VerbOptions& verb) {
     const auto choice = std::make_shared<RepaintChoice>();
     add_plan_options(verb, *choice);
     verb.add("fragment", choice->fragment, "which one").required();
@@ -43,6 +43,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_repaint_verb() { return {"repaint", "take a file with corrected paint for a fragment; poses stay", add}; }
+Verb plan_repaint_verb() {
+    return {"repaint", "take a file with corrected paint for a fragment; poses stay", declare_plan_repaint};
+}
 
 }  // namespace tactus::command

@@ -55,7 +55,7 @@ int report(const ReportChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_report(VerbOptions& verb) {
     const auto choice = std::make_shared<ReportChoice>();
     add_plan_options(verb, *choice);
     verb.add("-o,--out", choice->out, "HTML file (default: beside the plan)");
@@ -67,7 +67,8 @@ Action add(VerbOptions& verb) {
 
 Verb plan_report_verb() {
     return {"report",
-            "write an HTML page, or a PDF file too, with warnings, fits, pictures, gaps and the order of steps", add};
+            "write an HTML page, or a PDF file too, with warnings, fits, pictures, gaps and the order of steps",
+            declare_plan_report};
 }
 
 }  // namespace tactus::command

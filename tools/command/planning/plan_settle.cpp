@@ -73,7 +73,7 @@ int settle(const SettleChoice& choice) {
     return all_fit && study::is_in_one_part(state) ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_settle(VerbOptions& verb) {
     const auto choice = std::make_shared<SettleChoice>();
     add_plan_options(verb, *choice);
     verb.add("fragments", choice->names, "fragments to settle (default: all fitted ones)");
@@ -88,7 +88,7 @@ Verb plan_settle_verb() {
     return {"settle",
             "refine fitted fragments, each against all its neighbours; 1: one does not fit, or the fragments are not "
             "connected",
-            add};
+            declare_plan_settle};
 }
 
 }  // namespace tactus::command

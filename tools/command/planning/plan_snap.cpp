@@ -63,7 +63,7 @@ int snap_fragment(const SnapChoice& choice) {
     return fits ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_snap(VerbOptions& verb) {
     const auto choice = std::make_shared<SnapChoice>();
     add_plan_options(verb, *choice);
     add_fragments(verb, *choice, "the moving fragment (with its group) and the fixed one (default: the best match)")
@@ -77,6 +77,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_snap_verb() { return {"snap", "fit the fracture of a fragment to another fragment; 1: no fit", add}; }
+Verb plan_snap_verb() {
+    return {"snap", "fit the fracture of a fragment to another fragment; 1: no fit", declare_plan_snap};
+}
 
 }  // namespace tactus::command

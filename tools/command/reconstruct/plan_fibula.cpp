@@ -124,7 +124,7 @@ int fibula(const FibulaChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_fibula(VerbOptions& verb) {
     const auto choice = std::make_shared<FibulaChoice>();
     verb.add("inputs", choice->inputs, "planes of the jaw, line and surface of the fibula (.json)").required();
     verb.flag("--json", choice->json, "as JSON");
@@ -134,7 +134,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_fibula_verb() {
-    return {"fibula", "cuts of a fibula whose segments fill a gap of a jaw: lengths, angles, poses, warnings", add};
+    return {"fibula", "cuts of a fibula whose segments fill a gap of a jaw: lengths, angles, poses, warnings",
+            declare_plan_fibula};
 }
 
 }  // namespace tactus::command

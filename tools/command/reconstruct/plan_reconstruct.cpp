@@ -28,7 +28,7 @@ int run(const ReconstructChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_plan_reconstruct(VerbOptions& verb) {
     const auto choice = std::make_shared<ReconstructChoice>();
     add_plan_options(verb, *choice);
     verb.add("inputs", choice->inputs, "inputs as of 'plan fibula', with 'donor' and, if wanted, 'jaw' (.json)")
@@ -41,7 +41,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_reconstruct_verb() {
-    return {"reconstruct", "cut jaw and fibula as planned; a new plan has the pieces, each segment in place", add};
+    return {"reconstruct", "cut jaw and fibula as planned; a new plan has the pieces, each segment in place",
+            declare_plan_reconstruct};
 }
 
 }  // namespace tactus::command

@@ -112,7 +112,7 @@ int check(const CheckChoice& choice) {
     return is_stable(json) ? done : answer_is_no;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_check(VerbOptions& verb) {
     const auto choice = std::make_shared<CheckChoice>();
     add_patch_options(verb, choice->patch);
     verb.flag("--json", choice->json, "as JSON");
@@ -128,7 +128,7 @@ Action add(VerbOptions& verb) {
 
 Verb check_verb() {
     return {"check", "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable",
-            add};
+            declare_check};
 }
 
 }  // namespace tactus::command

@@ -29,7 +29,7 @@ int draw(const session::PatchChoice& choice, const std::filesystem::path& out) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_draw(VerbOptions& verb) {
     const auto choice = std::make_shared<DrawChoice>();
     add_patch_options(verb, choice->patch);
     verb.add("-o,--out", choice->out, "file (default: standard output)");
@@ -38,6 +38,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb draw_verb() { return {"draw", "draw the graph as SVG", add}; }
+Verb draw_verb() { return {"draw", "draw the graph as SVG", declare_draw}; }
 
 }  // namespace tactus::command

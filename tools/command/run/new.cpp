@@ -67,7 +67,7 @@ int make_new(const NewChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_new(VerbOptions& verb) {
     const auto choice = std::make_shared<NewChoice>();
     verb.add("name", choice->patch, "file of the new patch; '.toml' may be left out").required();
     Option from =
@@ -80,6 +80,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb new_verb() { return {"new", "make a patch from an example", add}; }
+Verb new_verb() { return {"new", "make a patch from an example", declare_new}; }
 
 }  // namespace tactus::command

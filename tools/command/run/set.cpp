@@ -27,7 +27,7 @@ int set(const SetChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_set(VerbOptions& verb) {
     const auto choice = std::make_shared<SetChoice>();
     verb.add("setting", choice->settings, "NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"").required();
     verb.add("--process", choice->process, "process number of the run, when there are several");
@@ -36,6 +36,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb set_verb() { return {"set", "change a parameter of a running patch", add}; }
+Verb set_verb() { return {"set", "change a parameter of a running patch", declare_set}; }
 
 }  // namespace tactus::command

@@ -33,7 +33,7 @@ int trigger(const TriggerChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_trigger(VerbOptions& verb) {
     const auto choice = std::make_shared<TriggerChoice>();
     verb.add("node", choice->nodes, "the button: a node with a parameter 'press', such as undo").required();
     verb.add("--process", choice->process, "process number of the run, when there are several");
@@ -42,6 +42,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb trigger_verb() { return {"trigger", "press a button of a running patch", add}; }
+Verb trigger_verb() { return {"trigger", "press a button of a running patch", declare_trigger}; }
 
 }  // namespace tactus::command

@@ -11,7 +11,7 @@ namespace {
 
 int view_file(const view::FileViewChoice& choice) { return view::view_file(choice, session::stop_on_signals()); }
 
-Action add(VerbOptions& verb) {
+Action declare_view(VerbOptions& verb) {
     const auto choice = std::make_shared<view::FileViewChoice>();
     verb.add(
         "file", choice->file,
@@ -25,7 +25,7 @@ Action add(VerbOptions& verb) {
 
 Verb view_verb() {
     return {"view", "open a window: on a take, with its values and bones at any instant, on a patch, or to choose",
-            add};
+            declare_view};
 }
 
 }  // namespace tactus::command

@@ -47,7 +47,7 @@ int score(const ScoreChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_score(VerbOptions& verb) {
     const auto choice = std::make_shared<ScoreChoice>();
     verb.add("runs", choice->runs,
              "results of runs with a node 'task', takes, or attempts or whole sessions of 'tactus session', in the "
@@ -66,7 +66,7 @@ Action add(VerbOptions& verb) {
 
 Verb score_verb() {
     return {"score", "score attempts at a training task: plane, volumes, structures, force, strokes; not validated",
-            add};
+            declare_score};
 }
 
 }  // namespace tactus::command

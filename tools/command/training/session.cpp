@@ -154,7 +154,7 @@ int run_session(const SessionChoice& choice) {
     return worst;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_session(VerbOptions& verb) {
     const auto choice = std::make_shared<SessionChoice>();
     verb.add("tasks", choice->tasks, "task files, or names in the library such as mandible-canal, in their order")
         .required();
@@ -176,7 +176,7 @@ Action add(VerbOptions& verb) {
 
 Verb session_verb() {
     return {"session", "run training tasks in order for a trainee; keeps takes and scores, and resumes after a crash",
-            add};
+            declare_session};
 }
 
 }  // namespace tactus::command

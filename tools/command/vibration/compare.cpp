@@ -159,7 +159,7 @@ int compare(const CompareChoice& choice) {
     return compare_one(choice, settings);
 }
 
-Action add(VerbOptions& verb) {
+Action declare_compare(VerbOptions& verb) {
     const auto choice = std::make_shared<CompareChoice>();
     study::CompareSettings& settings = choice->settings;
     verb.add("reference", settings.reference, "sound file or CSV log of the reference vibration, or a folder")
@@ -217,6 +217,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb compare_verb() { return {"compare", "judge whether two vibrations are equivalent; exit code 0: yes, 1: no", add}; }
+Verb compare_verb() {
+    return {"compare", "judge whether two vibrations are equivalent; exit code 0: yes, 1: no", declare_compare};
+}
 
 }  // namespace tactus::command

@@ -99,7 +99,7 @@ int equalise(const EqualiseChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_equalise(VerbOptions& verb) {
     const auto choice = std::make_shared<EqualiseChoice>();
     study::EqualiseSettings& settings = choice->settings;
     vibration::EqualiserDesign& design = settings.design;
@@ -132,6 +132,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb equalise_verb() { return {"equalise", "make a filter for the 'equaliser' node from a measured response", add}; }
+Verb equalise_verb() {
+    return {"equalise", "make a filter for the 'equaliser' node from a measured response", declare_equalise};
+}
 
 }  // namespace tactus::command

@@ -181,7 +181,7 @@ int exposure(const ExposureChoice& choice) {
     return bad ? bad_input : done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_exposure(VerbOptions& verb) {
     const auto choice = std::make_shared<ExposureChoice>();
     add_record_options(verb, *choice, "one record per tool, with the axes as channels; or folders of records");
     verb.add("--duration", choice->durations,
@@ -196,7 +196,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb exposure_verb() {
-    return {"exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value", add};
+    return {"exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value",
+            declare_exposure};
 }
 
 }  // namespace tactus::command

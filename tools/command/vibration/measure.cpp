@@ -118,7 +118,7 @@ void port_was_out(std::vector<std::string>& words) {
         else if (is("--csv")(word)) word.replace(0, 5, "--out");
 }
 
-Action add(VerbOptions& verb) {
+Action declare_measure(VerbOptions& verb) {
     const auto choice = std::make_shared<MeasureChoice>();
     study::MeasureSettings& settings = choice->settings;
     verb.add("patch", settings.patch.patch, "patch file, or a name in the library");
@@ -158,7 +158,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb measure_verb() {
-    return {"measure", "sweep a patch or a sound card: frequency response, resonance, distortion, latency", add};
+    return {"measure", "sweep a patch or a sound card: frequency response, resonance, distortion, latency",
+            declare_measure};
 }
 
 }  // namespace tactus::command

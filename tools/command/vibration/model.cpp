@@ -88,7 +88,7 @@ int model(const ModelChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_model(VerbOptions& verb) {
     const auto choice = std::make_shared<ModelChoice>();
     verb.add("recordings", choice->settings.recordings,
              "recording set, TOML, with the rate and thrust of each recording")
@@ -102,6 +102,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb model_verb() { return {"model", "make a model of a saw for the 'saw' node from its recordings", add}; }
+Verb model_verb() { return {"model", "make a model of a saw for the 'saw' node from its recordings", declare_model}; }
 
 }  // namespace tactus::command

@@ -165,7 +165,7 @@ int orders(const OrdersChoice& choice) {
     return done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_orders(VerbOptions& verb) {
     const auto choice = std::make_shared<OrdersChoice>();
     study::OrdersSettings& settings = choice->orders;
     add_record_options(verb, *choice, "a sound file or CSV log", "--sample-rate");
@@ -190,6 +190,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb orders_verb() { return {"orders", "measure the orders of a machine with a changing rate", add}; }
+Verb orders_verb() { return {"orders", "measure the orders of a machine with a changing rate", declare_orders}; }
 
 }  // namespace tactus::command

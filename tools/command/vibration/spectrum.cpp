@@ -153,7 +153,7 @@ int spectrum(const SpectrumChoice& choice) {
     return bad ? bad_input : done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_spectrum(VerbOptions& verb) {
     const auto choice = std::make_shared<SpectrumChoice>();
     SpectrumWords& words = choice->words;
     add_record_options(verb, *choice, "sound files, CSV logs, or folders of them");
@@ -191,7 +191,8 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb spectrum_verb() {
-    return {"spectrum", "analyse a vibration record: spectrum, fundamental, harmonics, hum, bands, envelope", add};
+    return {"spectrum", "analyse a vibration record: spectrum, fundamental, harmonics, hum, bands, envelope",
+            declare_spectrum};
 }
 
 }  // namespace tactus::command

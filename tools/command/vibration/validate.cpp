@@ -122,7 +122,7 @@ int validate(const ValidateChoice& choice) {
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
 }
 
-Action add(VerbOptions& verb) {
+Action declare_validate(VerbOptions& verb) {
     const auto choice = std::make_shared<ValidateChoice>();
     study::ValidateSettings& settings = choice->settings;
     add_patch_options(verb, settings.patch);
@@ -163,7 +163,7 @@ Action add(VerbOptions& verb) {
 Verb validate_verb() {
     return {"validate",
             "judge whether the handle vibrates like the saw at every recorded rate and load; exit code 0: yes, 1: no",
-            add};
+            declare_validate};
 }
 
 }  // namespace tactus::command
