@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/reconstruct/bodies.hpp"
+
 #include "dsp/core/constants.hpp"
 
 #include <glm/common.hpp>

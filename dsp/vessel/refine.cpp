@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vessel/refine.hpp"
+
 #include "dsp/core/median.hpp"
 #include "dsp/geometry/spline.hpp"
 

@@ -19,7 +19,6 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double lowest_rate = SawModelSize::residual_rate;
 constexpr double highest_share = 0.42;  // of the output's rate: orders above it would alias when the blade speeds up
 constexpr double least_swell = 0.02;    // of the mean power
 constexpr Random noise{0x7ac705};
@@ -27,8 +26,9 @@ constexpr Random noise{0x7ac705};
 }  // namespace
 
 void ModelledSaw::prepare(double rate, const SawModel& model, const SawBehaviour& behaviour) {
-    if (!(std::isfinite(rate) && rate >= lowest_rate))
-        throw Error(fmt::format("a modelled saw needs a group at {:g} Hz or more, not {:g} Hz", lowest_rate, rate));
+    if (!(std::isfinite(rate) && rate >= SawModelSize::residual_rate))
+        throw Error(fmt::format("a modelled saw needs a group at {:g} Hz or more, not {:g} Hz",
+                                SawModelSize::residual_rate, rate));
     *this = ModelledSaw{};
     sounds_ = SawSounds(model);
     behaviour_ = behaviour;
@@ -90,7 +90,7 @@ double ModelledSaw::orders() noexcept {
 
 void ModelledSaw::add_noise() noexcept {
     // The sinc reads eight samples behind the newest.
-    const double cycles = blade_.cycles() + reading_half * blade_.rate() / lowest_rate;
+    const double cycles = blade_.cycles() + reading_half * blade_.rate() / SawModelSize::residual_rate;
     const double angle = 2.0 * pi * (cycles - std::floor(cycles));
     double power = 1.0;
     for (std::size_t m = 0; m < SawModelSize::swells; ++m) {
@@ -106,7 +106,7 @@ void ModelledSaw::add_noise() noexcept {
 }
 
 double ModelledSaw::residual() noexcept {
-    position_ += lowest_rate / rate_;
+    position_ += SawModelSize::residual_rate / rate_;
     while (position_ >= 1.0) {
         position_ -= 1.0;
         add_noise();

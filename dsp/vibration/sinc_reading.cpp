@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/sinc_reading.hpp"
+
 #include "dsp/core/constants.hpp"
 
 #include <algorithm>

@@ -15,12 +15,12 @@
 
 namespace tactus::take {
 
-using ReadJson = nlohmann::json;
+using ParsedJson = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
 
-std::uint64_t bits_of(const ReadJson& json) {
+std::uint64_t bits_of(const ParsedJson& json) {
     const auto& text = json.get_ref<const std::string&>();
     std::uint64_t bits = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), bits, 16);
@@ -28,10 +28,10 @@ std::uint64_t bits_of(const ReadJson& json) {
     return bits;
 }
 
-double number_of(const ReadJson& json) { return std::bit_cast<double>(bits_of(json)); }
+double number_of(const ParsedJson& json) { return std::bit_cast<double>(bits_of(json)); }
 
-void read_assets(const ReadJson& list, std::vector<TakenAsset>& assets) {
-    for (const ReadJson& asset : list) {
+void read_assets(const ParsedJson& list, std::vector<TakenAsset>& assets) {
+    for (const ParsedJson& asset : list) {
         TakenAsset taken{asset.at("name"), asset.at("path").get<std::string>(), bits_of(asset.at("hash"))};
         const bool known = std::ranges::any_of(
             assets, [&](const TakenAsset& a) { return a.path == taken.path && a.hash == taken.hash; });
@@ -39,10 +39,10 @@ void read_assets(const ReadJson& list, std::vector<TakenAsset>& assets) {
     }
 }
 
-io::RecordedDevice read_device(const ReadJson& json) {
+io::RecordedDevice read_device(const ParsedJson& json) {
     io::RecordedDevice device;
     device.name = json.at("device");
-    const ReadJson& info = json.at("info");
+    const ParsedJson& info = json.at("info");
     device.info = {.name = info.at("name"),
                    .max_force = info.at("max_force"),
                    .max_torque = info.at("max_torque"),
@@ -57,23 +57,23 @@ io::RecordedDevice read_device(const ReadJson& json) {
                    .fingers = info.at("fingers"),
                    .max_speed = info.at("max_speed"),
                    .least_speed = info.at("least_speed")};
-    const ReadJson& first = json.at("first");
+    const ParsedJson& first = json.at("first");
     device.first.buttons = first.at("buttons");
     device.first.counter = first.at("counter");
     device.first.valid = first.at("valid");
-    const ReadJson& n = first.at("numbers");
+    const ParsedJson& n = first.at("numbers");
     const auto v = [&n](std::size_t i) { return number_of(n.at(i)); };
     device.first.pose = {Vec3(v(0), v(1), v(2)), Quat(v(3), v(4), v(5), v(6))};
     device.first.twist = {Vec3(v(7), v(8), v(9)), Vec3(v(10), v(11), v(12))};
     for (std::size_t i = 0; i < most_fingers; ++i) {
-        const ReadJson& finger = first.at("fingers").at(i);
+        const ParsedJson& finger = first.at("fingers").at(i);
         device.first.fingers[i] = {number_of(finger.at(0)), number_of(finger.at(1)), finger.at(2)};
     }
     return device;
 }
 
 /// One output of a file, whose channels begin at `channel`.
-TakeStreamInfo read_output(const ReadJson& file, const ReadJson& output, int channel) {
+TakeStreamInfo read_output(const ParsedJson& file, const ParsedJson& output, int channel) {
     TakeStreamInfo info;
     info.file = file.at("stream");
     info.port = output.at("port");
@@ -93,17 +93,17 @@ TakeStreamInfo read_output(const ReadJson& file, const ReadJson& output, int cha
     return info;
 }
 
-void read_streams(const ReadJson& json, std::vector<TakeStreamInfo>& streams) {
+void read_streams(const ParsedJson& json, std::vector<TakeStreamInfo>& streams) {
     // Format 2: a file for each output.
     if (!json.contains("outputs")) return streams.push_back(read_output(json, json, 0));
     int channel = 0;
-    for (const ReadJson& output : json.at("outputs")) {
+    for (const ParsedJson& output : json.at("outputs")) {
         streams.push_back(read_output(json, output, channel));
         channel += streams.back().channels;
     }
 }
 
-void read_event(const ReadJson& json, Take& take) {
+void read_event(const ParsedJson& json, Take& take) {
     if (json.contains("device")) take.devices.push_back(read_device(json));
     else if (json.contains("stream")) read_streams(json, take.streams);
     else if (json.contains("plan")) {
@@ -129,7 +129,7 @@ Take Take::load(const fs::path& folder) {
     fs::path reading = folder / "take.json";
     int line_number = 0;
     try {
-        const ReadJson json = ReadJson::parse(file::read_whole_file(reading));
+        const ParsedJson json = ParsedJson::parse(file::read_whole_file(reading));
         if (json.at("format") != take_format && json.at("format") != oldest_take_format)
             throw Error(
                 fmt::format("it has format {}, and this tactus reads formats {} and {}; replay it with the build that "
@@ -152,14 +152,14 @@ Take Take::load(const fs::path& folder) {
         for (std::string line; std::getline(events, line);) {
             ++line_number;
             // The last line may have been cut off; result.json has the expected number of lines.
-            if (events.eof() && !ReadJson::accept(line)) break;
-            read_event(ReadJson::parse(line), take);
+            if (events.eof() && !ParsedJson::accept(line)) break;
+            read_event(ParsedJson::parse(line), take);
             ++take.lines;
         }
         line_number = 0;
         reading = folder / "result.json";
         if (fs::exists(reading)) {
-            const ReadJson result = ReadJson::parse(file::read_whole_file(reading));
+            const ParsedJson result = ParsedJson::parse(file::read_whole_file(reading));
             for (const auto& [port, hash] : result.at("ports").items()) take.result[port] = bits_of(hash);
             for (const auto& [file, count] : result.at("holds").items()) take.written[file] = count.get<std::int64_t>();
             take.is_complete = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
+
 #include "tools/session/site_choice.hpp"
 
 #include "assets/file/whole_file.hpp"
