@@ -41,7 +41,7 @@ struct Tally {
     std::vector<double> microseconds;
 };
 
-double thread_seconds() {
+double rope_seconds() {
     timespec now{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
@@ -70,9 +70,9 @@ void pull_one(std::uint64_t seed, std::size_t points, std::uint64_t pulls, Tally
         hand += tick * velocity;
         rope.hold(points - 1, hand);
         const Vec3 before = rope.points()[points - 1];
-        const double begin = thread_seconds();
+        const double begin = rope_seconds();
         const rope::RopeStep step = rope.step(tick, &bone);
-        tally.microseconds.push_back(1e6 * (thread_seconds() - begin));
+        tally.microseconds.push_back(1e6 * (rope_seconds() - begin));
         const double done = -glm::dot(rope.pull_on(points - 1), rope.points()[points - 1] - before);
         work += done;
         tally.moved += std::abs(done);
@@ -96,12 +96,12 @@ double solve_microseconds() {
         if (n > 1) matrix.add(n, n - 2, 1.0);
     }
     std::vector<Vec3> x(points, Vec3(1.0));
-    const double begin = thread_seconds();
+    const double begin = rope_seconds();
     for (int n = 0; n < solves; ++n) {
         band.copy(matrix);
         band.solve(x);
     }
-    return 1e6 * (thread_seconds() - begin) / solves;
+    return 1e6 * (rope_seconds() - begin) / solves;
 }
 
 int bench_rope(const RopeBenchChoice& choice) {

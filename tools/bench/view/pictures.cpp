@@ -45,7 +45,7 @@ struct SceneCost {
     double per_s = 0.0;  ///< pictures of the scene per second
 };
 
-double quantile(std::vector<double> values, double q) {
+double frame_quantile(std::vector<double> values, double q) {
     if (values.empty()) return 0.0;
     std::ranges::sort(values);
     return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
@@ -77,10 +77,10 @@ SceneCost cost_of(const std::string& patch, const PicturesChoice& choice, const 
     return {patch,
             scenes.size(),
             meter.threads(),
-            quantile(scenes, 0.5),
-            quantile(scenes, 0.95),
-            quantile(scenes, 1.0),
-            quantile(panels, 0.5),
+            frame_quantile(scenes, 0.5),
+            frame_quantile(scenes, 0.95),
+            frame_quantile(scenes, 1.0),
+            frame_quantile(panels, 0.5),
             last > settles_s ? static_cast<double>(scenes.size()) / (last - settles_s) : 0.0};
 }
 
