@@ -105,8 +105,9 @@ TEST_CASE("a node changes its lane where its rate or group is written") {
 }
 
 TEST_CASE("a pasted group brings its latency and backlog and is another group where one of them differs") {
-    const std::string late = "[groups.slow]\nrate = \"60 Hz\"\nlatency = \"250 ms\"\nbacklog = 3\n"
-                             "[nodes.a]\ntype = \"constant\"\ngroup = \"slow\"\n";
+    const std::string late =
+        "[groups.slow]\nrate = \"60 Hz\"\nlatency = \"250 ms\"\nbacklog = 3\n"
+        "[nodes.a]\ntype = \"constant\"\ngroup = \"slow\"\n";
     const std::string copy = copied(late, std::vector<std::string>{"a"}, "/tmp");
     const auto group_of = [](const patch::Patch& patch, const std::string& name) {
         const auto found = std::ranges::find(patch.groups, name, &patch::PatchGroup::name);
