@@ -7,6 +7,7 @@
 #include "tools/view/signal/axis.hpp"
 #include "tools/view/signal/feed.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
