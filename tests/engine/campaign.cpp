@@ -27,7 +27,7 @@ using namespace tactus::test;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;  // ns
+constexpr std::int64_t one_ms = 1'000'000;  // ns
 
 /// A thread that only sleeps, above the groups and below the guards. When it is late, the machine is to blame.
 class Reference {
@@ -50,12 +50,12 @@ private:
         parameters.sched_priority = 83;
         pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
         while (!stop.stop_requested()) {
-            const std::int64_t due = steady_now() + ms;
+            const std::int64_t due = steady_now() + one_ms;
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             const std::int64_t now = steady_now();
-            if (now - due < 2 * ms) continue;
+            if (now - due < 2 * one_ms) continue;
             const std::lock_guard lock(lock_);
-            late_.emplace_back(due - ms, now);
+            late_.emplace_back(due - one_ms, now);
         }
     }
 
@@ -135,7 +135,7 @@ void Round::begin_fault(WatchedHand& hand) {
     faulty_ = &hand;
     fault_began_ns_ = steady_now();
     std::erase_if(verdicts_, [&](const Verdict& v) { return v.hand == &hand && v.by_ns > fault_began_ns_; });
-    fault_ends_ns_ = fault_began_ns_ + (5 + draws_.below(150)) * ms;
+    fault_ends_ns_ = fault_began_ns_ + (5 + draws_.below(150)) * one_ms;
     switch (draws_.below(4)) {
         case 0: kind_ = WatchedHand::Blocks::in_acquire; break;
         case 1: kind_ = WatchedHand::Blocks::in_commit; break;
@@ -153,7 +153,7 @@ void Round::act(run::Engine& engine) {
         // its samples stood still: ten ticks more.
         const bool hangs = kind_ == WatchedHand::Blocks::in_acquire && faulty_->is_blocked;
         const double ticks_ms = faulty_ == &left_ ? 10.0 : 20.0;
-        if (hangs) verdicts_.push_back({faulty_, faulty_->blocked_ns, faulty_->blocked_ns + 20 * ms, "hung when read"});
+        if (hangs) verdicts_.push_back({faulty_, faulty_->blocked_ns, faulty_->blocked_ns + 20 * one_ms, "hung when read"});
         if (faulty_->is_stale)
             verdicts_.push_back({faulty_, fault_began_ns_,
                                  fault_began_ns_ + static_cast<std::int64_t>((ticks_ms + 12.0) * 1e6), "stale"});
@@ -168,7 +168,7 @@ void Round::act(run::Engine& engine) {
         pause_ends_ns_ = 0;
     }
     if (now < next_ns_) return;
-    next_ns_ = now + (30 + draws_.below(120)) * ms;
+    next_ns_ = now + (30 + draws_.below(120)) * one_ms;
     ++deeds;
     switch (draws_.below(8)) {
         case 0:
@@ -180,9 +180,9 @@ void Round::act(run::Engine& engine) {
         case 4:
             if (pause_ends_ns_ != 0) break;
             engine.pause(true);
-            pause_ends_ns_ = now + (60 + draws_.below(150)) * ms;
+            pause_ends_ns_ = now + (60 + draws_.below(150)) * one_ms;
             if (faulty_) break;
-            for (const WatchedHand* hand : {&left_, &right_}) verdicts_.push_back({hand, now, now + 20 * ms, "pause"});
+            for (const WatchedHand* hand : {&left_, &right_}) verdicts_.push_back({hand, now, now + 20 * one_ms, "pause"});
             break;
         case 5:
             if (!faulty_) begin_fault(draws_.chance(0.5) ? left_ : right_);
@@ -198,7 +198,7 @@ void Round::act(run::Engine& engine) {
 
 void Round::judge() {
     for (const Verdict& v : verdicts_) {
-        if (reference_.was_late(v.since_ns - 5 * ms, v.by_ns)) {
+        if (reference_.was_late(v.since_ns - 5 * one_ms, v.by_ns)) {
             ++not_judged;
             continue;
         }
@@ -233,7 +233,7 @@ void Round::run() {
         ::getrlimit(RLIMIT_FSIZE, &before);
         std::atomic<bool> stop{false};
         std::int64_t stopped = 0;
-        const std::int64_t ends = steady_now() + (1500 + draws_.below(2500)) * ms;
+        const std::int64_t ends = steady_now() + (1500 + draws_.below(2500)) * one_ms;
         run::LiveOptions live;
         live.stop = &stop;
         live.watch = [&] {
@@ -247,12 +247,12 @@ void Round::run() {
             stopped = steady_now();
             stop = true;
             for (const WatchedHand* hand : {&left_, &right_})
-                if (hand != faulty_) verdicts_.push_back({hand, stopped, stopped + 20 * ms, "stop"});
+                if (hand != faulty_) verdicts_.push_back({hand, stopped, stopped + 20 * one_ms, "stop"});
         };
         engine.run_live(live);
         ::setrlimit(RLIMIT_FSIZE, &before);
         // It ends; how soon is a matter of the machine, which may be busy.
-        CHECK(steady_now() - stopped < 30'000 * ms);
+        CHECK(steady_now() - stopped < 30'000 * one_ms);
         engine.complete();
         is_lost = take.is_lost();
         live_hashes = engine.port_hashes();
