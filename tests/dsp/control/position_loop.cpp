@@ -10,7 +10,7 @@ namespace {
 
 constexpr double loop_period = 1.0 / 150.0;
 
-/// A motor that turns at 30 mm/s or not at all below that, and acts a loop_period after it was told.
+/// A motor that turns at 30 mm/s or not at all below that, and acts a period after it was told.
 struct Coarse {
     control::PositionLoopSettings settings{75.0, 0.0, 0.0, 0.6, 0.03, 1};
     control::PositionLoop loop;

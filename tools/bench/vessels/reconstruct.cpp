@@ -5,6 +5,7 @@
 #include "assets/reconstruct/fibula_inputs.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/constants.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
@@ -19,7 +20,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <numbers>
@@ -31,12 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace reconstruct;
-
-double thread_seconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// A closed tube along z.
 geometry::TriangleSurface tube(const Vec3& from, double length, int round, int rings) {

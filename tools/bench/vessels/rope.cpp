@@ -4,6 +4,7 @@
 
 #include "assets/file/json.hpp"
 #include "dsp/core/constants.hpp"
+#include "dsp/core/processor_time.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/rope/banded.hpp"
 #include "dsp/rope/measure.hpp"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace tactus::bench {
 
@@ -41,12 +41,6 @@ struct Tally {
     std::vector<double> microseconds;
 };
 
-double rope_seconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// One rope round a ball, held at one end and pulled to random places at the other.
 void pull_one(std::uint64_t seed, std::size_t points, std::uint64_t pulls, Tally& tally) {
     const Random random{seed};
@@ -70,9 +64,9 @@ void pull_one(std::uint64_t seed, std::size_t points, std::uint64_t pulls, Tally
         hand += tick * velocity;
         rope.hold(points - 1, hand);
         const Vec3 before = rope.points()[points - 1];
-        const double begin = rope_seconds();
+        const double begin = thread_seconds();
         const rope::RopeStep step = rope.step(tick, &bone);
-        tally.microseconds.push_back(1e6 * (rope_seconds() - begin));
+        tally.microseconds.push_back(1e6 * (thread_seconds() - begin));
         const double done = -glm::dot(rope.pull_on(points - 1), rope.points()[points - 1] - before);
         work += done;
         tally.moved += std::abs(done);
@@ -96,12 +90,12 @@ double solve_microseconds() {
         if (n > 1) matrix.add(n, n - 2, 1.0);
     }
     std::vector<Vec3> x(points, Vec3(1.0));
-    const double begin = rope_seconds();
+    const double begin = thread_seconds();
     for (int n = 0; n < solves; ++n) {
         band.copy(matrix);
         band.solve(x);
     }
-    return 1e6 * (rope_seconds() - begin) / solves;
+    return 1e6 * (thread_seconds() - begin) / solves;
 }
 
 int bench_rope(const RopeBenchChoice& choice) {
