@@ -68,17 +68,49 @@ function(tactus_precompile target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>)
 endfunction()
 
-# tactus_unite(TARGET [FOLDER ...]): up to eight files are compiled as one. Reading headers and instantiating templates is most of the
-# time of each, and is done once for all of them. Neighbours must not give one name to two things, not even in unnamed
-# namespaces. Files of the folders are compiled alone.
+# tactus_unite(TARGET [FOLDER ...]): files of one folder are compiled as one, ten at a time; a folder of fewer than four joins
+# the one above it. Reading headers and instantiating templates is most of the time of each file, and is done once for all of
+# them. Files of one folder must not give one name to two things, not even in unnamed namespaces. Files of the folders named
+# here are compiled alone.
 function(tactus_unite target)
-  if(TACTUS_UNITY)
-    foreach(folder ${ARGN})
-      file(GLOB_RECURSE alone CONFIGURE_DEPENDS ${folder}/*.cpp)
-      set_property(SOURCE ${alone} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
-    endforeach()
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  if(NOT TACTUS_UNITY)
+    return()
   endif()
+  foreach(folder ${ARGN})
+    file(GLOB_RECURSE alone CONFIGURE_DEPENDS ${folder}/*.cpp)
+    set_property(SOURCE ${alone} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  set(folders "")
+  foreach(source ${sources})
+    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${source})
+    get_filename_component(folder ${path} DIRECTORY)
+    list(APPEND "of_${folder}" ${source})
+    while(folder)
+      list(APPEND folders ${folder})
+      get_filename_component(folder ${folder} DIRECTORY)
+    endwhile()
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  # The deepest first: those above may get files of them.
+  list(SORT folders ORDER DESCENDING)
+  foreach(folder ${folders})
+    list(LENGTH "of_${folder}" count)
+    get_filename_component(above ${folder} DIRECTORY)
+    if(above AND count LESS 4)
+      list(APPEND "of_${above}" ${of_${folder}})
+      continue()
+    endif()
+    string(MAKE_C_IDENTIFIER ${folder} group)
+    set(place 0)
+    foreach(source ${of_${folder}})
+      math(EXPR tens "${place} / 10")
+      math(EXPR place "${place} + 1")
+      set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group}_${tens})
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
 # PRECOMPILE: headers that most files of the room include, beside those of TACTUS_PCH_HEADERS. A file still names what it uses:

@@ -4,6 +4,7 @@
 #include "assets/mesh/mesh_readers.hpp"
 #include "assets/volume/length_unit.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 #include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,7 @@ namespace tactus::mesh {
 namespace {
 
 std::string lower_extension(const std::filesystem::path& path) {
-    std::string text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string text = lower(path.extension().string());
     return text.empty() ? text : text.substr(1);
 }
 

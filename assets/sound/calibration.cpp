@@ -3,6 +3,7 @@
 
 #include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +30,7 @@ std::pair<double, table::ColumnUnit> parse_measure(const std::string& text) {
 
 /// What follows `key` and ':' or '=', up to a ';' or the end of the line.
 std::optional<std::string> value_of(std::string_view comment, std::string_view key) {
-    const std::string small = table::lower(comment);
+    const std::string small = lower(comment);
     for (std::size_t at = 0; (at = small.find(key, at)) != std::string::npos; at += key.size()) {
         if (at > 0 && std::isalpha(static_cast<unsigned char>(small[at - 1]))) continue;
         std::size_t from = small.find_first_not_of(" \t", at + key.size());

@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 
@@ -19,12 +20,6 @@ namespace tactus::sound {
 namespace {
 
 constexpr int most_lines = 1'000'000;
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    return out;
-}
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '"')) text.remove_prefix(1);

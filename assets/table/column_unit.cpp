@@ -3,6 +3,7 @@
 
 #include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,6 +4,7 @@
 #include "assets/table/clock_time.hpp"
 #include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -53,13 +53,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
-}
-
 std::string_view without_mark(std::string_view text, std::string& converted) {
     if (text.starts_with("\xef\xbb\xbf")) return text.substr(3);
     const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");

@@ -10,8 +10,6 @@ namespace tactus::table {
 
 /// Without blanks and quotes at the ends.
 std::string_view trimmed(std::string_view text);
-/// ASCII letters in lower case.
-std::string lower(std::string_view text);
 
 /// Text without a byte-order mark. UTF-16 with a mark is converted into `converted`, which then holds the result.
 std::string_view without_mark(std::string_view text, std::string& converted);

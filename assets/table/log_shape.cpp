@@ -5,6 +5,7 @@
 #include "assets/table/column_unit.hpp"
 #include "assets/table/log_lines.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_cells = 20'000'000;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
     const auto begin = text.find_first_not_of(" \r\"");
     return begin == std::string_view::npos ? std::string_view{}
                                            : text.substr(begin, text.find_last_not_of(" \r\"") - begin + 1);
@@ -27,7 +27,7 @@ std::vector<std::string_view> cells(std::string_view line, char separator) {
     std::vector<std::string_view> all;
     for (;;) {
         const std::size_t end = line.find(separator);
-        all.push_back(trimmed(line.substr(0, end)));
+        all.push_back(unquoted(line.substr(0, end)));
         if (end == std::string_view::npos) return all;
         line.remove_prefix(end + 1);
     }
@@ -67,7 +67,7 @@ NumberTable read_number_table(std::string_view text, const std::string& file) {
     int number = 0;
     while (!text.empty()) {
         const std::size_t end = text.find('\n');
-        const std::string_view line = trimmed(text.substr(0, end));
+        const std::string_view line = unquoted(text.substr(0, end));
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
         ++number;
         if (line.empty() || line.front() == '#') continue;

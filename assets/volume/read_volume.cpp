@@ -4,12 +4,11 @@
 #include "assets/volume/length_unit.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 
 namespace tactus::volume {
@@ -19,10 +18,7 @@ namespace {
 enum class Format { nrrd, nifti, inv3, dicom, none };
 
 bool ends_with(const std::filesystem::path& path, std::string_view ending) {
-    std::string name = path.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name.ends_with(ending);
+    return lower(path.filename().string()).ends_with(ending);
 }
 
 // NRRD and DICOM are detected by their first bytes, gzipped files and NIfTI by their names.

@@ -5,6 +5,7 @@
 #include "devices/evdev/force_effect.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 #include "dsp/core/rotation.hpp"
 
 #include <fcntl.h>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -63,8 +63,7 @@ Kind kind_of(EventSystem& system, int file, const std::string& path) {
     if (!Bits::of_kind(system, file, EV_FF)[FF_CONSTANT] || !axes[ABS_X]) return Kind::other;
     // What only a wheel has: an angle from stop to stop, a gear lever, the axis of that name; or its maker says so.
     if (!system.attribute(path, "range").empty() || axes[ABS_WHEEL] || keys[BTN_GEAR_DOWN]) return Kind::wheel;
-    std::string name = name_of(system, file);
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = lower(name_of(system, file));
     for (const char* word : {"wheel", "racing", "driving", "formula"})
         if (name.find(word) != std::string::npos) return Kind::wheel;
     return axes[ABS_Y] ? Kind::joystick : Kind::wheel;

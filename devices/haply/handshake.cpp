@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haply/handshake.hpp"
 
+#include "dsp/core/lower.hpp"
+
 #include <fmt/format.h>
 
 #include <bit>
-#include <cctype>
 #include <cstddef>
 #include <random>
 #include <span>
@@ -23,12 +24,6 @@ std::string base64(std::span<const std::uint8_t> bytes) {
             text += i + k < bytes.size() + 1 ? letters[three >> (18 - 6 * k) & 63u] : '=';
     }
     return text;
-}
-
-std::string lower(std::string_view text) {
-    std::string small;
-    for (const char c : text) small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return small;
 }
 
 /// The value of a header, without the blanks around it; empty when there is none.

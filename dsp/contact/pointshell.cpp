@@ -19,7 +19,7 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-struct Box {
+struct Extent {
     Vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
     void add(const Vec3& p) {
@@ -32,7 +32,7 @@ double distance2(const Vec3& a, const Vec3& b) { return glm::dot(a - b, a - b); 
 
 /// Partitions the points along the longest axis: the `first_part` lowest come first (nth element).
 void split(std::span<std::uint32_t> order, std::size_t first_part, std::span<const SurfacePoint> points) {
-    Box box;
+    Extent box;
     for (const std::uint32_t i : order) box.add(points[i].position);
     const Vec3 extent = box.high - box.low;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -151,7 +151,7 @@ void fill_chunks(Pointshell& shell) {
             candidates.area.insert(candidates.area.end(), held[c].area.begin(), held[c].area.end());
             held[c] = {};
         }
-        Box box;
+        Extent box;
         for (std::uint32_t i = 0; i < node.points; ++i) box.add(shell.position[node.first_point + i]);
         held[n] = thinned(candidates, shell.position, 0.5 * (box.low + box.high));
         const auto nearest = std::ranges::min_element(held[n].index, {}, [&](std::uint32_t i) {

@@ -18,7 +18,7 @@ namespace tactus::fit {
 
 namespace {
 
-constexpr int spins = 16;
+constexpr int start_spins = 16;
 
 /// One face as a surface of its own, with at most this many points.
 FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
@@ -239,10 +239,10 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
     const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
     const Vec3 about = direction_of(b.mean_normal);
     const Quat flat_on = opposed(a, b, {1.0, 0.0, 0.0, 0.0});
-    std::array<Pose, spins> starts;
-    for (int n = 0; n < spins; ++n)
-        starts[static_cast<std::size_t>(n)] = {Vec3(0.0),
-                                               glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on};
+    std::array<Pose, start_spins> starts;
+    for (int n = 0; n < start_spins; ++n)
+        starts[static_cast<std::size_t>(n)] = {
+            Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / start_spins, about) * flat_on};
     solved_.clear();
     solved_.push_back(solve(energies_[0], pair, starts));
     match_ = {};

@@ -16,7 +16,7 @@ struct Life {
 };
 
 /// Where in its group each node stands; those of a cycle at its end, for they run several times in a call.
-std::vector<int> places_of(const Plan& plan) {
+std::vector<int> last_places_of(const Plan& plan) {
     std::vector<int> place(plan.nodes.size());
     for (const PlanGroup& group : plan.groups) {
         for (std::size_t i = 0; i < group.order.size(); ++i)
@@ -30,7 +30,7 @@ std::vector<int> places_of(const Plan& plan) {
 }
 
 std::vector<std::vector<Life>> lives_of(const Plan& plan) {
-    const std::vector<int> place = places_of(plan);
+    const std::vector<int> place = last_places_of(plan);
     std::vector<std::vector<Life>> lives;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
         auto& of_node = lives.emplace_back();

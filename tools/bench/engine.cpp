@@ -27,7 +27,7 @@ using file::Json;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double card_rate = 48000.0;
 
 /// Processor time of all threads; other load on the machine does not count.
 double seconds_of(const std::function<void()>& work) {
@@ -93,7 +93,7 @@ void measure(Runner& runner, const Chain& chain) {
         ++at;
     }
     const double own = (runner.best[0] - runner.best[1]) - (runner.best[2] - runner.best[3]);
-    runner.ns_per_node = own * 1e9 / ((chain.seconds - 0.01) * rate / chain.block * chain.nodes);
+    runner.ns_per_node = own * 1e9 / ((chain.seconds - 0.01) * card_rate / chain.block * chain.nodes);
 }
 
 Json row(const std::string& name, int nodes, int block, double ns, const Runner* peer) {
@@ -107,7 +107,7 @@ Json row(const std::string& name, int nodes, int block, double ns, const Runner*
 void bench_chain(int nodes, int block, int rounds, const std::filesystem::path& folder, Json& rows) {
     // About half a second of work at 5 ns per node; more for programs that load slowly.
     const double work = nodes < 10000 ? 0.5 : 2.0;
-    const Chain chain{nodes, block, std::max(0.1, work / (rate / block * nodes * 5e-9))};
+    const Chain chain{nodes, block, std::max(0.1, work / (card_rate / block * nodes * 5e-9))};
     Runner here[] = {{"gain", [](const Chain& c) { return std::optional(run_here(c, false, true)); }},
                      {"gain, outputs hashed", [](const Chain& c) { return std::optional(run_here(c, true, true)); }}};
     Runner peers[] = {{"pure data", [&](const Chain& c) { return run_in_pure_data(c, folder); }},
@@ -208,7 +208,7 @@ void bench_telemetry(int rounds, Json& rows) {
         without = std::min(without, run_here(chain, false, false));
     }
     const double added = with - without;
-    Json json = row("telemetry", nodes, block, added * 1e9 / (chain.seconds * rate / block * nodes), nullptr);
+    Json json = row("telemetry", nodes, block, added * 1e9 / (chain.seconds * card_rate / block * nodes), nullptr);
     json["percent_of_tick"] = 100.0 * added / chain.seconds;
     rows.push_back(std::move(json));
 }

@@ -6,6 +6,7 @@
 #include "dsp/signal/filter/resample.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
+#include "dsp/signal/spectrum/decibels.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
@@ -26,8 +27,6 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-
-double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
 /// A take resampled to the common rate, in pieces.
 class Stream {
@@ -194,7 +193,7 @@ void score_spectra(Axes axes, const ComparisonOptions& options, SpectrogramSimil
     const double output_power = power_in_band(output_peak, fine_output, result, "output");
     result.reference_rms = std::sqrt(reference_power);
     result.output_rms = std::sqrt(output_power);
-    result.gain_db = decibel(reference_power / output_power);
+    result.gain_db = decibels(reference_power / output_power);
     const double gain = std::sqrt(reference_power / output_power);
 
     const SpectrumPair powers{a.power, b.power, a.df};
@@ -210,7 +209,7 @@ void score_spectra(Axes axes, const ComparisonOptions& options, SpectrogramSimil
         felt_reference += weight * a.power[k];
         felt_output += weight * gain * gain * b.power[k];
     }
-    result.touch_gap_db = decibel(felt_output / felt_reference);
+    result.touch_gap_db = decibels(felt_output / felt_reference);
 
     // A band that reaches beyond what can be trusted does not count; the one of 1000 Hz does.
     const double last_centre = high < 0.999 * most_frequency ? high / std::pow(10.0, 0.05) : high;

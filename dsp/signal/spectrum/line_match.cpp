@@ -3,6 +3,7 @@
 
 #include "dsp/signal/spectrum/above_noise.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/decibels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@ namespace {
 
 constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0, order_depth_db = 40.0;
 constexpr int fewest_orders = 2, highest_order = 10;
-
-double decibel(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
 
 double tolerance(const Spectrum& density, double hz) { return std::max(0.003 * hz, 2.0 * density.df); }
 
@@ -36,7 +35,7 @@ double order_power(const Spectrum& density, double hz) {
 /// Level of the spectrum around a frequency, taken as one line, dB of amplitude.
 double level_near(const Spectrum& density, double hz) {
     const double within = tolerance(density, hz);
-    return decibel(2.0 * band_power(density, hz - within, hz + within));
+    return decibels(2.0 * band_power(density, hz - within, hz + within));
 }
 
 std::vector<SpectralLine> strong_lines(const Spectrum& density, double lowest, double highest) {
@@ -55,8 +54,8 @@ double density_db(const Band& band) { return 10.0 * std::log10(std::max(band.pow
 
 }  // namespace
 
-double level_db(const SpectralLine& line) { return decibel(2.0 * line.power); }
-double rms_db(const SpectralLine& line) { return decibel(line.power); }
+double level_db(const SpectralLine& line) { return decibels(2.0 * line.power); }
+double rms_db(const SpectralLine& line) { return decibels(line.power); }
 
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,
                                      double output_hz, double highest) {
@@ -66,12 +65,12 @@ std::optional<double> harmonic_error(const Spectrum& reference, double reference
     for (int k = 1; k <= highest_order && k * reference_hz <= highest; ++k) {
         const SpectralLine line = line_near(reference, k * reference_hz, reference.df);
         if (!(line.power > 0.0)) break;
-        levels.push_back(line.snr_db < order_snr_db ? -300.0 : decibel(order_power(reference, k * reference_hz)));
+        levels.push_back(line.snr_db < order_snr_db ? -300.0 : decibels(order_power(reference, k * reference_hz)));
         strongest = std::max(strongest, levels.back());
     }
     for (std::size_t i = 0; i < levels.size(); ++i)
         if (levels[i] > -300.0 && levels[i] >= strongest - order_depth_db)
-            differences.push_back(decibel(order_power(output, static_cast<double>(i + 1) * output_hz)) - levels[i]);
+            differences.push_back(decibels(order_power(output, static_cast<double>(i + 1) * output_hz)) - levels[i]);
     if (differences.size() < fewest_orders) return std::nullopt;
     double mean = 0.0, worst = 0.0;
     for (const double difference : differences) mean += difference / static_cast<double>(differences.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/lines.hpp"
 
+#include "dsp/signal/spectrum/decibels.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +11,6 @@
 namespace tactus::signal {
 
 namespace {
-
-double decibels(double ratio) { return 10.0 * std::log10(std::max(ratio, 1e-30)); }
 
 /// Median of the bins 4 … 16 away from `k`, on both sides.
 double floor_around(const Spectrum& spectrum, std::size_t k) {

@@ -2,6 +2,7 @@
 #include "dsp/signal/spectrum/live_comparison.hpp"
 
 #include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/comparison.hpp"
 #include "dsp/signal/spectrum/similarity.hpp"
 
 #include <algorithm>
@@ -12,9 +13,8 @@ namespace tactus::signal {
 namespace {
 
 constexpr double coarse_s = 0.128, fine_s = 0.512;  // segments
-constexpr double lowest = 40.0, touch_end = 500.0;  // Hz
 constexpr std::size_t enough = 2;                   // fine segments
-constexpr double silence = 1e-20;                   // mean square, unit²
+constexpr double no_power = 1e-20;                   // mean square, unit²
 
 std::size_t segment(double rate, double seconds) {
     return std::max<std::size_t>(16, static_cast<std::size_t>(std::lround(rate * seconds)));
@@ -42,16 +42,17 @@ LiveScores LiveComparison::scores() const noexcept {
     LiveScores scores;
     const Spectrum &r = reference_.fine.spectrum(), &d = output_.fine.spectrum();
     if (r.segments < enough || d.segments < enough) return scores;
-    const double reference_power = band_power(r, lowest, highest_), output_power = band_power(d, lowest, highest_);
-    if (!(reference_power > silence && output_power > silence)) return scores;
+    const double reference_power = band_power(r, least_frequency, highest_),
+                 output_power = band_power(d, least_frequency, highest_);
+    if (!(reference_power > no_power && output_power > no_power)) return scores;
     scores.heard = true;
     scores.gain_db = 10.0 * std::log10(reference_power / output_power);
     const double gain = std::sqrt(reference_power / output_power);
     const Spectrum &rough = reference_.coarse.spectrum(), &played = output_.coarse.spectrum();
     const SpectrumPair coarse{rough.power, played.power, rough.df};
-    scores.lsd_db = log_spectral_distance(coarse, lowest, std::min(touch_end, highest_), gain);
-    scores.cosine_500 = spectral_cosine(coarse, lowest, std::min(touch_end, highest_));
-    scores.third_octave_max_db = third_octave_max_error({r.power, d.power, r.df}, lowest, highest_, gain);
+    scores.lsd_db = log_spectral_distance(coarse, least_frequency, std::min(touch_end, highest_), gain);
+    scores.cosine_500 = spectral_cosine(coarse, least_frequency, std::min(touch_end, highest_));
+    scores.third_octave_max_db = third_octave_max_error({r.power, d.power, r.df}, least_frequency, highest_, gain);
     return scores;
 }
 

@@ -3,6 +3,7 @@
 
 #include "dsp/core/constants.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/decibels.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
 
 #include <algorithm>
@@ -27,8 +28,6 @@ Bins bins_of(const SpectrumPair& pair, double lowest, double highest) {
     };
     return {at(std::ceil(lowest / pair.step - 1e-9)), at(std::floor(highest / pair.step + 1e-9) + 1.0)};
 }
-
-double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
 template <class Block>
 Block support(const Block& levels) {
@@ -80,7 +79,7 @@ void each_band_error(const SpectrumPair& pair, double lowest, double highest, do
         const double reference = level(pair.reference, n);
         if (!(reference > floor_ratio * greatest)) continue;
         const double output = gain * gain * level(pair.output, n);
-        use(BandError{std::pow(10.0, n / 10.0), decibel(std::max(output / reference, 1e-6))});
+        use(BandError{std::pow(10.0, n / 10.0), decibels(std::max(output / reference, 1e-6))});
     }
 }
 
@@ -95,7 +94,7 @@ double log_spectral_distance(const SpectrumPair& pair, double lowest, double hig
     double sum = 0.0;
     for (std::size_t k = bins.first; k < bins.end; ++k) {
         const double error =
-            decibel(std::max(pair.reference[k], least) / std::max(gain * gain * pair.output[k], least));
+            decibels(std::max(pair.reference[k], least) / std::max(gain * gain * pair.output[k], least));
         sum += error * error;
     }
     return std::sqrt(sum / static_cast<double>(bins.end - bins.first));
@@ -158,7 +157,7 @@ void WaveformSimilarity::take_block() {
         difference += std::abs(pr - pd);
         power += pr;
     }
-    const double error = decibel(std::max(difference / (power + 2.2e-16), 1e-30));
+    const double error = decibels(std::max(difference / (power + 2.2e-16), 1e-30));
     quality_ += 0.5 * (1.0 - std::tanh(0.3 * error + 2.0));
     ++blocks_;
 }
@@ -184,7 +183,7 @@ double WaveformSimilarity::st_sim() const {
 double WaveformSimilarity::spqi() const { return blocks_ > 0 ? quality_ / static_cast<double>(blocks_) : 0.0; }
 
 double WaveformSimilarity::signal_to_noise_db() const {
-    return decibel(std::max(signal_, 1e-300) / std::max(noise_, 1e-300));
+    return decibels(std::max(signal_, 1e-300) / std::max(noise_, 1e-300));
 }
 
 double st_sim(std::span<const double> reference, std::span<const double> output) {
@@ -236,7 +235,7 @@ void SpectrogramSimilarity::compare_columns() {
     const double floor_r = std::max(floor_ratio * reference_.greatest, 1e-300),
                  floor_d = std::max(floor_ratio * output_.greatest, 1e-300);
     for (std::size_t i = 0; i < reference_.powers.size(); ++i)
-        pearson_.add(decibel(std::max(reference_.powers[i], floor_r)), decibel(std::max(output_.powers[i], floor_d)));
+        pearson_.add(decibels(std::max(reference_.powers[i], floor_r)), decibels(std::max(output_.powers[i], floor_d)));
 }
 
 void SpectrogramSimilarity::push(std::span<const double> reference, std::span<const double> output) {

@@ -30,7 +30,7 @@ low_right = "260 mm, 0 mm, 300 mm"
 high_left = "-260 mm, 0 mm, 590 mm"
 )";
 
-std::string refusal(const std::string& text) {
+std::string display_refusal(const std::string& text) {
     const TextFile on_disk(text);
     try {
         display::load_display_file(on_disk.path);
@@ -82,20 +82,23 @@ TEST_CASE("assets: a display comes back from its file to the nanometre") {
 }
 
 TEST_CASE("assets: a display that cannot be is refused with its line") {
-    CHECK(refusal(screen) == "taken");
-    CHECK(refusal("title = \"x\"\n").find("at least one [[screens]]") != std::string::npos);
-    CHECK(refusal(screen + "lowleft = \"0 mm, 0 mm, 0 mm\"\n").find(":5:11: unknown key 'lowleft'") !=
+    CHECK(display_refusal(screen) == "taken");
+    CHECK(display_refusal("title = \"x\"\n").find("at least one [[screens]]") != std::string::npos);
+    CHECK(display_refusal(screen + "lowleft = \"0 mm, 0 mm, 0 mm\"\n").find(":5:11: unknown key 'lowleft'") !=
           std::string::npos);
-    CHECK(refusal(screen + "stereo = \"side by side\"\n").find("did you mean 'side-by-side'") != std::string::npos);
-    CHECK(refusal(screen + screen + "name = \"screen 1\"\n").find("two screens") != std::string::npos);
-    CHECK(refusal("[mirror]\npoint = \"0 mm, 0 mm, 0 mm\"\nnormal = [0, 0, 0]\n" + screen).find(":3:") !=
+    CHECK(display_refusal(screen + "stereo = \"side by side\"\n").find("did you mean 'side-by-side'") !=
           std::string::npos);
-    CHECK(refusal("[device]\nstretch = [[1,0,0],[0,1,0],[0,0,-1]]\n" + screen).find("inside out") != std::string::npos);
-    CHECK(refusal("[device]\nposition = \"1 mm, 2 mm\"\n" + screen).find("three parts") != std::string::npos);
-    CHECK(refusal("[[screens]]\nlow_left=\"0 mm,0 mm,0 mm\"\nlow_right=\"1 m,0 mm,0 mm\"\nhigh_left=\"1 m,1 m,0 mm\"\n")
+    CHECK(display_refusal(screen + screen + "name = \"screen 1\"\n").find("two screens") != std::string::npos);
+    CHECK(display_refusal("[mirror]\npoint = \"0 mm, 0 mm, 0 mm\"\nnormal = [0, 0, 0]\n" + screen).find(":3:") !=
+          std::string::npos);
+    CHECK(display_refusal("[device]\nstretch = [[1,0,0],[0,1,0],[0,0,-1]]\n" + screen).find("inside out") !=
+          std::string::npos);
+    CHECK(display_refusal("[device]\nposition = \"1 mm, 2 mm\"\n" + screen).find("three parts") != std::string::npos);
+    CHECK(display_refusal(
+              "[[screens]]\nlow_left=\"0 mm,0 mm,0 mm\"\nlow_right=\"1 m,0 mm,0 mm\"\nhigh_left=\"1 m,1 m,0 mm\"\n")
               .find("square") != std::string::npos);
-    CHECK(refusal("between_eyes = \"63\"\n" + screen).find(":1:") != std::string::npos);
-    CHECK(refusal("screens = [").find("not valid TOML") != std::string::npos);
+    CHECK(display_refusal("between_eyes = \"63\"\n" + screen).find(":1:") != std::string::npos);
+    CHECK(display_refusal("screens = [").find("not valid TOML") != std::string::npos);
 }
 
 TEST_CASE("assets: touches come back from their file, and a bad line is named") {

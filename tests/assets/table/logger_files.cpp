@@ -10,7 +10,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-table::SampleLog read(std::string_view text, table::LogSelection selection = {}) {
+table::SampleLog read_logger(std::string_view text, table::LogSelection selection = {}) {
     return table::read_sample_log(text, "l.csv", selection);
 }
 
@@ -21,7 +21,7 @@ std::string unit_of(const table::SampleLog& log, std::size_t column) {
 }  // namespace
 
 TEST_CASE("lines above the header are skipped, a row of units below it is read") {
-    const table::SampleLog log = read(
+    const table::SampleLog log = read_logger(
         "Data logger 7,serial 0815\nStart time,2024-05-17\nSample rate,1000,Hz\n\n"
         "Time,ax,ay\ns,g,g\n0,0.5,1\n0.001,0.25,2\n0.002,0.125,3\n0.003,0,4\n");
     CHECK(log.form.header_line == 5);
@@ -40,18 +40,18 @@ TEST_CASE("rows to skip can be stated, where the guess would be wrong") {
     table::LogSelection selection;
     selection.columns = {"a"};
     selection.skip_rows = 2;
-    const table::SampleLog log = read(text, selection);
+    const table::SampleLog log = read_logger(text, selection);
     CHECK(log.columns[0] == std::vector{7.0, 8.0});
     CHECK(log.times == std::vector{0.0, 0.001});
     CHECK(log.form.skipped == 2);
     selection.columns = {"c"};
-    CHECK_THROWS_WITH(read(text, selection),
+    CHECK_THROWS_WITH(read_logger(text, selection),
                       ContainsSubstring("l.csv:3:1") && ContainsSubstring("there are t_ms, a, b"));
 }
 
 TEST_CASE("tabs with decimal commas, a mark at the start, CR LF and quotes are read") {
     const table::SampleLog log =
-        read("\xef\xbb\xbf\"Zeit [s]\"\t\"a_x [m/s\xc2\xb2]\"\r\n0,000\t1,5\r\n0,001\t-2,25\r\n");
+        read_logger("\xef\xbb\xbf\"Zeit [s]\"\t\"a_x [m/s\xc2\xb2]\"\r\n0,000\t1,5\r\n0,001\t-2,25\r\n");
     CHECK(log.names == std::vector<std::string>{"a_x"});
     CHECK(unit_of(log, 0) == "m/s²");
     CHECK(log.columns[0] == std::vector{1.5, -2.25});
@@ -59,80 +59,83 @@ TEST_CASE("tabs with decimal commas, a mark at the start, CR LF and quotes are r
     CHECK(log.form.separator == '\t');
     CHECK_THAT(table::describe(log.form), ContainsSubstring("tab-separated, decimal comma, names in line 1"));
     // Latin-1, as older Windows programs write it.
-    CHECK(unit_of(read("t;a [m/s\xb2]\n0;1,5\n1;2,5\n"), 0) == "m/s²");
+    CHECK(unit_of(read_logger("t;a [m/s\xb2]\n0;1,5\n1;2,5\n"), 0) == "m/s²");
     // UTF-16, as spreadsheets export it.
     std::string wide = "\xff\xfe";
     for (const char c : std::string_view("t\ta\n0\t1.5\n1\t2.5\n")) wide += {c, '\0'};
-    CHECK(read(wide).columns[0] == std::vector{1.5, 2.5});
+    CHECK(read_logger(wide).columns[0] == std::vector{1.5, 2.5});
     // Lines that end with CR alone; a file that states its separator.
-    CHECK(read("t,a\r0,1\r1,2\r").columns[0] == std::vector{1.0, 2.0});
-    CHECK(read("sep=;\nt;a\n0;1,5\n1;2,5\n").columns[0] == std::vector{1.5, 2.5});
+    CHECK(read_logger("t,a\r0,1\r1,2\r").columns[0] == std::vector{1.0, 2.0});
+    CHECK(read_logger("sep=;\nt;a\n0;1,5\n1;2,5\n").columns[0] == std::vector{1.5, 2.5});
 }
 
 TEST_CASE("times are read as ISO 8601, with fraction and zone") {
-    const table::SampleLog log =
-        read("timestamp,a\n2024-05-17T23:59:59.998Z,1\n2024-05-17T23:59:59.999Z,2\n2024-05-18T00:00:00.000Z,3\n");
+    const table::SampleLog log = read_logger(
+        "timestamp,a\n2024-05-17T23:59:59.998Z,1\n2024-05-17T23:59:59.999Z,2\n2024-05-18T00:00:00.000Z,3\n");
     CHECK(log.times[1] - log.times[0] == Approx(0.001).epsilon(1e-6));
     CHECK(log.times[2] - log.times[0] == Approx(0.002).epsilon(1e-6));
     CHECK_THAT(log.form.time, ContainsSubstring("dates and times"));
     // Summer time ends: the zone makes the step.
-    const table::SampleLog zones = read("when,a\n2024-10-27 02:59:59.9+02:00,1\n2024-10-27 02:00:00.0+01:00,2\n",
-                                        {.time_column = {}, .columns = {"a"}, .time_unit = {}});
+    const table::SampleLog zones = read_logger("when,a\n2024-10-27 02:59:59.9+02:00,1\n2024-10-27 02:00:00.0+01:00,2\n",
+                                               {.time_column = {}, .columns = {"a"}, .time_unit = {}});
     CHECK(zones.times.size() == 2);
 }
 
 TEST_CASE("times of day are read and go on at midnight") {
-    const table::SampleLog log = read("time;ax\n23:59:59,998;1\n23:59:59,999;2\n00:00:00,000;3\n");
+    const table::SampleLog log = read_logger("time;ax\n23:59:59,998;1\n23:59:59,999;2\n00:00:00,000;3\n");
     CHECK(log.times[2] - log.times[0] == Approx(0.002).epsilon(1e-6));
-    CHECK(read("time,a\n14:03:07:250,1\n14:03:07:255,2\n").times[1] - 50587.25 == Approx(0.005).epsilon(1e-6));
-    CHECK(read("time,a\n59:59.9,1\n00:00.1,2\n").times[1] == Approx(3600.1));
-    CHECK(read("Date,Time,a\n5/17/2024,11:59:59.5 PM,1\n5/18/2024,12:00:00.5 AM,2\n").times[1] == Approx(86400.5));
-    CHECK_THROWS_WITH(read("time,a\n10:00:02,1\n10:00:01,2\n"),
+    CHECK(read_logger("time,a\n14:03:07:250,1\n14:03:07:255,2\n").times[1] - 50587.25 == Approx(0.005).epsilon(1e-6));
+    CHECK(read_logger("time,a\n59:59.9,1\n00:00.1,2\n").times[1] == Approx(3600.1));
+    CHECK(read_logger("Date,Time,a\n5/17/2024,11:59:59.5 PM,1\n5/18/2024,12:00:00.5 AM,2\n").times[1] ==
+          Approx(86400.5));
+    CHECK_THROWS_WITH(read_logger("time,a\n10:00:02,1\n10:00:01,2\n"),
                       ContainsSubstring("l.csv:3:1") && ContainsSubstring("backwards"));
-    CHECK_THROWS_WITH(read("time,a\n10:00:02,1\nsoon,2\n10:00:03,3\n"),
+    CHECK_THROWS_WITH(read_logger("time,a\n10:00:02,1\nsoon,2\n10:00:03,3\n"),
                       ContainsSubstring("l.csv:3") && ContainsSubstring("is not a time"));
-    CHECK_THROWS_WITH(read("date,a\n5/4/2024 10:00:00,1\n5/5/2024 10:00:01,2\n"), ContainsSubstring("days or months"));
+    CHECK_THROWS_WITH(read_logger("date,a\n5/4/2024 10:00:00,1\n5/5/2024 10:00:01,2\n"),
+                      ContainsSubstring("days or months"));
 }
 
 TEST_CASE("a clock that is set in the middle of a log is one clear error") {
-    CHECK_THROWS_WITH(read("t,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
+    CHECK_THROWS_WITH(read_logger("t,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
                       ContainsSubstring("l.csv:4:1") && ContainsSubstring("more than a day"));
 }
 
 TEST_CASE("a stated rate takes the place of times, lost rows keep their place") {
     table::LogSelection selection;
     selection.rate = 3200.0;
-    const table::SampleLog log = read("a\n1\n2\nnan\n4\n", selection);
+    const table::SampleLog log = read_logger("a\n1\n2\nnan\n4\n", selection);
     CHECK(log.times == std::vector{0.0, 1.0 / 3200.0, 3.0 / 3200.0});
     CHECK(log.lost_rows == 1);
     CHECK(log.form.separator == '\0');
-    CHECK(read("0.5\n-1.5\n", selection).columns[0] == std::vector{0.5, -1.5});
-    CHECK(read("sample,ax,ay\n0,5,6\n1,7,8\n", selection).names == std::vector<std::string>{"ax", "ay"});
+    CHECK(read_logger("0.5\n-1.5\n", selection).columns[0] == std::vector{0.5, -1.5});
+    CHECK(read_logger("sample,ax,ay\n0,5,6\n1,7,8\n", selection).names == std::vector<std::string>{"ax", "ay"});
     selection.time_column = std::string("t");
-    CHECK_THROWS_WITH(read("t,a\n0,1\n1,2\n", selection), ContainsSubstring("state one of them"));
+    CHECK_THROWS_WITH(read_logger("t,a\n0,1\n1,2\n", selection), ContainsSubstring("state one of them"));
     selection = {};
     selection.rate = 0.0;
-    CHECK_THROWS_WITH(read("a\n1\n2\n", selection), ContainsSubstring("above 0"));
+    CHECK_THROWS_WITH(read_logger("a\n1\n2\n", selection), ContainsSubstring("above 0"));
 }
 
 TEST_CASE("one column with decimal commas is not taken for two columns") {
     table::LogSelection selection;
     selection.rate = 1000.0;
-    const table::SampleLog log = read("accel [g]\n0,5\n-0,25\n1,5\n", selection);
+    const table::SampleLog log = read_logger("accel [g]\n0,5\n-0,25\n1,5\n", selection);
     CHECK(log.columns == std::vector<std::vector<double>>{{0.5, -0.25, 1.5}});
     CHECK(unit_of(log, 0) == "g");
     // Two names fewer than fields: nobody knows which comma is decimal.
-    CHECK_THROWS_WITH(read("t,a\n0,5,1,25\n0,6,1,5\n"),
+    CHECK_THROWS_WITH(read_logger("t,a\n0,5,1,25\n0,6,1,5\n"),
                       ContainsSubstring("l.csv:1") && ContainsSubstring("decimal commas"));
 }
 
 TEST_CASE("blanks separate fields, also of aligned columns") {
-    const table::SampleLog log = read("# made by a script\nTime (s)   Acc (g)\n  0.000    1.5e-1\n  0.001   -2.5e-1\n");
+    const table::SampleLog log =
+        read_logger("# made by a script\nTime (s)   Acc (g)\n  0.000    1.5e-1\n  0.001   -2.5e-1\n");
     CHECK(log.names == std::vector<std::string>{"Acc"});
     CHECK(unit_of(log, 0) == "g");
     CHECK(log.columns[0] == std::vector{0.15, -0.25});
     // numpy.savetxt writes the names as a comment.
-    CHECK(read("# t_s a\n0 5\n0.5 6\n").times == std::vector{0.0, 0.5});
+    CHECK(read_logger("# t_s a\n0 5\n0.5 6\n").times == std::vector{0.0, 0.5});
 }
 
 TEST_CASE("units and names are told apart") {
@@ -159,29 +162,30 @@ TEST_CASE("units and names are told apart") {
 }
 
 TEST_CASE("of several sensors the accelerometer is chosen") {
-    const table::SampleLog log = read("time,gx,gy,gz,ax,ay,az\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n");
+    const table::SampleLog log = read_logger("time,gx,gy,gz,ax,ay,az\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n");
     CHECK(log.names == std::vector<std::string>{"ax", "ay", "az"});
-    const table::SampleLog volts = read("Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n0,1.5,2\n1,1.25,3\n2,1,4\n");
+    const table::SampleLog volts =
+        read_logger("Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n0,1.5,2\n1,1.25,3\n2,1,4\n");
     CHECK(volts.names == std::vector<std::string>{"Channel A", "Channel B"});
     CHECK(unit_of(volts, 0) == "mV");
     CHECK(volts.times[1] == Approx(1e-3));
 }
 
 TEST_CASE("a header that does not fit its rows is refused, and a restart of the logger said") {
-    CHECK_THROWS_WITH(read("t,a\n0,1,2\n1,2,3\n"), ContainsSubstring("2 names and the rows have 3 fields"));
-    CHECK_THROWS_WITH(read("t,a\n0,1\n1,2\n2,3\n3,4\nt,a\n0,1\n"),
+    CHECK_THROWS_WITH(read_logger("t,a\n0,1,2\n1,2,3\n"), ContainsSubstring("2 names and the rows have 3 fields"));
+    CHECK_THROWS_WITH(read_logger("t,a\n0,1\n1,2\n2,3\n3,4\nt,a\n0,1\n"),
                       ContainsSubstring("l.csv:6") && ContainsSubstring("started anew"));
-    CHECK(read("t,a,\n0,1,\n1,2,\n").columns[0] == std::vector{1.0, 2.0});
+    CHECK(read_logger("t,a,\n0,1,\n1,2,\n").columns[0] == std::vector{1.0, 2.0});
 }
 
 TEST_CASE("a bad cell in the middle is an error, not the end of a header") {
     std::string text = "t,a\n";
     for (int i = 0; i < 50; ++i) text += std::to_string(i) + (i == 20 ? ",sensor error\n" : ",5\n");
-    CHECK_THROWS_WITH(read(text), ContainsSubstring("l.csv:22:2") && ContainsSubstring("'sensor error'"));
+    CHECK_THROWS_WITH(read_logger(text), ContainsSubstring("l.csv:22:2") && ContainsSubstring("'sensor error'"));
 }
 
 TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors are read") {
-    table::SampleLog log = read(
+    table::SampleLog log = read_logger(
         "LabVIEW Measurement\t\nDate\t2024/05/17\nTime\t10:15:57.12\n***End_of_Header***\t\n\t\nChannels\t2\t\t\n"
         "Samples\t3\t3\t\nX0\t0.0E+0\t0.0E+0\t\nDelta_X\t0.0005\t0.0005\t\n***End_of_Header***\t\t\t\n"
         "X_Value\tAcceleration_0\tAcceleration_1\tComment\n0.0000\t1.5\t2\n0.0005\t2.5\t3\n0.0010\t3.5\t4\n"
@@ -190,7 +194,7 @@ TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors 
     CHECK(log.times[1] == Approx(0.0005));
     CHECK(log.times.size() == 5);
 
-    log = read("Record Length,2.5e+03,,-0.0010,0.5,\nSample Interval,1e-05,,-0.0009,0.25,\n" + [] {
+    log = read_logger("Record Length,2.5e+03,,-0.0010,0.5,\nSample Interval,1e-05,,-0.0009,0.25,\n" + [] {
         std::string rows;
         for (int i = 0; i < 40; ++i) rows += ",,," + std::to_string(0.0001 * i) + ",0.125,\n";
         return rows;
@@ -201,20 +205,20 @@ TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors 
     table::LogSelection scope;
     scope.columns.emplace_back("CH1");
     scope.rate = 1e5;
-    log = read("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n", scope);
+    log = read_logger("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n", scope);
     CHECK(log.columns[0] == std::vector{1.5, 2.5, 3.5});
     CHECK(log.units[0]->is_voltage());
 
     scope.columns = {"2"};
     scope.rate.reset();
-    log = read("MPU6050 ready\n12:34:00.000 -> 306,-2,16384\n12:34:00.010 -> 307,-3,16384\n12:34:00.020 -> 308,-4,1\n",
-               scope);
+    log = read_logger(
+        "MPU6050 ready\n12:34:00.000 -> 306,-2,16384\n12:34:00.010 -> 307,-3,16384\n12:34:00.020 -> 308,-4,1\n", scope);
     CHECK(log.columns[0] == std::vector{306.0, 307.0, 308.0});
     CHECK(log.times[1] - log.times[0] == Approx(0.01));
 
-    log = read(";SampleRate, 200,Hz\n;Headers, time,Ax,Ay,Az\n0.000,1,2,3\n0.005,4,5,6\n");
+    log = read_logger(";SampleRate, 200,Hz\n;Headers, time,Ax,Ay,Az\n0.000,1,2,3\n0.005,4,5,6\n");
     CHECK(log.names == std::vector<std::string>{"Ax", "Ay", "Az"});
-    log = read("x-axis,1\nsecond,Volt\n0,0.5\n1e-5,0.25\n");
+    log = read_logger("x-axis,1\nsecond,Volt\n0,0.5\n1e-5,0.25\n");
     CHECK(log.units[0]->is_voltage());
     CHECK(log.times[1] == 1e-5);
 }

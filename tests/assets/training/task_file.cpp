@@ -65,7 +65,7 @@ std::string with(std::string text, const std::string& what, const std::string& b
     return text.replace(at, what.size(), by);
 }
 
-std::string refusal(const std::string& text) {
+std::string task_refusal(const std::string& text) {
     const TaskScratch folder;
     try {
         training::load_task_file(folder.write(text));
@@ -134,7 +134,7 @@ TEST_CASE("a wrong task is refused with the line of what is wrong") {
         {with(plane, "[cut]", "[cut"), "task.toml:10:"},
     };
     for (const auto& [text, expected] : cases) {
-        const std::string got = refusal(text);
+        const std::string got = task_refusal(text);
         INFO(got << " instead of " << expected);
         CHECK(got.starts_with(expected));
     }

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/realtime.hpp"
+#include "tests/dsp/vibration/audio_rate.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
@@ -12,10 +13,10 @@
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
+using tactus::test::decibel;
+using tactus::test::rate;
 
 namespace {
-
-constexpr double rate = 48000.0;
 
 /// m/s² per V at a frequency, measured with a sine of 0.1 V after a second of settling.
 double measured_gain(vibration::Actuator actuator, double frequency) {
@@ -29,8 +30,6 @@ double measured_gain(vibration::Actuator actuator, double frequency) {
     }
     return std::abs(out) / std::abs(in);
 }
-
-double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
 }  // namespace
 

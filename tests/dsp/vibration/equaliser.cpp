@@ -6,6 +6,7 @@
 #include "dsp/signal/spectrum/similarity.hpp"
 #include "dsp/vibration/headroom.hpp"
 #include "dsp/vibration/identify.hpp"
+#include "tests/dsp/vibration/audio_rate.hpp"
 #include "tests/dsp/vibration/plant.hpp"
 #include "tests/support/catch.hpp"
 
@@ -13,12 +14,10 @@
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
+using tactus::test::decibel;
+using tactus::test::rate;
 
 namespace {
-
-constexpr double rate = 48000.0;
-
-double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
 /// The plant as a sweep of amplitude 0.3 finds it through hum and noise.
 vibration::FrequencyResponse identified(const test::Plant& plant) {

@@ -14,18 +14,18 @@ namespace {
 
 constexpr int block = 64;
 
-struct Places {
+struct MemoryPlaces {
     std::map<std::string, std::size_t> at;  // "node.port" → offset
     std::size_t bytes = 0;
 };
 
-Places places_of(const std::string& text) {
+MemoryPlaces places_of(const std::string& text) {
     const Compiled c = compiled(text);
     INFO(c.said);
     REQUIRE(c.plan);
     const std::vector<int> frames(c.plan->groups.size(), block);
     const compile::ValueLayout layout = compile::lay_out_values(*c.plan, frames);
-    Places places{{}, layout.bytes};
+    MemoryPlaces places{{}, layout.bytes};
     for (std::size_t n = 0; n < c.plan->nodes.size(); ++n)
         for (std::size_t k = 0; k < layout.offsets[n].size(); ++k)
             places.at[c.plan->nodes[n].name + "." + c.plan->nodes[n].outputs[k].name] = layout.offsets[n][k];
@@ -41,7 +41,7 @@ std::string audio_of(const std::string& name, const std::string& type) { return 
 //  │ wave ├──►│ a ├──►│ b ├──►│ c ├──►│ d │
 //  └──────┘   └───┘   └───┘   └───┘   └───┘
 TEST_CASE("a chain of signals of any length lives in two places") {
-    const Places p =
+    const MemoryPlaces p =
         places_of(wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in\", \"c.out -> d.in\"") +
                   audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
                   audio_of("d", "gain"));
@@ -61,7 +61,7 @@ TEST_CASE("a chain of signals of any length lives in two places") {
 //          └───►│ z │           reads the wave last
 //               └───┘
 TEST_CASE("a signal keeps its place until its last reader has run") {
-    const Places p =
+    const MemoryPlaces p =
         places_of(wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"w.out -> z.in\"") + audio_of("w", "wave") +
                   audio_of("a", "gain") + audio_of("b", "gain") + audio_of("z", "gain"));
     CHECK(p.at.at("w.out") != p.at.at("a.out"));
@@ -75,7 +75,7 @@ TEST_CASE("a signal keeps its place until its last reader has run") {
 //  │ wave ├──►│ a ├──►│ b ├─┐ delay 1
 //  └──────┘   └───┘   └───┘ └─► c
 TEST_CASE("a signal that waits for a later tick keeps its place, and so does every other type") {
-    const Places p = places_of(
+    const MemoryPlaces p = places_of(
         wires_text("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in as delay 1\", \"s.value -> r.in\"") +
         audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
         a_node("s", "source") + a_node("r", "relay"));

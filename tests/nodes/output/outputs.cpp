@@ -9,7 +9,7 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_sample = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -44,7 +44,7 @@ TEST_CASE("record writes one value per tick of anything else, to a table") {
 TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted") {
     NodeHarness node("audio_output");
     node.set("full_scale", "10").feed<float>("signal", [](std::int64_t k) {
-        return k == 1 ? 25.0f : k == 2 ? -25.0f : k == 3 ? not_a_number : 5.0f;
+        return k == 1 ? 25.0f : k == 2 ? -25.0f : k == 3 ? no_sample : 5.0f;
     });
     node.prepare();
     node.run(100, 3);
@@ -61,7 +61,7 @@ TEST_CASE("a probe tells least, greatest, mean and last of each column, and coun
     test::HarnessOptions options = test::servo;
     NodeHarness number("probe", options);
     number.feed<double>(
-        "in", [](std::int64_t k) { return k == 4 ? static_cast<double>(not_a_number) : static_cast<double>(k); });
+        "in", [](std::int64_t k) { return k == 4 ? static_cast<double>(no_sample) : static_cast<double>(k); });
     number.prepare();
     number.run(10);
     const Report report = number.report();

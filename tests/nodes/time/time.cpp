@@ -15,7 +15,7 @@ using test::NodeHarness;
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_time = std::numeric_limits<double>::quiet_NaN();
 
 double time_of(std::int64_t k) { return 1e-3 * static_cast<double>(k); }
 
@@ -43,7 +43,7 @@ TEST_CASE("the derivative of a parabola is a line, of a steady line with noise t
 
 TEST_CASE("a value that is not finite is left out of a derivative") {
     NodeHarness node("differentiate", {.period = ms});
-    node.feed<double>("in", [](std::int64_t k) { return k == 5 ? not_a_number : 3.0 * time_of(k); });
+    node.feed<double>("in", [](std::int64_t k) { return k == 5 ? no_time : 3.0 * time_of(k); });
     node.prepare();
     node.run(10);
     const auto out = node.values<double>("out");

@@ -19,13 +19,14 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double shelf_rate = 48000.0;
 
 /// Complex gain of what a node makes of an impulse, by the definition of Fourier's transform.
 Complex gain_of(const std::vector<float>& impulse, double frequency) {
     Complex sum = 0.0;
     for (std::size_t k = 0; k < impulse.size(); ++k)
-        sum += static_cast<double>(impulse[k]) * std::polar(1.0, -2.0 * pi * frequency / rate * static_cast<double>(k));
+        sum += static_cast<double>(impulse[k]) *
+               std::polar(1.0, -2.0 * pi * frequency / shelf_rate * static_cast<double>(k));
     return sum;
 }
 
@@ -38,7 +39,7 @@ NodeHarness& impulse(NodeHarness& node, std::int64_t count = 48000) {
 
 /// s of the analog prototype, normalised to the corner, for a frequency after the bilinear transform.
 Complex warped(double frequency, double corner) {
-    return {0.0, std::tan(pi * frequency / rate) / std::tan(pi * corner / rate)};
+    return {0.0, std::tan(pi * frequency / shelf_rate) / std::tan(pi * corner / shelf_rate)};
 }
 
 }  // namespace
@@ -93,7 +94,7 @@ TEST_CASE("a comb has the response of its delayed sums") {
     node.set("time", "2 ms").set("forward", "0.5").set("back", "-0.7");
     const auto response = impulse(node).values<float>("out");
     for (const double f : {10.0, 125.0, 250.0, 333.0, 5000.0}) {
-        const Complex z = std::polar(1.0, -2.0 * pi * f * 96.0 / rate);
+        const Complex z = std::polar(1.0, -2.0 * pi * f * 96.0 / shelf_rate);
         CHECK(std::abs(gain_of(response, f) - (1.0 + 0.5 * z) / (1.0 + 0.7 * z)) < 1e-4);
     }
 }
@@ -122,9 +123,9 @@ TEST_CASE("a tap rings as its formula says, in proportion to the speed, and taps
     const auto out = node.values<float>("out");
     const auto ring = [](double t) { return t < 0.0 ? 0.0 : std::exp(-t / 20e-3) * std::sin(2.0 * pi * 200.0 * t); };
     for (std::size_t k = 0; k < out.size(); ++k) {
-        const double t = static_cast<double>(k) / rate;
+        const double t = static_cast<double>(k) / shelf_rate;
         CHECK(static_cast<double>(out[k]) ==
-              Approx(15.0 * ring(t - 120.0 / rate) + 5.0 * ring(t - 1992.0 / rate)).margin(1e-5));
+              Approx(15.0 * ring(t - 120.0 / shelf_rate) + 5.0 * ring(t - 1992.0 / shelf_rate)).margin(1e-5));
     }
     NodeHarness hard("impact");
     hard.set("most", "3 m/s^2").feed("hit", true).feed("speed", 1e9);
@@ -185,7 +186,7 @@ TEST_CASE("a player converts the rate of its sound") {
     const auto out = node.values<float>("out");
     for (std::size_t k = 500; k < 4300; ++k)
         CHECK(static_cast<double>(out[k]) ==
-              Approx(std::sin(2.0 * pi * 440.0 * static_cast<double>(k) / rate)).margin(2e-3));
+              Approx(std::sin(2.0 * pi * 440.0 * static_cast<double>(k) / shelf_rate)).margin(2e-3));
 }
 
 TEST_CASE("a ramp goes from one value to the other in its time, again at each trigger") {

@@ -36,6 +36,23 @@ Spot Eyes::spot(const std::string& name) const {
     return {};
 }
 
+Spot Eyes::resting_spot(const std::string& name) const {
+    const auto written = [&] {
+        std::error_code none;
+        return fs::last_write_time(folder / "spots.txt", none);
+    };
+    Spot at = spot(name);
+    for (int i = 0; i < 20; ++i) {
+        const auto before = written();
+        // Some scripts write once.
+        for (int n = 0; n < 20 && written() == before; ++n) Person::wait(0.05);
+        const Spot now = spot(name);
+        if (now == at) break;
+        at = now;
+    }
+    return at;
+}
+
 std::vector<double> Eyes::last_row(const std::string& table) const {
     constexpr std::streamoff enough = 800;
     std::ifstream file(folder / (table + ".part"), std::ios::ate);
@@ -55,7 +72,7 @@ std::vector<double> Eyes::last_row(const std::string& table) const {
 }
 
 void press(Person& person, const Eyes& eyes, const std::string& control) {
-    const Spot at = eyes.spot(control);
+    const Spot at = eyes.resting_spot(control);
     person.click(0.5 * (at.left + at.right), 0.5 * (at.top + at.bottom));
     Person::wait(0.3);
 }

@@ -14,6 +14,8 @@ namespace tactus::test {
 
 struct Spot {
     double left, top, right, bottom;
+
+    bool operator==(const Spot&) const = default;
 };
 
 struct Eyes {
@@ -22,6 +24,8 @@ struct Eyes {
     std::map<std::string, Spot> spots() const;
     /// Fails the test when it is not there within 10 s.
     Spot spot(const std::string& name) const;
+    /// Where it is once it does not move any more: lists scroll, and grow while a scene is being made.
+    Spot resting_spot(const std::string& name) const;
     /// The last whole row of a table that a run writes, without and with its end ".part"; empty: none.
     std::vector<double> last_row(const std::string& table) const;
 };

@@ -191,7 +191,7 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
         for (int i = 0; i < 10; ++i) script += "frames 3\nspots spots.txt\n";
         walk.start_script("view",
                           script + fmt::format("instant {:.4f}\nframes 20\nspots spots.txt\nscreenshot found.png\n"
-                                               "close\n",
+                                               "wait 3\nclose\n",
                                                peak->when),
                           200.0);
         REQUIRE(walk.waits_for("takes here monday"));
@@ -201,6 +201,7 @@ TEST_CASE("a newcomer opens a take and goes to the instant of its largest force"
         Person::wait(2.0);
         walk.keep("open");
         walk.person.tap("m");
+        REQUIRE(walk.waits_for("scope 0 plot"));
         walk.keep("found");
         const Outcome outcome = walk.end(180.0);
         INFO(outcome.err);

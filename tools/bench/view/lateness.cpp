@@ -4,6 +4,7 @@
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/view/quantile.hpp"
 #include "tools/session/scratch_folder.hpp"
 #include "tools/session/stop_signals.hpp"
 
@@ -12,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -89,11 +89,6 @@ Lateness one_run(const LatenessChoice& choice, const fs::path& folder, bool has_
     for (const char* how : {"misses", "skipped", "dropped"}) lost += (*hand)[how].get<double>();
     const double ticks = (*hand)["ticks"].get<double>() + (*hand)["skipped"].get<double>();
     return {(*hand)["lateness_us"]["p99"].get<double>(), ticks > 0.0 ? 100.0 * lost / ticks : 0.0};
-}
-
-double quantile(std::vector<double> values, double q) {
-    std::ranges::sort(values);
-    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
 struct Compared {

@@ -3,6 +3,7 @@
 #include "assets/file/json.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/view/quantile.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/scratch_folder.hpp"
 #include "tools/session/stop_signals.hpp"
@@ -45,12 +46,6 @@ struct SceneCost {
     double per_s = 0.0;  ///< pictures of the scene per second
 };
 
-double frame_quantile(std::vector<double> values, double q) {
-    if (values.empty()) return 0.0;
-    std::ranges::sort(values);
-    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
-}
-
 /// Without pictures when the patch has no scene.
 SceneCost cost_of(const std::string& patch, const PicturesChoice& choice, const fs::path& folder,
                   const std::atomic<bool>& interrupted) {
@@ -77,10 +72,10 @@ SceneCost cost_of(const std::string& patch, const PicturesChoice& choice, const 
     return {patch,
             scenes.size(),
             meter.threads(),
-            frame_quantile(scenes, 0.5),
-            frame_quantile(scenes, 0.95),
-            frame_quantile(scenes, 1.0),
-            frame_quantile(panels, 0.5),
+            quantile(scenes, 0.5),
+            quantile(scenes, 0.95),
+            quantile(scenes, 1.0),
+            quantile(panels, 0.5),
             last > settles_s ? static_cast<double>(scenes.size()) / (last - settles_s) : 0.0};
 }
 

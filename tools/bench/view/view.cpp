@@ -9,6 +9,7 @@
 #include "tools/bench/bench.hpp"
 #include "tools/bench/view/large_bone.hpp"
 #include "tools/bench/view/peer.hpp"
+#include "tools/bench/view/quantile.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -47,11 +48,6 @@ void make_shaft(volume::Grid& distance, volume::Grid& density, double fineness) 
                 distance.at(i, j, k) = static_cast<float>(std::max(across, end));
                 density.at(i, j, k) = across < -3e-3 ? 400.0f : 1800.0f;
             }
-}
-
-double picture_quantile(std::vector<double> values, double q) {
-    std::ranges::sort(values);
-    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
 }  // namespace
@@ -110,14 +106,14 @@ int bench_view(const BenchChoice& choice) {
     } catch (const Error& error) {
         fmt::print(stderr, "tactus: pictures are not measured: {}\n", error.what());
     }
-    Json result{{"remesh_median_ms", picture_quantile(cuts_ms, 0.5)},
-                {"remesh_p99_ms", picture_quantile(cuts_ms, 0.99)},
-                {"remesh_worst_ms", picture_quantile(cuts_ms, 1.0)},
-                {"bricks_median", picture_quantile(bricks, 0.5)},
-                {"bricks_most", picture_quantile(bricks, 1.0)},
-                {"whole_ms", picture_quantile(whole_ms, 0.0)},
+    Json result{{"remesh_median_ms", quantile(cuts_ms, 0.5)},
+                {"remesh_p99_ms", quantile(cuts_ms, 0.99)},
+                {"remesh_worst_ms", quantile(cuts_ms, 1.0)},
+                {"bricks_median", quantile(bricks, 0.5)},
+                {"bricks_most", quantile(bricks, 1.0)},
+                {"whole_ms", quantile(whole_ms, 0.0)},
                 {"triangles", triangles},
-                {"openvdb_volume_to_mesh_ms", picture_quantile(peer_ms, 0.0)},
+                {"openvdb_volume_to_mesh_ms", quantile(peer_ms, 0.0)},
                 {"openvdb_triangles", peer_triangles}};
     if (pictures) {
         result["picture_bone_triangles"] = pictures->triangles;
@@ -132,12 +128,12 @@ int bench_view(const BenchChoice& choice) {
         "remesh of what a 60 Hz cut changed   {:7.2f} ms median, {:.2f} ms p99, {:.2f} ms worst; {:.0f} bricks, {:.0f} "
         "at "
         "most\n",
-        picture_quantile(cuts_ms, 0.5), picture_quantile(cuts_ms, 0.99), picture_quantile(cuts_ms, 1.0),
-        picture_quantile(bricks, 0.5), picture_quantile(bricks, 1.0));
+        quantile(cuts_ms, 0.5), quantile(cuts_ms, 0.99), quantile(cuts_ms, 1.0), quantile(bricks, 0.5),
+        quantile(bricks, 1.0));
     fmt::print("all bricks                           {:7.2f} ms, {} triangles with normals and colours\n",
-               picture_quantile(whole_ms, 0.0), triangles);
-    fmt::print("OpenVDB volumeToMesh of the whole    {:7.2f} ms, {} triangles, no normals\n",
-               picture_quantile(peer_ms, 0.0), peer_triangles);
+               quantile(whole_ms, 0.0), triangles);
+    fmt::print("OpenVDB volumeToMesh of the whole    {:7.2f} ms, {} triangles, no normals\n", quantile(peer_ms, 0.0),
+               peer_triangles);
     if (!pictures) return done;
     fmt::print("\npictures of a bone of {} triangles, {} x {}\n", pictures->triangles, pictures->width,
                pictures->height);

@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "dsp/core/readable.hpp"
+#include "dsp/signal/spectrum/decibels.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
@@ -18,10 +19,10 @@
 namespace tactus::command {
 
 using file::Json;
+using signal::decibels;
 using study::AnalysedChannel;
 using study::AnalysedFile;
 using study::band_deviation;
-using study::decibels;
 
 namespace {
 

@@ -2,6 +2,7 @@
 #include "tools/picture/report/spectrogram_panel.hpp"
 
 #include "dsp/core/readable.hpp"
+#include "dsp/signal/spectrum/decibels.hpp"
 #include "tools/picture/report/axes.hpp"
 #include "tools/picture/spectra/heat.hpp"
 
@@ -16,8 +17,6 @@ namespace tactus::picture {
 namespace {
 
 constexpr display::Colour ink{0x22, 0x26, 0x2E};
-
-double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
 
 }  // namespace
 
@@ -43,7 +42,7 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
             for (std::size_t i = from; i < to; ++i)
                 for (std::size_t k = k0; k <= k1 && k < s.bins(); ++k)
                     power = std::max(power, static_cast<double>(s.column(i)[k]));
-            const double db = decibels(power);
+            const double db = signal::decibels(power);
             level[static_cast<std::size_t>(c * rows + row)] = db;
             top = std::max(top, db);
         }

@@ -81,6 +81,7 @@ public:
         Vec3 colour{0.0};
         bool is_shown = true;
         int place = -1;  ///< of a body in its scene; -1: it is none
+        bool is_out_of_plan = false;  ///< the plan hides it: it has no picture, whatever is_shown says
         bool is_locked = false, is_held = false;
         int unit = -1;  ///< bodies of one unit move together; -1: none
         int fits = -1;  ///< place of the body that it was fitted to; -1: none

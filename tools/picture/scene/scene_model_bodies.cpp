@@ -155,9 +155,17 @@ void SceneModel::show_bodies() {
         const std::unordered_set<std::uint64_t> of_others = shown_;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
-            if (object.body == 0 || of_others.contains(object.body)) continue;
+            if (of_others.contains(object.body) || (object.body == 0 && scene->plan.empty())) continue;
             const std::string name = name_of_body(*scene, i);
             const Vec3 colour = colour_of_body(name, *scene, i);
+            if (object.body == 0) {
+                // Scenes of two ports may be of one plan.
+                if (std::ranges::find(parts_, name, &Part::name) != parts_.end()) continue;
+                is_part_shown(name, colour);
+                parts_.back().place = static_cast<int>(i);
+                parts_.back().is_out_of_plan = true;
+                continue;
+            }
             if (const auto why = unmade_.find(object.body); why != unmade_.end()) {
                 if (told.insert(object.body).second)
                     legend_.warnings.push_back(fmt::format("{} is not drawn: {}", name, why->second));

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 
@@ -40,8 +41,8 @@ bool is_whole(const std::filesystem::path& path) {
     if (extension != ".nrrd") return path.string().ends_with(".nii.gz");
     std::ifstream file(path, std::ios::binary);
     for (std::string line; std::getline(file, line) && !line.empty() && line != "\r";) {
-        std::ranges::transform(line, line.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (line.starts_with("data file") || line.starts_with("datafile")) return false;
+        const std::string field = lower(line);
+        if (field.starts_with("data file") || field.starts_with("datafile")) return false;
         if (line.size() > 10'000) return false;
     }
     return true;

@@ -61,8 +61,6 @@ double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum
     return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
 }
 
-double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
-
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& wanted,
                           const std::function<void(double)>& progress) {
     sound::RecordReader reader = open_record(file, wanted.record);

@@ -54,8 +54,6 @@ struct AnalysedFile {
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
                           const std::function<void(double)>& progress);
 
-/// 10 log10, at least −300 dB.
-double decibels(double power);
 /// Standard deviation of a band's level, dB, given the averaging over its bins.
 double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum);
 

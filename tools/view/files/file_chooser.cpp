@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/files/file_chooser.hpp"
 
-#include "tools/view/frame/search.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 

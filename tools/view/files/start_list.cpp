@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/files/start_list.hpp"
 
+#include "dsp/core/lower.hpp"
 #include "graph/patch/patch.hpp"
-#include "tools/view/frame/search.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/frame/search.hpp"
 
+#include "dsp/core/lower.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -81,12 +83,6 @@ double place_of_meaning(std::string_view word, std::string_view name, std::strin
 }
 
 }  // namespace
-
-std::string lower(std::string_view text) {
-    std::string made(text);
-    std::ranges::transform(made, made.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return made;
-}
 
 double suits(std::string_view typed, std::string_view name, std::string_view about) {
     const std::string wanted = lower(typed), in_name = lower(name), in_about = lower(about);

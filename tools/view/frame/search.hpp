@@ -7,9 +7,6 @@
 
 namespace tactus::view {
 
-/// ASCII letters become small.
-std::string lower(std::string_view text);
-
 /// How well an entry suits what was typed; 0: not. Each typed word, or a synonym of it, must stand in `name` or in
 /// `about`; the name counts more, its beginning most. Upper and lower case are the same. Nothing typed: 1.
 double suits(std::string_view typed, std::string_view name, std::string_view about);

@@ -14,6 +14,7 @@ void ScenePanel::add_commands(std::vector<Command>& all) {
         all.push_back({"scene", std::move(name), "", about, std::move(run)});
     };
     for (const SceneModel::Part& part : model_->parts()) {
+        if (part.is_out_of_plan) continue;
         const auto& chosen = model_->chosen_parts();
         const bool is_chosen = std::ranges::find(chosen, part.name) != chosen.end();
         add(fmt::format("{} {}", is_chosen ? "Choose no longer" : "Choose", part.name), "select fragment part pick",

@@ -98,7 +98,7 @@ std::vector<int> ScenePanel::chosen_places() const {
     if (!model_) return places;
     for (const std::string& name : model_->chosen_parts())
         for (const SceneModel::Part& part : model_->parts())
-            if (part.name == name && part.place >= 0) places.push_back(part.place);
+            if (part.name == name && part.place >= 0 && !part.is_out_of_plan) places.push_back(part.place);
     return places;
 }
 

@@ -2,6 +2,7 @@
 // Overlays of the scene: measured points and the legend.
 #include "devices/hosted/clocks.hpp"
 #include "tools/view/hand/hand_of_patch.hpp"
+#include "tools/view/scene/label_places.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
@@ -97,15 +98,32 @@ void ScenePanel::draw_cursor(const Painter& paint, Point corner, double pixel) {
 
 void ScenePanel::draw_labels(const Painter& paint, Point corner, double pixel) {
     const double size = 0.85 * static_cast<double>(ImGui::GetFontSize());
+    const std::vector<SceneModel::Label>& labels = model_->labels();
     for (const SceneScreens::Tile& tile : screens_.tiles())
-        for (const display::DrawnView& view : tile.views)
-            for (const SceneModel::Label& label : model_->labels())
+        for (const display::DrawnView& view : tile.views) {
+            std::vector<Point> points;
+            std::vector<Box> wanted;
+            std::vector<const SceneModel::Label*> named;
+            for (const SceneModel::Label& label : labels)
                 if (const auto at = place_in(tile, view, label.at, corner, pixel)) {
                     const Point to = *at + Point{8.0, -0.5 * size};
-                    paint.box({to.x - 3, to.y - 1, to.x + paint.width_of(label.text, size) + 3, to.y + size + 3},
-                              colour(0xffffff, 200), 3.0);
-                    paint.text(to, size, packed(0.7 * label.colour), label.text);
+                    points.push_back(*at);
+                    wanted.push_back(
+                        {to.x - 3, to.y - 1, to.x + paint.width_of(label.text, size) + 3, to.y + size + 3});
+                    named.push_back(&label);
                 }
+            const Box within{corner.x + pixel * tile.x, corner.y + pixel * tile.y,
+                             corner.x + pixel * (tile.x + tile.width), corner.y + pixel * (tile.y + tile.height)};
+            const std::vector<Box> places = label_places(wanted, within);
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const ImU32 ink = packed(0.7 * named[i]->colour);
+                // A name that had to move is led to its point.
+                if (places[i].top != wanted[i].top)
+                    paint.line(points[i], {places[i].left, places[i].middle().y}, ink, 1.0);
+                paint.box(places[i], colour(0xffffff, 200), 3.0);
+                paint.text({places[i].left + 3, places[i].top + 1}, size, ink, named[i]->text);
+            }
+        }
 }
 
 void ScenePanel::draw_measured(const picture::Measurement& measured, ImU32 ink, const Painter& paint, Point corner,

@@ -40,6 +40,14 @@ void ScenePanel::draw_tree() {
     const std::vector<SceneModel::Part> parts = model_->parts();
     for (std::size_t place = 0; place < parts.size(); ++place) {
         const SceneModel::Part& part = parts[place];
+        if (part.is_out_of_plan) {
+            ImGui::TextDisabled(
+                "%s", elided(part.name + ", hidden in the plan", static_cast<double>(ImGui::GetContentRegionAvail().x))
+                          .c_str());
+            mark_spot("hidden " + part.name);
+            if (ImGui::IsItemHovered()) show_tooltip("the button \"show hidden\" brings it back: a step of the plan");
+            continue;
+        }
         ImGui::PushID(static_cast<int>(place));  // several may have one name
         bool is_shown = part.is_shown;
         if (ImGui::Checkbox("##shown", &is_shown)) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which node of the patch a file is for.
+#include "dsp/core/lower.hpp"
 #include "tools/view/workbench.hpp"
 
 #include "tools/view/files/start_list.hpp"
-#include "tools/view/frame/search.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -12,29 +12,29 @@ using namespace tactus;
 
 namespace {
 
-constexpr double rate = 8000.0, seconds = 6.0;
+constexpr double sample_rate = 8000.0, seconds = 6.0;
 constexpr double amplitudes[] = {0.0, 1.0, 0.6, 0.4, 0.25};
 
 /// Turns after `t` seconds of a run-up from 50 to 233 Hz.
 double turns_at(double t) { return 50.0 * t + 0.5 * (233.0 - 50.0) / seconds * t * t; }
 
 std::vector<double> run_up() {
-    std::vector<double> x(static_cast<std::size_t>(rate * seconds));
+    std::vector<double> x(static_cast<std::size_t>(sample_rate * seconds));
     for (std::size_t i = 0; i < x.size(); ++i)
         for (int k = 1; k <= 4; ++k)
             x[i] += amplitudes[k] *
-                    std::sin(2.0 * std::numbers::pi * k * turns_at(static_cast<double>(i) / rate) + 0.4 * k);
+                    std::sin(2.0 * std::numbers::pi * k * turns_at(static_cast<double>(i) / sample_rate) + 0.4 * k);
     return x;
 }
 
 }  // namespace
 
 TEST_CASE("orders 1 to 4 of a run-up from 50 to 233 Hz keep their amplitude within 0.1 %") {
-    std::vector<double> tacho(static_cast<std::size_t>(rate * seconds));
+    std::vector<double> tacho(static_cast<std::size_t>(sample_rate * seconds));
     for (std::size_t i = 0; i < tacho.size(); ++i)
-        tacho[i] = std::sin(2.0 * std::numbers::pi * turns_at(static_cast<double>(i) / rate));
+        tacho[i] = std::sin(2.0 * std::numbers::pi * turns_at(static_cast<double>(i) / sample_rate));
     const signal::OrderSpectrum spectrum =
-        signal::order_spectrum(run_up(), rate, signal::rotation_from_tacho(tacho, rate, 1.0), 8);
+        signal::order_spectrum(run_up(), sample_rate, signal::rotation_from_tacho(tacho, sample_rate, 1.0), 8);
     REQUIRE(spectrum.orders.size() == 8);
     for (int k = 1; k <= 4; ++k) {
         const signal::OrderLevel& order = spectrum.orders[static_cast<std::size_t>(k - 1)];
@@ -52,7 +52,7 @@ TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too"
     signal::RidgeSettings settings;
     settings.orders = 4;
     settings.frame = 0.2;
-    const signal::Ridge ridge = signal::track_ridge(x, rate, settings);
+    const signal::Ridge ridge = signal::track_ridge(x, sample_rate, settings);
     double worst = 0.0;
     for (std::size_t i = 0; i < ridge.time.size(); ++i) {
         const double truth = 50.0 + (233.0 - 50.0) / seconds * ridge.time[i];
@@ -60,7 +60,7 @@ TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too"
     }
     CHECK(worst < 0.02);
     CHECK(ridge.prominence_db > 10.0);
-    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, rate, ridge.rotation(seconds), 6);
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, sample_rate, ridge.rotation(seconds), 6);
     for (int k = 1; k <= 2; ++k)
         CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude == Approx(amplitudes[k]).epsilon(0.1));
 }
@@ -75,15 +75,16 @@ TEST_CASE("the ridge of a few clean orders is their rate and not half of it, and
         std::vector<double> x(24000);
         for (std::size_t i = 0; i < x.size(); ++i)
             for (int k = 1; k <= orders; ++k)
-                x[i] += 0.5 / k * std::sin(2.0 * std::numbers::pi * 100.0 * k * static_cast<double>(i) / rate + k * k);
+                x[i] += 0.5 / k *
+                        std::sin(2.0 * std::numbers::pi * 100.0 * k * static_cast<double>(i) / sample_rate + k * k);
         INFO(orders << " orders");
-        CHECK(mean_of(signal::track_ridge(x, rate, {})) == Approx(100.0).epsilon(0.005));
+        CHECK(mean_of(signal::track_ridge(x, sample_rate, {})) == Approx(100.0).epsilon(0.005));
     }
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         std::vector<double> noise(24000);
         const Random random{seed};
         for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = random.normal(i);
-        CHECK(signal::track_ridge(noise, rate, {}).prominence_db < 6.0);
+        CHECK(signal::track_ridge(noise, sample_rate, {}).prominence_db < 6.0);
     }
 }
 
@@ -102,16 +103,16 @@ TEST_CASE("an order above half the sample rate has no level") {
 
 TEST_CASE("orders and the ridge of a record in pieces are those of the whole, to the bit") {
     const std::vector<double> x = run_up();
-    const signal::Rotation rotation = signal::rotation_at(120.0, static_cast<double>(x.size()) / rate);
-    signal::OrderStream stream(rate, x.size(), rotation, 6);
-    signal::RidgeStream ridge(rate, {});
+    const signal::Rotation rotation = signal::rotation_at(120.0, static_cast<double>(x.size()) / sample_rate);
+    signal::OrderStream stream(sample_rate, x.size(), rotation, 6);
+    signal::RidgeStream ridge(sample_rate, {});
     for (std::size_t at = 0; at < x.size(); at += 777) {
         const std::span<const double> part = std::span(x).subspan(at, std::min<std::size_t>(777, x.size() - at));
         stream.push(part);
         ridge.push(part);
     }
-    CHECK(stream.spectrum().amplitude == signal::order_spectrum(x, rate, rotation, 6).amplitude);
-    CHECK(ridge.finish().frequency == signal::track_ridge(x, rate, {}).frequency);
+    CHECK(stream.spectrum().amplitude == signal::order_spectrum(x, sample_rate, rotation, 6).amplitude);
+    CHECK(ridge.finish().frequency == signal::track_ridge(x, sample_rate, {}).frequency);
 }
 
 TEST_CASE("a ridge of minutes is followed across the minutes") {
@@ -139,8 +140,8 @@ TEST_CASE("a ridge of minutes is followed across the minutes") {
 TEST_CASE("a fixed rate needs no tracking") {
     std::vector<double> x(16000);
     for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] = 3.0 + 0.5 * std::cos(2.0 * std::numbers::pi * 3.0 * 70.0 * static_cast<double>(i) / rate);
-    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, rate, signal::rotation_at(70.0, 2.0), 5);
+        x[i] = 3.0 + 0.5 * std::cos(2.0 * std::numbers::pi * 3.0 * 70.0 * static_cast<double>(i) / sample_rate);
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, sample_rate, signal::rotation_at(70.0, 2.0), 5);
     CHECK(spectrum.orders[2].amplitude == Approx(0.5).epsilon(1e-3));
     CHECK(spectrum.orders[0].amplitude < 1e-3);
     CHECK(spectrum.turns == 140.0);
@@ -148,8 +149,9 @@ TEST_CASE("a fixed rate needs no tracking") {
 
 TEST_CASE("what cannot be tracked is refused") {
     const std::vector<double> flat(1000, 1.0);
-    CHECK_THROWS_WITH(signal::rotation_from_tacho(flat, rate, 1.0), Catch::Matchers::ContainsSubstring("at least 4"));
-    CHECK_THROWS_WITH(signal::track_ridge(flat, rate, {}), Catch::Matchers::ContainsSubstring("--rate"));
-    CHECK_THROWS_WITH(signal::order_spectrum(flat, rate, signal::rotation_at(20.0, 0.125), 4),
+    CHECK_THROWS_WITH(signal::rotation_from_tacho(flat, sample_rate, 1.0),
+                      Catch::Matchers::ContainsSubstring("at least 4"));
+    CHECK_THROWS_WITH(signal::track_ridge(flat, sample_rate, {}), Catch::Matchers::ContainsSubstring("--rate"));
+    CHECK_THROWS_WITH(signal::order_spectrum(flat, sample_rate, signal::rotation_at(20.0, 0.125), 4),
                       Catch::Matchers::ContainsSubstring("whole turns"));
 }

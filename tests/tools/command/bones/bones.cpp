@@ -4,21 +4,15 @@
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/places.hpp"
+#include "tests/tools/run_command.hpp"
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
 namespace fs = std::filesystem;
 using namespace tactus;
@@ -26,29 +20,10 @@ using nlohmann::json;
 
 namespace {
 
-struct BoneFolder {
-    fs::path path = fs::temp_directory_path() / ("tactus_bones_" + std::to_string(::getpid()));
-    BoneFolder() { fs::create_directories(path); }
-    ~BoneFolder() { fs::remove_all(path); }
-
+struct BoneFolder : test::Folder {
     std::string operator/(const std::string& name) const { return (path / name).string(); }
-    static std::string slurp(const fs::path& file) {
-        std::ostringstream text;
-        text << std::ifstream(file, std::ios::binary).rdbuf();
-        return text.str();
-    }
-    struct BoneOutcome {
-        int code;
-        std::string out, err;
-    };
-    BoneOutcome tactus(const std::string& arguments) const {
-        const std::string command =
-            tactus::test::command() + " " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(*this / "stdout"), slurp(*this / "stderr")};
-    }
     json answer(const std::string& arguments) const {
-        const BoneOutcome done = tactus(arguments);
+        const test::Outcome done = tactus(arguments);
         INFO(arguments << "\n" << done.err);
         REQUIRE(done.code == 0);
         return json::parse(done.out);
@@ -106,7 +81,7 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
             CHECK(x[1].get<double>() - x[0].get<double>() == Approx(2.0 * radius).margin(0.6));
             CHECK(0.5 * (x[1].get<double>() + x[0].get<double>()) == Approx(n == 0 ? 908.5 : 922.0).margin(0.5));
         }
-        CHECK(BoneFolder::slurp(folder / "picture.png").substr(1, 3) == "PNG");
+        CHECK(test::slurp(folder / "picture.png").substr(1, 3) == "PNG");
         fs::remove(folder / "picture.png");
     }
     const json ct = folder.answer("info " + folder / "ct.nrrd --json");
@@ -146,7 +121,7 @@ TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mes
     REQUIRE(folder.tactus("render saw-training --seconds 3 --out " + folder / "saw").code == 0);
     const bone::Bone cut = bone::load_bone(folder / "saw/bone.vdb");
     const json mesh = folder.answer("export " + folder / "saw/bone.vdb --json -o " + folder / "cut.stl");
-    const json summary = json::parse(BoneFolder::slurp(folder / "saw/summary.json"));
+    const json summary = json::parse(test::slurp(folder / "saw/summary.json"));
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
     CHECK(summary["carve"]["removed_mm3"] > 5.0);
     CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);

@@ -20,13 +20,13 @@ std::atomic<std::int64_t> clock_ns{0};
 std::int64_t now_ns() { return clock_ns; }
 
 /// The driver, and a window that draws.
-struct Rig {
+struct PulseRig {
     haptic::WindowHand link;
     std::unique_ptr<HapticDevice> device;
     view::HandPulse pulse{link, now_ns};
     haptic::FeltHand felt;
 
-    Rig() {
+    PulseRig() {
         clock_ns = 1'000'000'000;
         Options options("device 'mouse'", {});
         device = haptic::open_mouse(options, link, now_ns);
@@ -52,7 +52,7 @@ constexpr int silence_ms = static_cast<int>(haptic::longest_silence_of_window_ns
 }  // namespace
 
 TEST_CASE("a window that takes long to draw a picture keeps its hand and what it holds") {
-    Rig rig;
+    PulseRig rig;
     for (int picture = 0; picture < 5; ++picture) {
         rig.pulse.begin_picture();
         for (int step = 0; step < 3; ++step) {
@@ -65,7 +65,7 @@ TEST_CASE("a window that takes long to draw a picture keeps its hand and what it
 }
 
 TEST_CASE("a window that hangs while it draws loses its hand within the limit, and for good") {
-    Rig rig;
+    PulseRig rig;
     rig.pulse.begin_picture();
     rig.say();
     const int lost = rig.ticks(5000);
@@ -81,7 +81,7 @@ TEST_CASE("a window that hangs while it draws loses its hand within the limit, a
 }
 
 TEST_CASE("a window that hangs between two pictures loses its hand after its silence") {
-    Rig rig;
+    PulseRig rig;
     rig.pulse.begin_picture();
     rig.say();
     rig.pulse.end_picture();
@@ -89,7 +89,7 @@ TEST_CASE("a window that hangs between two pictures loses its hand after its sil
 }
 
 TEST_CASE("nothing is said for a hand that is gone") {
-    Rig rig;
+    PulseRig rig;
     rig.pulse.begin_picture();
     rig.say();
     rig.pulse.forget();
@@ -97,7 +97,7 @@ TEST_CASE("nothing is said for a hand that is gone") {
 }
 
 TEST_CASE("the window speaks by itself while its own thread is busy") {
-    Rig rig;
+    PulseRig rig;
     rig.pulse.begin_picture();
     rig.say();
     clock_ns += millisecond;

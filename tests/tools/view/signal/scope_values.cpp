@@ -44,14 +44,14 @@ private:
         {"a.out", {{}, {{}}, {"value"}, 1e-3}}};
 };
 
-struct Bench {
+struct ValueBench {
     Folder folder;
     Workbench bench{choice()};
     Scopes scopes{bench};
     Moves feed;
     ValueQuestion asked;
 
-    explicit Bench(const std::string& port) {
+    explicit ValueBench(const std::string& port) {
         scopes.ask_value = [this](ValueQuestion question) { asked = std::move(question); };
         scopes.add(port);
         shows();
@@ -88,7 +88,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("the level of a trigger is typed with its unit and a wrong one is refused with the reason") {
-    Bench it("hand.pose");
+    ValueBench it("hand.pose");
     it.scope().y = {-100.0, 500.0};
     CHECK(it.run("Scope 1: level of the trigger...") == "200 mm");
     CHECK(it.asked.what == "scope 1: level of the trigger");
@@ -112,7 +112,7 @@ TEST_CASE("the level of a trigger is typed with its unit and a wrong one is refu
     // Only waves have one.
     it.shows(Scopes::Scope::View::spectrum);
     CHECK_FALSE(it.offers("Scope 1: level of the trigger..."));
-    Bench bare("a.out");
+    ValueBench bare("a.out");
     bare.run("Scope 1: level of the trigger...");
     bare.asked.take("0.25");
     CHECK(bare.scope().trigger->level == 0.25);
@@ -120,7 +120,7 @@ TEST_CASE("the level of a trigger is typed with its unit and a wrong one is refu
 }
 
 TEST_CASE("cursors of a wave are typed as times and stay within what is shown") {
-    Bench it("hand.pose");
+    ValueBench it("hand.pose");
     CHECK_FALSE(it.offers("Scope 1: cursor B at..."));
     CHECK_THROWS_WITH(Scopes::set_cursor(it.scope(), 1, false, "0.5 s"), "there is no cursor A yet");
     it.run("Scope 1: cursor A at...");
@@ -144,7 +144,7 @@ TEST_CASE("cursors of a wave are typed as times and stay within what is shown") 
 }
 
 TEST_CASE("cursors of a spectrum are frequencies and those of a curve of pairs are typed across and up") {
-    Bench it("hand.pose");
+    ValueBench it("hand.pose");
     it.shows(Scopes::Scope::View::spectrum);
     it.run("Scope 1: cursor A at...");
     it.asked.take("0.1 kHz");
@@ -162,7 +162,7 @@ TEST_CASE("cursors of a spectrum are frequencies and those of a curve of pairs a
 }
 
 TEST_CASE("a scope that shows nothing yet has no place for a cursor") {
-    Bench it("hand.pose");
+    ValueBench it("hand.pose");
     it.scopes.add("nothing.out");
     CHECK_THROWS_WITH(Scopes::set_cursor(it.scopes.list()[1], 0, false, "1 s"), "the scope shows nothing yet");
 }

@@ -2,7 +2,7 @@
 // A person with a mouse looks at the slices of a plan.
 #include "assets/volume/write_volume.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/view/front_view.hpp"
+#include "tests/tools/view/plan/front_view.hpp"
 #include "tests/tools/view/walk.hpp"
 #include "tools/view/files/window_memory.hpp"
 

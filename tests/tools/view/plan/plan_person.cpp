@@ -3,7 +3,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/view/front_view.hpp"
+#include "tests/tools/view/plan/front_view.hpp"
 #include "tests/tools/view/walk.hpp"
 
 #include <glm/geometric.hpp>

@@ -2,7 +2,7 @@
 #include "tools/view/plan/flap_run.hpp"
 
 #include "assets/cases/plan_file.hpp"
-#include "tests/tools/view/plan_rig.hpp"
+#include "tests/tools/view/plan/plan_rig.hpp"
 
 #include <atomic>
 
@@ -14,11 +14,11 @@ namespace {
 
 constexpr int segment = 3;
 
-struct Rig : PlanRig {
+struct FlapRig : PlanRig {
     FlapRun flap{bench, run};
     std::filesystem::path made;
 
-    Rig() : PlanRig("planning-reconstruction") {
+    FlapRig() : PlanRig("planning-reconstruction") {
         also = [this] { flap.tend(); };
         REQUIRE(comes([&] { return flap.reconstruction() != nullptr; }));
         REQUIRE_FALSE(is_locked(segment));
@@ -39,7 +39,7 @@ void widen(reconstruct::Reconstruction& all) { all.flap.margin = 7e-3; }
 
 TEST_CASE("a change of a reconstruction keeps the steps that the run made while it was computed", "[live]") {
     std::atomic<bool> has_begun = false, may_end = false;
-    Rig rig;
+    FlapRig rig;
     rig.flap.change([&](reconstruct::Reconstruction& all) {
         has_begun = true;
         for (int i = 0; i < 6000 && !may_end; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -55,7 +55,7 @@ TEST_CASE("a change of a reconstruction keeps the steps that the run made while 
 }
 
 TEST_CASE("a change of a reconstruction keeps the step that was asked for just before", "[live]") {
-    Rig rig;
+    FlapRig rig;
     rig.run.press("lock", segment);
     rig.flap.change(widen);
     REQUIRE(rig.is_made(6000));
@@ -63,7 +63,7 @@ TEST_CASE("a change of a reconstruction keeps the step that was asked for just b
 }
 
 TEST_CASE("a change of a reconstruction waits for the end of a pause with the steps that wait", "[live]") {
-    Rig rig;
+    FlapRig rig;
     REQUIRE(rig.pause(true));
     rig.run.press("lock", segment);
     rig.flap.change(widen);

@@ -17,10 +17,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// As the last run has it; each run in one window has a folder of its own.
+/// Each run in one window has a folder of its own.
+fs::path plan_of(const fs::path& folder, int run) {
+    return folder / (run == 1 ? "out" : fmt::format("out-{}", run)) / "case.plan.json";
+}
+
+/// As that run has it.
 reconstruct::Flap flap_of(const fs::path& folder, int run) {
-    const fs::path out = folder / (run == 1 ? "out" : fmt::format("out-{}", run));
-    return cases::state_of(cases::load_case_plan(out / "case.plan.json")).reconstruction->flap;
+    return cases::state_of(cases::load_case_plan(plan_of(folder, run))).reconstruction->flap;
 }
 
 }  // namespace
@@ -36,6 +40,7 @@ TEST_CASE(
             "280 --json",
             280.0);
         const auto press = [&](const std::string& control) { walk.press(control, "panel plan steps"); };
+        const auto begins = [&](int run) { return sees([&] { return fs::exists(plan_of(walk.folder.path, run)); }); };
         const auto apply = [&](const std::string& name) {
             REQUIRE(walk.waits_for("name of the part"));
             walk.press("name of the part");
@@ -43,16 +48,17 @@ TEST_CASE(
             walk.press("apply to the plan");
         };
         // At once: what is measured of the plan meanwhile must not be waited for.
-        REQUIRE(walk.waits_for("+ plate"));
-        walk.press("+ plate");
+        REQUIRE(walk.waits_for("+ plate", "panel plan steps"));
+        press("+ plate");
         apply("p1");
-        REQUIRE(walk.waits_for("plate p1"));
+        REQUIRE(begins(2));
+        REQUIRE(walk.waits_for("plate p1", "panel plan steps"));
         REQUIRE(flap_of(walk.folder.path, 2).plates.size() == 1);
         CHECK(flap_of(walk.folder.path, 2).plates[0].name == "p1");
         walk.keep("plate");
 
         // Its head is the first of two measured points, its axis goes to the second.
-        REQUIRE(walk.waits_for("part segment-2"));
+        REQUIRE(walk.waits_for("part segment-2", "panel tree"));
         walk.person.tap("1");
         Person::wait(2.0);
         walk.measure();
@@ -60,7 +66,8 @@ TEST_CASE(
         REQUIRE(walk.waits_for("at the measured point"));
         walk.press("at the measured point");
         apply("i1");
-        REQUIRE(walk.waits_for("implant i1"));
+        REQUIRE(begins(3));
+        REQUIRE(walk.waits_for("implant i1", "panel plan steps"));
         const reconstruct::Flap with = flap_of(walk.folder.path, 3);
         REQUIRE(with.implants.size() == 1);
         CHECK(with.plates.size() == 1);
@@ -69,8 +76,9 @@ TEST_CASE(
         walk.keep("implant");
 
         press("remove plate p1");
+        REQUIRE(begins(4));
         REQUIRE(walk.waits_while("plate p1"));
-        REQUIRE(walk.waits_for("implant i1"));
+        REQUIRE(walk.waits_for("implant i1", "panel plan steps"));
         CHECK(flap_of(walk.folder.path, 4).plates.empty());
         press("undo step");
         CHECK(sees([&] { return flap_of(walk.folder.path, 4).plates.size() == 1; }));
@@ -97,7 +105,9 @@ TEST_CASE("a planner with a mouse adds a vessel, a site and a margin, and a plat
         const auto apply = [&] {
             walk.press("apply to the plan");
             ++run;
-            REQUIRE(sees([&] { return fs::exists(walk.folder.path / fmt::format("out-{}/case.plan.json", run)); }));
+            const bool has_begun = sees([&] { return fs::exists(plan_of(walk.folder.path, run)); });
+            if (!has_begun) walk.keep("not-applied");
+            REQUIRE(has_begun);
         };
         const auto type_into = [&](const std::string& control, const std::string& text) {
             walk.press(control);

@@ -12,14 +12,14 @@ using namespace tactus::view;
 
 namespace {
 
-constexpr double rate = 8000.0;
+constexpr double trace_rate = 8000.0;
 
 /// Columns: a sine of 100 Hz and amplitude 2, a cosine of it with amplitude 0.5.
 Trace tones(double seconds, double frequency = 100.0) {
     Trace trace;
     trace.columns.resize(2);
-    for (int k = 0; k < static_cast<int>(seconds * rate); ++k) {
-        const double t = k / rate;
+    for (int k = 0; k < static_cast<int>(seconds * trace_rate); ++k) {
+        const double t = k / trace_rate;
         trace.times.push_back(t);
         trace.columns[0].push_back(2.0 * std::sin(2.0 * pi * frequency * t));
         trace.columns[1].push_back(0.5 * std::cos(2.0 * pi * frequency * t));
@@ -45,13 +45,13 @@ TEST_CASE("a trigger is the latest crossing of its level in its direction, betwe
 
 TEST_CASE("levels are those of a sine: peak, root mean square, mean and their dB") {
     const Trace trace = tones(1.0);
-    const Level level = level_of(trace, 0, {0.1, 0.1 + 799.5 / rate});
+    const Level level = level_of(trace, 0, {0.1, 0.1 + 799.5 / trace_rate});
     CHECK(level.count == 800);
     CHECK(level.peak() == Approx(2.0));
     CHECK(level.rms == Approx(2.0 / std::sqrt(2.0)));
     CHECK(level.mean == Approx(0.0).margin(1e-12));
     CHECK(decibels(level.peak()) == Approx(6.0206).epsilon(1e-4));
-    CHECK(decibels(level_of(trace, 1, {0.1, 0.1 + 799.5 / rate}).rms) == Approx(-9.0309).epsilon(1e-4));
+    CHECK(decibels(level_of(trace, 1, {0.1, 0.1 + 799.5 / trace_rate}).rms) == Approx(-9.0309).epsilon(1e-4));
     CHECK(decibels(0.0) == -240.0);
     Trace odd = trace;
     odd.columns[0][10] = std::numeric_limits<double>::quiet_NaN();
@@ -106,7 +106,7 @@ TEST_CASE("of many pairs the newest are shown one after another with how far bac
 }
 
 TEST_CASE("a waterfall begins at its first bin and names the bin of each cell") {
-    const Waterfall all = waterfall_of(tones(2.0, 1000.0), 0, rate, {0.0, 2.0}, 48, 160);
+    const Waterfall all = waterfall_of(tones(2.0, 1000.0), 0, trace_rate, {0.0, 2.0}, 48, 160);
     // 2 s of 8 kHz in 48 rows: segments of 64 samples.
     CHECK(all.hz.low == Approx(125.0));
     CHECK(all.bins[all.index_of(10, 0)] == Approx(125.0));
@@ -122,11 +122,11 @@ TEST_CASE("a waterfall shows a tone where it is, when it is") {
     Trace trace;
     trace.columns.resize(1);
     for (int k = 0; k < 16000; ++k) {
-        const double t = k / rate;
+        const double t = k / trace_rate;
         trace.times.push_back(t);
         trace.columns[0].push_back(std::sin(2.0 * pi * (t < 1.0 ? 200.0 : 1600.0) * t));
     }
-    const Waterfall all = waterfall_of(trace, 0, rate, {0.0, 2.0}, 8, 50);
+    const Waterfall all = waterfall_of(trace, 0, trace_rate, {0.0, 2.0}, 8, 50);
     REQUIRE(all.rows == 8);
     REQUIRE(all.cells.size() == 400);
     for (int row = 0; row < 8; ++row) {
@@ -139,6 +139,6 @@ TEST_CASE("a waterfall shows a tone where it is, when it is") {
         CHECK(all.at(row, loudest) > all.at(row, row < 4 ? 49 : 0) + 40.0);
     }
     // Where there are no values yet, nothing is shown.
-    CHECK(waterfall_of(trace, 0, rate, {-2.0, 2.0}, 8, 50).at(0, 10) == -240.0);
-    CHECK(waterfall_of({}, 0, rate, {0.0, 1.0}, 8, 50).rows == 0);
+    CHECK(waterfall_of(trace, 0, trace_rate, {-2.0, 2.0}, 8, 50).at(0, 10) == -240.0);
+    CHECK(waterfall_of({}, 0, trace_rate, {0.0, 1.0}, 8, 50).rows == 0);
 }

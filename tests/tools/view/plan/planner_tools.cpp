@@ -76,9 +76,11 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         walk.press("part fragment_01", "panel tree");
         press("hide in plan");
         CHECK(comes([&] { return cases::state_of(plan()).arrangement.is_hidden(0); }));
+        CHECK(walk.waits_for("hidden fragment_01", "panel tree"));
         REQUIRE(walk.waits_for("alternative main", "panel plan steps"));
         press("alternative main");
         CHECK(comes([&] { return plan().current == 0 && !cases::state_of(plan()).arrangement.is_hidden(0); }));
+        CHECK(walk.waits_for("part fragment_01", "panel tree"));
         const std::string other = plan().alternatives[1].name;
         press("compare " + other);
         Person::wait(8.0);

@@ -3,7 +3,7 @@
 
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
-#include "tests/tools/view/plan_rig.hpp"
+#include "tests/tools/view/plan/plan_rig.hpp"
 
 using namespace tactus;
 using namespace tactus::test;

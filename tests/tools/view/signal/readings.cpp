@@ -18,7 +18,7 @@ using namespace tactus::view;
 
 namespace {
 
-constexpr double rate = 48000.0;
+constexpr double card_rate = 48000.0;
 const Display volts{1.0, "V", 1};
 
 template <class F>
@@ -26,9 +26,9 @@ Trace trace_of(double seconds, F&& value) {
     Trace trace;
     trace.names = {"value"};
     trace.columns.resize(1);
-    for (int k = 0; k < static_cast<int>(seconds * rate); ++k) {
-        trace.times.push_back(k / rate);
-        trace.columns[0].push_back(value(k / rate));
+    for (int k = 0; k < static_cast<int>(seconds * card_rate); ++k) {
+        trace.times.push_back(k / card_rate);
+        trace.columns[0].push_back(value(k / card_rate));
     }
     return trace;
 }
@@ -64,7 +64,7 @@ TEST_CASE("cursors of a wave give time, value, their differences and the frequen
         const Point far[] = {{0.25, 0.0}, {1.75, 0.0}};
         CHECK(wave_words(plot, drawn, far) == "Δ 1.5000 s, Δ 4.5 V, 0.66667 Hz");
         // The value beside the name is the latest, not the largest of the last pixel.
-        CHECK(plot.curves[0].last.value() == Approx(3.0 * (2.0 - 1.0 / rate)));
+        CHECK(plot.curves[0].last.value() == Approx(3.0 * (2.0 - 1.0 / card_rate)));
     }
     // Between two samples, and outside of the trace.
     const Trace slow{{0.0, 1.0}, {{0.0, 10.0}}, {"value"}};
@@ -94,34 +94,34 @@ TEST_CASE("a triggered wave counts time from the crossing, so that cursors stay 
 
 TEST_CASE("the level of a tone in a spectrum is its power over the window's bandwidth, that of noise its density") {
     // At the middle of a bin; a Hann window has a bandwidth of 1.5 bins.
-    const std::size_t segment = signal::suggested_segment(rate, static_cast<std::size_t>(rate));
-    const double df = rate / static_cast<double>(segment), hz = df * std::round(1000.0 / df);
-    const Plot plot = spectrum_plot(sine(1.0, 0.5, hz), 0, volts, rate, 1.0, 1.0, {});
+    const std::size_t segment = signal::suggested_segment(card_rate, static_cast<std::size_t>(card_rate));
+    const double df = card_rate / static_cast<double>(segment), hz = df * std::round(1000.0 / df);
+    const Plot plot = spectrum_plot(sine(1.0, 0.5, hz), 0, volts, card_rate, 1.0, 1.0, {});
     const double wanted = 10.0 * std::log10(0.5 * 0.5 / 2.0 / (1.5 * df));
     const Point at{hz, 0.0};
     const std::string words = spectrum_words(plot, std::span(&at, 1));
     CHECK(words == fmt::format("{:.5g} Hz: {:.2f} dB re (V)²/Hz", hz, wanted));
-    const Plot full = spectrum_plot(sine(1.0, 1.0, hz), 0, volts, rate, 1.0, 1.0, {});
+    const Plot full = spectrum_plot(sine(1.0, 1.0, hz), 0, volts, card_rate, 1.0, 1.0, {});
     CHECK(spectrum_words(full, std::span(&at, 1)) ==
           fmt::format("{:.5g} Hz: {:.2f} dB re (V)²/Hz", hz, wanted + 20.0 * std::log10(2.0)));
 
     std::mt19937 random(1);
     std::normal_distribution<double> normal(0.0, 0.1);
     const Trace noise = trace_of(10.0, [&](double) { return normal(random); });
-    const Plot flat = spectrum_plot(noise, 0, volts, rate, 10.0, 10.0, {});
+    const Plot flat = spectrum_plot(noise, 0, volts, card_rate, 10.0, 10.0, {});
     double sum = 0.0;
     int count = 0;
     for (const Point& p : flat.curves[0].points)
         // Above, a drawn point is the largest of several bins.
         if (p.x > 20.0 && p.x < 300.0) sum += std::pow(10.0, 0.1 * p.y), ++count;
     REQUIRE(count > 5);
-    CHECK(10.0 * std::log10(sum / count) == Approx(10.0 * std::log10(0.01 / (0.5 * rate))).margin(1.0));
+    CHECK(10.0 * std::log10(sum / count) == Approx(10.0 * std::log10(0.01 / (0.5 * card_rate))).margin(1.0));
 }
 
 TEST_CASE("a waterfall tells the level of the cell under the pointer, and the difference of two") {
     // 100 times the power in the second half.
     const Trace trace = trace_of(2.0, [](double t) { return (t < 1.0 ? 0.1 : 1.0) * std::sin(2.0 * pi * 1000.0 * t); });
-    const Plot plot = waterfall_plot(trace, 0, volts, rate, 2.0, 2.0);
+    const Plot plot = waterfall_plot(trace, 0, volts, card_rate, 2.0, 2.0);
     const Point at[] = {{1000.0, 0.5}, {1000.0, 1.5}};
     CHECK(waterfall_words(plot, at) == "Δ 0 Hz, Δ 20.00 dB");
     const std::string one = waterfall_words(plot, std::span(at).subspan(1, 1));
@@ -129,14 +129,14 @@ TEST_CASE("a waterfall tells the level of the cell under the pointer, and the di
     CHECK(one.ends_with(" dB re (V)²/Hz"));
     CHECK(waterfall_words({}, at).empty());
     // Before the first value nothing was measured.
-    const Plot early = waterfall_plot(trace, 0, volts, rate, 2.0, 4.0);
+    const Plot early = waterfall_plot(trace, 0, volts, card_rate, 2.0, 4.0);
     const Point before{1000.0, -1.5};
     CHECK(waterfall_words(early, std::span(&before, 1)).empty());
 }
 
 TEST_CASE("a histogram tells the share of the part under the pointer, and that between two cursors") {
     // Even between 0 and 6: each of 60 parts has a sixtieth.
-    const Trace even = trace_of(1.0, [](double t) { return 6.0 * t * rate / (rate - 1.0); });
+    const Trace even = trace_of(1.0, [](double t) { return 6.0 * t * card_rate / (card_rate - 1.0); });
     const Plot plot = histogram_plot(even, 0, volts, 1.0, 1.0);
     for (const double x : {0.01, 0.09, 3.01, 3.09, 5.99}) {
         const Point at{x, 0.0};
@@ -160,9 +160,9 @@ TEST_CASE("a curve of pairs tells where the pointer is, in the units of both axe
 }
 
 TEST_CASE("the peak of a tone is read at its frequency, however many bins share a step of the curve") {
-    const double df = rate / 8192.0;
+    const double df = card_rate / 8192.0;
     for (const int bin : {171, 172, 173, 1000}) {
-        const Plot plot = spectrum_plot(sine(1.0, 1.0, bin * df), 0, volts, rate, 1.0, 1.0, {});
+        const Plot plot = spectrum_plot(sine(1.0, 1.0, bin * df), 0, volts, card_rate, 1.0, 1.0, {});
         const auto& points = plot.curves[0].points;
         const double hz = std::ranges::max_element(points, {}, &Point::y)->x;
         CAPTURE(bin, bin * df);

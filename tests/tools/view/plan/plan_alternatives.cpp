@@ -4,7 +4,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "devices/haptic/window_hand.hpp"
 #include "devices/hosted/clocks.hpp"
-#include "tests/tools/view/plan_rig.hpp"
+#include "tests/tools/view/plan/plan_rig.hpp"
 
 using namespace tactus;
 using namespace tactus::test;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which panels stand where.
-#include "tests/support/catch.hpp"
 #include "tools/view/frame/layout.hpp"
+#include "tests/support/catch.hpp"
 
 #include <set>
 

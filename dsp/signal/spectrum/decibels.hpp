@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::signal {
+
+/// Of a ratio of powers; −300 dB for nothing.
+inline double decibels(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
+
+}  // namespace tactus::signal
