@@ -14,7 +14,9 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::picture;
@@ -96,6 +98,43 @@ TEST_CASE("two bodies of one shape are both drawn and listed and a body of two s
     for (int n = 0; n < 3; ++n) model.update();
     CHECK(maker.renderer().meshes().changes() == changes);
     CHECK(model.parts()[0].colour != model.parts()[1].colour);
+}
+
+TEST_CASE("a fragment that the plan hides is listed as hidden there and not drawn") {
+    if (!can_render()) return;
+    Ball both;
+    both.scene.count = 2;
+    both.scene.objects[1] = both.scene.objects[0];
+    both.scene.objects[1].pose.position.x = 0.03;
+    both.scene.objects[0].body = {};
+    both.scene.content_hash = coupling::hash_of(both.scene);
+    observe::Observer observer;
+    // The scene goes through a second node.
+    const auto first =
+        observer.open({"case.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(both.scene));
+    const auto second =
+        observer.open({"place.scene", at_60_hz, 1}, value::snapshot<coupling::Scene>, bytes_of(both.scene));
+    display::PictureMaker maker(64, 64);
+    const auto parts_of = [&](const std::string& plan) {
+        SceneOutline outline;
+        outline.scenes = {{"case.scene", {"a.body", "b.body"}, plan}, {"place.scene", {"a.body", "b.body"}, plan}};
+        SceneModel model(outline, observer, maker.renderer());
+        observer.advance();
+        model.update();
+        CHECK(model.bounds().low.x > 0.015);
+        return model.parts();
+    };
+    const std::vector<SceneModel::Part> planned = parts_of("none.plan.json");
+    REQUIRE(planned.size() == 2);
+    CHECK(planned[0].name == "a");
+    CHECK(planned[0].place == 0);
+    CHECK(planned[0].is_out_of_plan);
+    CHECK(planned[1].name == "b");
+    CHECK_FALSE(planned[1].is_out_of_plan);
+    // Without a plan an empty place is no part.
+    const std::vector<SceneModel::Part> plain = parts_of("");
+    REQUIRE(plain.size() == 1);
+    CHECK(plain[0].name == "b");
 }
 
 TEST_CASE("a body that cannot be drawn is told and the others are drawn") {

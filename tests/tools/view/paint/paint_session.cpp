@@ -58,7 +58,7 @@ void settle(PaintBench& bench) {
     FAIL("the computation does not end");
 }
 
-void dab(Painting& painting, std::size_t label, const Vec3& at) {
+void short_dab(Painting& painting, std::size_t label, const Vec3& at) {
     painting.active = label;
     painting.begin(2.0 * mm, at);
     REQUIRE(painting.end());
@@ -80,7 +80,7 @@ TEST_CASE("over a hundred edits of every kind are undone and redone to the byte 
         const int before = painting.version();
         const std::size_t kind = any(7), count = painting.labels().size();
         switch (kind) {
-            case 0: dab(painting, any(count), place()); break;
+            case 0: short_dab(painting, any(count), place()); break;
             case 1:
                 painting.begin(4.0 * mm, place(), true);
                 painting.extend(place());
@@ -116,10 +116,10 @@ TEST_CASE("a fragment that is merged gives its strokes to the other one") {
     const Scene scene;
     PaintBench bench(scene.scan, scene.settings, scene.folder.path / "case.seeds.json");
     Painting& painting = bench.painting();
-    dab(painting, 0, Vec3(10.0, 10.0, 10.0) * mm);
-    dab(painting, 1, Vec3(28.0, 10.0, 10.0) * mm);
+    short_dab(painting, 0, Vec3(10.0, 10.0, 10.0) * mm);
+    short_dab(painting, 1, Vec3(28.0, 10.0, 10.0) * mm);
     REQUIRE(painting.add_label("chip"));
-    dab(painting, 2, Vec3(44.0, 10.0, 10.0) * mm);
+    short_dab(painting, 2, Vec3(44.0, 10.0, 10.0) * mm);
     const Vec3 kept = *painting.labels()[1].colour;
     settle(bench);
     const std::size_t second = bench.labels()->voxels[1], chip = bench.labels()->voxels[2];
@@ -147,8 +147,8 @@ TEST_CASE("islands without a seed are told with their place, and the cursor goes
     PaintBench bench(scene.scan, scene.settings, scene.folder.path / "case.seeds.json");
     settle(bench);
     CHECK_FALSE(bench.look_at_island());
-    dab(bench.painting(), 0, Vec3(6.0, 10.0, 10.0) * mm);
-    dab(bench.painting(), 1, Vec3(14.0, 10.0, 10.0) * mm);
+    short_dab(bench.painting(), 0, Vec3(6.0, 10.0, 10.0) * mm);
+    short_dab(bench.painting(), 1, Vec3(14.0, 10.0, 10.0) * mm);
     settle(bench);
     REQUIRE(bench.labels()->islands.size() == 2);
     CHECK(bench.labels()->islands[0].voxels == 15 * 14 * 14);
@@ -159,7 +159,7 @@ TEST_CASE("islands without a seed are told with their place, and the cursor goes
     CHECK(bench.cursor.x == Approx(43.5 * mm).margin(0.6 * mm));
     CHECK(bench.message().find("island 2 of 2 without a seed: 64 voxels") != std::string::npos);
     // A dab there: one is left, and it is the first again.
-    dab(bench.painting(), 1, bench.cursor);
+    short_dab(bench.painting(), 1, bench.cursor);
     settle(bench);
     REQUIRE(bench.labels()->islands.size() == 1);
     REQUIRE(bench.look_at_island());

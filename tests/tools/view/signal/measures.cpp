@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/signal/measures.hpp"
+
 #include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,6 +10,7 @@
 #include <numbers>
 
 using namespace tactus::view;
+using tactus::pi;
 
 namespace {
 
