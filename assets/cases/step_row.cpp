@@ -27,13 +27,14 @@ int whole(double value, double low, double high, const char* what) {
     return static_cast<int>(value);
 }
 
-/// "alternative 2", or the next free number; that of one which may come back is not free.
-std::string free_alternative_name(const CasePlan& plan, const std::optional<PlanAlternative>& dropped) {
-    for (std::size_t n = plan.alternatives.size() + 1;; ++n) {
-        std::string name = fmt::format("alternative {}", n);
-        if (dropped && dropped->name == name) continue;
-        if (std::ranges::find(plan.alternatives, name, &PlanAlternative::name) == plan.alternatives.end()) return name;
-    }
+/// "alternative 2", or the next free number; those of alternatives that may come back are not free.
+std::string free_alternative_name(const CasePlan& plan, const std::vector<PlanAlternative>& dropped) {
+    const auto has = [](const std::vector<PlanAlternative>& some, const std::string& name) {
+        return std::ranges::find(some, name, &PlanAlternative::name) != some.end();
+    };
+    for (std::size_t n = plan.alternatives.size() + 1;; ++n)
+        if (std::string name = fmt::format("alternative {}", n); !has(dropped, name) && !has(plan.alternatives, name))
+            return name;
 }
 
 PlanStep step_of(const CasePlan& plan, const PlanState& state, std::span<const StepRow> rows, double second) {
@@ -98,15 +99,16 @@ void RunSteps::switch_to(double place) {
 void RunSteps::drop(double place) {
     const int n = whole(place, 0.0, static_cast<double>(plan_.alternatives.size()) - 1.0, "alternative");
     if (n == plan_.current) throw Error("steps of the run: the current alternative is not dropped");
-    dropped_ = plan_.alternatives[static_cast<std::size_t>(n)];
+    if (dropped_.size() == most_dropped) dropped_.erase(dropped_.begin());
+    dropped_.push_back(plan_.alternatives[static_cast<std::size_t>(n)]);
     plan_.alternatives.erase(plan_.alternatives.begin() + n);
     plan_.current -= n < plan_.current;
 }
 
 void RunSteps::undrop() {
-    if (!dropped_) return;
-    plan_.alternatives.push_back(*std::move(dropped_));
-    dropped_.reset();
+    if (dropped_.empty()) return;
+    plan_.alternatives.push_back(std::move(dropped_.back()));
+    dropped_.pop_back();
 }
 
 void RunSteps::finish_step(double second) {

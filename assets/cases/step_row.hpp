@@ -15,20 +15,22 @@ namespace tactus::cases {
 /// Row kind for a move in the history (undo, redo, alternative), which is not a step.
 inline constexpr int row_goes_to = 100;
 /// Row kinds for alternatives; `after` is a place in the plan's list of alternatives. To switch to one, or with the
-/// number of alternatives to begin another at the current state; to drop one; to bring back the one dropped last.
+/// number of alternatives to begin another at the current state; to drop one; to bring back the one dropped last of those
+/// that are still dropped. Of more than `most_dropped` the oldest no longer come back.
 inline constexpr int row_alternative = 101, row_drop = 102, row_undrop = 103;
+inline constexpr std::size_t most_dropped = 32;
 
 /// One fragment of one step. The rows of a step are consecutive.
 struct StepRow {
-    double step = 0.0;    ///< number of the step in the plan
+    double step = 0.0;  ///< number of the step in the plan
     double after = -1.0;  ///< number of the previous step, -1: none. For row_goes_to: the target step
-    double kind = 0.0;    ///< a StepKind, or row_goes_to
-    double by = 0.0;      ///< 0: by hand, 1: settled at a fit
-    double left = 0.0;    ///< remaining rows of this step
+    double kind = 0.0;  ///< a StepKind, or row_goes_to
+    double by = 0.0;  ///< 0: by hand, 1: settled at a fit
+    double left = 0.0;  ///< remaining rows of this step
     double fragment = 0.0;
-    double x = 0.0, y = 0.0, z = 0.0;              ///< m
+    double x = 0.0, y = 0.0, z = 0.0;  ///< m
     double qw = 1.0, qx = 0.0, qy = 0.0, qz = 0.0;
-    double other = -1.0;    ///< for a group: the second fragment; for a fit: the partner
+    double other = -1.0;  ///< for a group: the second fragment; for a fit: the partner
     double verdict = -1.0;  ///< a FitVerdict, -1: no fit
     double score = 0.0, margin = 0.0, rms = 0.0, gap = 0.0, penetration = 0.0, overlap = 0.0;
 
@@ -66,7 +68,7 @@ private:
     PlanState state_;  // at the head
     std::vector<int> numbers_;  // step numbers in the plan, by step number of the run
     std::vector<StepRow> rows_;  // rows of the incomplete step
-    std::optional<PlanAlternative> dropped_;
+    std::vector<PlanAlternative> dropped_;  // in this run, the last one at the end
 };
 
 }  // namespace tactus::cases

@@ -51,6 +51,7 @@ SampleRecord pack(const DeviceSample& sample) noexcept {
     record.counter = sample.counter;
     record.buttons = sample.buttons;
     record.is_valid = sample.valid ? 1 : 0;
+    record.is_late = sample.late ? 1 : 0;
     return record;
 }
 
@@ -63,6 +64,7 @@ DeviceSample unpack(const SampleRecord& record) noexcept {
         sample.fingers[i] = {record.finger_position[i], record.finger_force[i], record.finger_state[i]};
     sample.counter = record.counter;
     sample.buttons = static_cast<std::uint32_t>(record.buttons);
+    sample.late = record.is_late != 0;
     sample.valid = record.is_valid == 1 && is_valid(sample.pose) && is_finite(sample.twist.linear) &&
                    is_finite(sample.twist.angular);
     return sample;

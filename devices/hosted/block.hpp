@@ -23,7 +23,7 @@ struct SampleRecord {
     std::uint64_t finger_state[most_fingers] = {};
     std::int64_t counter = 0;
     std::uint64_t buttons = 0;
-    std::uint64_t is_valid = 0;
+    std::uint64_t is_valid = 0, is_late = 0;
     std::uint64_t holds_force = 0;  ///< the device's process gives no force until it is asked for a small one
     std::int64_t answers_ns = 0;  ///< `committed_ns` of the force that the device had at this sample
     std::int64_t published_ns = 0;  ///< boot_ns: the heartbeat of the device's process
@@ -76,7 +76,7 @@ enum class HostState : std::uint32_t { opens, runs, ended };
 
 struct Block {
     static constexpr std::uint64_t right_magic = 0x3153554843544154;  // "TATCHUS1"
-    static constexpr std::uint32_t right_version = 3;
+    static constexpr std::uint32_t right_version = 4;
 
     std::uint64_t magic = right_magic;
     std::uint32_t version = right_version, size = sizeof(Block);

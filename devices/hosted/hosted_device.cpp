@@ -62,6 +62,7 @@ HostedDevice::HostedDevice(const DeviceRequest& request, const Placement& placem
     wait_for(say_ready, resolve);
     try {
         info_ = unpack(block_->info);
+        own_delay_s_ = info_.delay;
     } catch (const Error& error) {
         fail(error.message());
     }
@@ -126,6 +127,8 @@ void HostedDevice::prepare(double period_s) {
     });
     heard_ns_ = steady_ns();
     block_->sample.read(newest_, number_);
+    // What bounds energy must know the whole delay.
+    info_.delay = own_delay_s_ + placement_.added_latency_s(period_s);
 }
 
 DeviceSample HostedDevice::acquire(double) noexcept {

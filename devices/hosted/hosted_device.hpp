@@ -76,6 +76,7 @@ private:
     Socket socket_;
     std::unique_ptr<HostProcess> process_;
     DeviceInfo info_;
+    double own_delay_s_ = 0.0;  // of the device without its process
     std::int64_t limit_ns_ = 20'000'000;
     const std::shared_ptr<haptic::PullLink> pull_ = std::make_shared<haptic::PullLink>();
     // Thread of the tick.

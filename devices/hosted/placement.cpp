@@ -2,6 +2,9 @@
 #include "devices/hosted/placement.hpp"
 
 #include "devices/haptic/catalogue.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -15,6 +18,10 @@ double Placement::round_s(double period_s) const {
 Placement read_placement(Options& options, std::string_view driver) {
     Placement placement;
     placement.own_process = options.flag("process", haptic::is_real_driver(driver));
+    if (placement.own_process && haptic::needs_window(driver))
+        throw Error(
+            options.where("process"),
+            fmt::format("the driver '{}' works in the process of the window; leave out process = true", driver));
     const double rate = options.quantity("process_rate", "4 kHz", "100 Hz", "20 kHz");
     if (options.has("process_rate")) placement.rate = rate;
     placement.open_timeout = options.quantity("open_timeout", "10 s", "0.1 s", "600 s");

@@ -55,6 +55,13 @@ public:
     static constexpr double grant_window_s = 0.02;
     static constexpr double return_s = 0.1;  ///< in which a force that was taken from a hand at rest comes back
 
+    /// Forces of so many periods are remembered: a longer delay cannot be accounted for.
+    static constexpr std::size_t most_delay = 64;
+    static constexpr double longest_delay_s(double period_s) noexcept {
+        return static_cast<double>(most_delay) * period_s;
+    }
+
+    /// `delay_s` is at most `longest_delay_s`.
     void prepare(const EnergyCapSettings& settings) noexcept;
 
     /// `wanted` is for the coming hold; `committed` is what the device has held since the last call, after all clamps.
@@ -67,7 +74,6 @@ public:
     const EnergyCapStatistics& statistics() const noexcept { return statistics_; }
 
 private:
-    static constexpr std::size_t most_delay = 8;
     static constexpr double farthest_m = 10.0, most_J = 1e6;
 
     /// Translation or rotation since the last call, and what is to be expected.

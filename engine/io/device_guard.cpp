@@ -84,7 +84,8 @@ DeviceState DeviceGuard::state() const noexcept {
 
 void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {
     if (at_rest_.load(std::memory_order_relaxed)) return;
-    const bool retired = retired_.load(std::memory_order_acquire), lets_go = lets_go_.load(std::memory_order_acquire);
+    const bool retired = retired_.load(std::memory_order_acquire),
+               lets_go = lets_go_.load(std::memory_order_acquire) || is_left_.load(std::memory_order_acquire);
     const bool was_taken = guard_.is_taken();
     Wrench out;
     if (lets_go && !was_taken) is_let_go_.store(true, std::memory_order_release);

@@ -60,6 +60,8 @@ public:
     /// anew. Any thread; wait-free.
     void let_go() noexcept { lets_go_.store(true, std::memory_order_release); }
     void take_up() noexcept { lets_go_.store(false, std::memory_order_release); }
+    /// The same while no node gives the device a force, as after an edit.
+    void set_driven(bool is_driven) noexcept { is_left_.store(!is_driven, std::memory_order_release); }
     /// The force is to fade and come in anew, for a reason outside of the device. Any thread; wait-free.
     void ask_fade() noexcept { fade_asked_.store(true, std::memory_order_relaxed); }
     /// True once after `ask_fade`. Thread of the tick; wait-free.
@@ -78,7 +80,7 @@ public:
 private:
     control::CommitGuard guard_;
     std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
-    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false}, lets_go_{false};
+    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false}, lets_go_{false}, is_left_{false};
     std::atomic<bool> is_let_go_{false};  // the watchdog has taken it on purpose
     std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
     bool refused_ = false;  // thread of the tick

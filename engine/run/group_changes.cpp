@@ -31,6 +31,7 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
         fades_for_plan_ = has_let_go_ = false;
         hold_off();
         program_->ran = ran_;
+        for (build::DeviceSlot* slot : program_->driven) slot->guard.set_driven(false);
         for (build::PublishedOutput& output : next.published) {
             if (output.before < 0) continue;
             const build::PublishedOutput& old = program_->published[static_cast<std::size_t>(output.before)];
@@ -53,6 +54,7 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     for (Link* link : next.ended) link->abandon();
     for (Link* link : next.new_inputs) link->take_over();
     for (Link* link : next.new_outputs) link->begin_at(next_);
+    for (build::DeviceSlot* slot : next.driven) slot->guard.set_driven(true);
     program_ = &next;
     if (is_paused_) hold_off();
     plan_number_.store(next.plan_number, std::memory_order_release);

@@ -69,6 +69,8 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
     // Before the next pause, which it would sleep through, it looks again.
     while (!is_over(group) && !pauses(group) && !group.is_forsaken() && release_ns() - steady_ns() > 2 * rest_ns)
         rest();
+    // The watchdog must not miss it until the first tick has computed its force.
+    if (!is_over(group) && !pauses(group) && !group.is_forsaken()) group.rest();
 }
 
 void LiveRun::work(GroupRuntime& group) {

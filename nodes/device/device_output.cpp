@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/energy_cap.hpp"
 #include "dsp/control/force_limiter.hpp"
+#include "dsp/core/error.hpp"
 #include "graph/node/node.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
@@ -56,6 +59,13 @@ struct DeviceOutput {
         if (port_->info.resolution > 0.0) cap.resolution = port_->info.resolution;
         if (port_->info.angular_resolution > 0.0) cap.angular_resolution = port_->info.angular_resolution;
         cap.delay_s = port_->info.delay;
+        if (energy_cap && cap.delay_s > control::EnergyCap::longest_delay_s(cap.period_s))
+            throw Error(
+                device.where,
+                fmt::format("the device '{}' answers after {:.3g} ms, longer than {} ticks of {:.4g} Hz, within "
+                            "which energy_cap bounds the energy; lower the rate of '{}'",
+                            port_->info.name, cap.delay_s * 1e3, control::EnergyCap::most_delay, 1.0 / cap.period_s,
+                            setup.name));
         // A device states its damping with a hand on it. More than this would blur what a bounce returns.
         cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
         cap_.prepare(cap);

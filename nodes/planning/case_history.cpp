@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nodes/planning/case_history.hpp"
 
-#include <utility>
-
 namespace tactus::nodes {
 
 namespace {
@@ -21,6 +19,7 @@ CaseHistory::CaseHistory(const cases::CasePlan& plan)
     });
     tree_.stand(plan.place());
     ways_.reserve(most_ways);
+    dropped_.reserve(cases::most_dropped);
     for (const cases::PlanAlternative& way : plan.alternatives)
         if (ways_.size() < most_ways) ways_.push_back(way.place);
 }
@@ -53,13 +52,15 @@ bool CaseHistory::go_to(std::size_t alternative, fit::Arrangement& now) noexcept
 
 bool CaseHistory::drop(double number) noexcept {
     if (number < 0.0) {
-        if (!dropped_ || ways_.size() >= most_ways) return false;
-        ways_.push_back(*std::exchange(dropped_, std::nullopt));
+        if (dropped_.empty() || ways_.size() >= most_ways) return false;
+        ways_.push_back(dropped_.back());
+        dropped_.pop_back();
         return true;
     }
     const auto place = static_cast<std::size_t>(number);
     if (place >= ways_.size() || place == way_) return false;
-    dropped_ = ways_[place];
+    if (dropped_.size() == cases::most_dropped) dropped_.erase(dropped_.begin());
+    dropped_.push_back(ways_[place]);
     ways_.erase(ways_.begin() + static_cast<std::ptrdiff_t>(place));
     way_ -= place < way_ ? 1 : 0;
     return true;

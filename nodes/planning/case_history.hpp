@@ -27,7 +27,8 @@ public:
     /// Goes to an alternative; their number begins another one at the current state. False, without a change, when there
     /// is none or it is the current one.
     bool go_to(std::size_t alternative, fit::Arrangement& now) noexcept;
-    /// Drops an alternative; a negative number brings the one dropped last back. False when that cannot be.
+    /// Drops an alternative; a negative number brings the one dropped last back, of at most
+    /// cases::most_dropped. False when that cannot be.
     bool drop(double number) noexcept;
 
     /// What has been done since the last step becomes a step.
@@ -44,7 +45,7 @@ private:
     fit::Arrangement kept_;  // after the last step
     std::vector<fit::HistoryPlace> ways_;  // of the alternatives; the current one's is in the tree
     std::size_t way_ = 0;
-    std::optional<fit::HistoryPlace> dropped_;
+    std::vector<fit::HistoryPlace> dropped_;  // the last one at the end
 };
 
 }  // namespace tactus::nodes

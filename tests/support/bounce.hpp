@@ -47,7 +47,7 @@ struct Bounce {
         // x > 0 is inside.
         double x = -speed * period * (10.0 + phase), v = speed, elapsed = period;
         Wrench committed;
-        std::array<double, 9> under_way{};
+        std::array<double, 65> under_way{};
         int touching = 0, apart = 0;
         for (int n = 0; n < 100000; ++n) {
             const double offset = phase * quantum;

@@ -27,7 +27,12 @@ std::pair<Spots, Spots>& spots() {
 void mark_spot(const std::string& name) {
     if (!ImGui::IsItemVisible()) return;
     const Point low = point(ImGui::GetItemRectMin()), high = point(ImGui::GetItemRectMax());
-    spots().first[name] = {low.x, low.y, high.x, high.y};
+    const Box whole{low.x, low.y, high.x, high.y};
+    // Of what is scrolled half out of its panel, only a part can be pressed.
+    const ImDrawList& drawn = *ImGui::GetWindowDrawList();
+    const Point first = point(drawn.GetClipRectMin()), last = point(drawn.GetClipRectMax());
+    if (!Box{first.x, first.y, last.x, last.y}.contains(whole.middle())) return;
+    spots().first[name] = whole;
 }
 
 void set_spot(const std::string& name, const Box& box) { spots().first[name] = box; }

@@ -259,6 +259,8 @@ void Workbench::run() {
     if (run_ && !run_->is_over()) return;
     if (!plan_ && !is_broken_) return tell("nothing runs yet: add nodes and give them their wires", true);
     run_.reset();
+    assets_.forget_changed();
+    goes_on_ = std::exchange(next_goes_on_, false);
     observer_ = std::make_shared<observe::Observer>();
     ++runs_;
     RunChoice choice = choice_;
@@ -272,21 +274,6 @@ void Workbench::run() {
     // The next run makes another take.
     choice_.record.clear();
     followed_ = plan_;
-}
-
-void Workbench::run_with(const std::string& asset, const fs::path& file) {
-    const std::vector<std::string> before = choice_.overrides.assets;
-    std::erase_if(choice_.overrides.assets, [&](const std::string& given) { return given.starts_with(asset + "="); });
-    choice_.overrides.assets.push_back(asset + "=" + file.string());
-    if (const auto problem = check(editor_->text())) {
-        choice_.overrides.assets = before;
-        return tell(*problem, true);
-    }
-    if (is_recording())
-        tell(fmt::format("the recording into {} ends here: the run begins again", last_take_.string()), true);
-    run_.reset();
-    adopt();
-    run();
 }
 
 void Workbench::stop() {
@@ -329,11 +316,15 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 }
 
 void Workbench::tend() {
-    if (const auto wanted = std::exchange(wanted_hand_, std::nullopt)) begin_with_hand(*wanted);
+    change_hand();
     if (std::string problem = kept_.tend(*editor_, has_unsaved_edits()); !problem.empty())
         tell(fmt::format("unsaved edits cannot be kept for a later window: {}", problem), true);
     if (!run_) return look_at_file();
-    for (std::string& text : run_->messages()) tell(std::move(text));
+    for (std::string& text : run_->messages()) {
+        const bool is_failure = run_->is_over() && text == status()->failure;
+        tell(std::move(text), is_failure);
+    }
+    go_back();
     if (run_->file_was_saved()) take_over_file();
     else if (run_->is_over()) look_at_file();
 }

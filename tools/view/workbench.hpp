@@ -15,10 +15,12 @@
 
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::view {
@@ -195,16 +197,21 @@ public:
     // The run.
     void run();
     /// Ends the run and begins another one with this file for an asset. A file that the patch does not take leaves all as
-    /// it is; the reason is in `messages`.
-    void run_with(const std::string& asset, const std::filesystem::path& file);
+    /// it is; the reason is in `messages`. A run that then cannot begin is followed by one with the file `otherwise`.
+    void run_with(const std::string& asset, const std::filesystem::path& file,
+                  const std::filesystem::path& otherwise = {});
+    /// The run began with what the one before had written.
+    bool goes_on() const { return goes_on_; }
     /// The hand of the patch can be moved by mouse and keys in place of the device that the patch names.
     bool can_take_hand() const;
     bool has_taken_hand() const { return !hand_settings_.empty(); }
     /// Lets the window move the hand, or the device of the patch again: an override of this and later runs, no edit.
     /// False: refused; the reason is in `messages`.
     bool use_hand_of_window(bool wanted);
-    /// Does so, and the run begins again, at the next `tend`.
+    /// Does so, and the run begins again, at the next `tend` at which `is_settled` says that it may.
     void want_hand(bool wanted) { wanted_hand_ = wanted; }
+    /// Whether all that was done in the run is in its files; told why not.
+    std::function<bool()> is_settled;
     void stop();
     void pause(bool wanted);
     /// Presses a button of the run that is a node of the patch.
@@ -249,7 +256,10 @@ private:
     void adopt();
     void adopt_text();
     void follow();
+    void change_hand();
     void begin_with_hand(bool of_window);
+    void use_asset(const std::string& asset, const std::filesystem::path& file);
+    void go_back();
     void take_over_file();
     void keep_beside(const std::string& text);
     void look_at_file();
@@ -272,6 +282,8 @@ private:
     bool is_broken_ = false;
     bool was_never_saved_ = false;  // a new patch: a file of its name is another window's
     std::optional<bool> wanted_hand_;
+    std::optional<std::pair<std::string, std::filesystem::path>> otherwise_;  // an asset and its file
+    bool goes_on_ = false, next_goes_on_ = false;
     std::vector<std::string> hand_settings_;  // with which the window has taken the hand, among the overrides
     std::shared_ptr<observe::Observer> observer_;
     std::unique_ptr<ViewedRun> run_;

@@ -202,3 +202,25 @@ TEST_CASE("a dropped alternative comes back beside one that was begun since, and
     CHECK(plan.current == 1);
     CHECK(plan.alternatives[2].name == "alternative 2");
 }
+
+TEST_CASE("alternatives that were dropped come back one after another and the last one first") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    const auto tell = [&](int kind, double place) {
+        cases::StepRow row;
+        row.kind = kind;
+        row.after = place;
+        keeper.add(row, 0.0);
+    };
+    for (const double place : {1.0, 2.0, 0.0}) tell(cases::row_alternative, place);
+    tell(cases::row_drop, 1.0);
+    tell(cases::row_drop, 1.0);
+    for (int n = 0; n < 3; ++n) tell(cases::row_undrop, -1.0);
+    keeper.finish();
+    CHECK(keeper.trouble().empty());
+    const cases::CasePlan plan = cases::load_case_plan(file);
+    REQUIRE(plan.alternatives.size() == 3);
+    CHECK(plan.alternatives[1].name == "alternative 3");
+    CHECK(plan.alternatives[2].name == "alternative 2");
+}

@@ -173,6 +173,7 @@ TEST_CASE("a sample is the same on both sides") {
     sample.twist = {{4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};
     sample.buttons = 5;
     sample.counter = 12;
+    sample.late = true;
     sample.valid = true;
     sample.fingers[1] = {0.1, 0.2, motor_limited};
     const DeviceSample seen = unpack(pack(sample));
@@ -183,6 +184,8 @@ TEST_CASE("a sample is the same on both sides") {
     CHECK(seen.buttons == 5);
     CHECK(seen.counter == 12);
     CHECK(seen.valid);
+    CHECK(seen.late);
+    CHECK_FALSE(unpack(pack(DeviceSample{})).late);
     CHECK(seen.fingers[1].position == 0.1);
     CHECK(seen.fingers[1].force == 0.2);
     CHECK(seen.fingers[1].state == motor_limited);

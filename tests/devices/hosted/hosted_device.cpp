@@ -55,6 +55,22 @@ TEST_CASE("a driver in a process of its own gives samples and takes forces", "[l
     CHECK(host.leaves_nothing());
 }
 
+TEST_CASE("what a device states of its delay has that of its process in it, once", "[live]") {
+    const WatchedHost host;
+    const auto device = host.open();
+    // The process looks four times in a tick, and both a sample and a force wait for it once.
+    const double own = device->info().delay - 0.5e-3;
+    CHECK(own > -1e-12);
+    device->prepare(2e-3);
+    CHECK(device->info().delay == Approx(own + 1e-3).margin(1e-12));
+}
+
+TEST_CASE("a hand at the window has no process of its own") {
+    const hosted::DeviceRequest request{
+        "mouse", "device 'm'", {{"process", "true", {"p.toml", 9, 1}}}, {"p.toml", 7, 1}};
+    CHECK(error_of([&] { hosted::open_placed(request, as_named); }).find("p.toml:9") == 0);
+}
+
 TEST_CASE("acquire and commit of a device with a process of its own call no system and allocate nothing", "[live]") {
     const WatchedHost host;
     const auto device = host.open();

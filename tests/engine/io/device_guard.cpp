@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/device_guard.hpp"
 
+#include "engine/run/clock.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>
@@ -35,6 +36,52 @@ TEST_CASE("a fault that takes the place of another ends it") {
     CHECK(faults[0].over == 20);
     CHECK(faults[1].reason == Fault::not_finite);
     CHECK(faults[1].over == -1);
+}
+
+namespace {
+
+class Still final : public HapticDevice {
+public:
+    const DeviceInfo& info() const override { return info_; }
+    void prepare(double) override {}
+    DeviceSample acquire(double) noexcept override { return {}; }
+    void commit(const Wrench& on_hand) noexcept override { last = on_hand; }
+
+    Wrench last;
+
+private:
+    DeviceInfo info_;
+};
+
+}  // namespace
+
+TEST_CASE("a device that no node drives for a while is no late one when it is driven again") {
+    constexpr std::int64_t ms = 1'000'000;
+    for (const bool is_told : {true, false}) {
+        INFO((is_told ? "on purpose" : "its ticks stay away"));
+        io::DeviceGuard guard;
+        guard.set_limit(3 * ms);
+        Still device;
+        const std::int64_t begin = run::steady_ns();
+        std::int64_t now = begin;
+        guard.commit(device, {Vec3(1.0, 0.0, 0.0), {}}, now);
+        CHECK(device.last.force.x == 1.0);
+        if (is_told) guard.set_driven(false);
+        for (; now < begin + 2000 * ms; now += ms) guard.poll(device, now);
+        CHECK(device.last.force.x == 0.0);
+        if (is_told) guard.set_driven(true);
+        CHECK(guard.was_taken() == !is_told);
+        // The first force of a node that comes in anew is none.
+        for (int n = 0; n < 20; ++n, now += ms) {
+            guard.commit(device, {}, now);
+            guard.poll(device, now);
+            if (is_told) CHECK_FALSE(guard.was_taken());
+        }
+        guard.was_taken();
+        guard.commit(device, {Vec3(2.0, 0.0, 0.0), {}}, run::steady_ns());
+        CHECK_FALSE(guard.was_taken());
+        CHECK(device.last.force.x == 2.0);
+    }
 }
 
 TEST_CASE("whoever reads faults while they are written sees each whole") {

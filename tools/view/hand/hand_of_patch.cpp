@@ -26,15 +26,18 @@ std::string device_of(const compile::Plan& plan, const compile::PlanNode& node) 
     return named.empty() && plan.patch.devices.size() == 1 ? plan.patch.devices.front().name : named;
 }
 
+std::string driver_of(const compile::Plan& plan, const std::string& device) {
+    const auto& devices = plan.patch.devices;
+    const auto declared = std::ranges::find(devices, device, &patch::PatchDevice::name);
+    return declared == devices.end() ? device : declared->driver;
+}
+
 std::optional<HandOfPatch> hand_of(const compile::Plan& plan) {
     const auto source = std::ranges::find_if(
         plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::hand_source; });
     if (source == plan.nodes.end()) return std::nullopt;
-    const auto& devices = plan.patch.devices;
     HandOfPatch hand{source->name, device_of(plan, *source), {}, {}};
-    // A driver that the patch does not declare can be named as well.
-    const auto declared = std::ranges::find(devices, hand.device, &patch::PatchDevice::name);
-    hand.driver = declared == devices.end() ? hand.device : declared->driver;
+    hand.driver = driver_of(plan, hand.device);
     for (const compile::PlanNode& node : plan.nodes) {
         const bool is_of_hand = node.type->role == NodeRole::hand_source || node.type->role == NodeRole::hand_sink;
         const std::string named = device_named_by(node);

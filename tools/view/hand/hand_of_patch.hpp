@@ -22,6 +22,8 @@ struct HandOfPatch {
 inline constexpr double most_of_device_N = 20.0;
 /// The device that a node of a hand means; empty: that cannot be said.
 std::string device_of(const compile::Plan& plan, const compile::PlanNode& node);
+/// The driver of a device; one that the patch does not declare can be named as well.
+std::string driver_of(const compile::Plan& plan, const std::string& device);
 /// The largest force that a hand on this device can get: the lower one of the limits of its output and of the device, N.
 double largest_force(const compile::Plan& plan, const std::string& device);
 /// The same for the hand of the patch.

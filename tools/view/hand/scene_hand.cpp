@@ -103,9 +103,19 @@ std::int64_t SceneHand::held_buttons() const {
     return held;
 }
 
-void SceneHand::follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline) {
+void SceneHand::follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline,
+                       const compile::Plan& plan) {
     place_.forget();
-    if (!outline.places.empty()) place_.follow(observer, outline.places.front());
+    if (outline.places.empty()) return;
+    const picture::SceneOutline::Place* place = &outline.places.front();
+    for (const compile::PlanNode& node : plan.nodes) {
+        if (node.type->role != NodeRole::hand_source || driver_of(plan, device_of(plan, node)) != "mouse") continue;
+        const auto own = std::ranges::find_if(outline.places, [&](const picture::SceneOutline::Place& one) {
+            return one.device.starts_with(node.name + ".");
+        });
+        if (own != outline.places.end()) place = &*own;
+    }
+    place_.follow(observer, *place);
 }
 
 Vec3 SceneHand::cursor_in_scene(const HandPlace& place) const {
@@ -184,12 +194,17 @@ bool SceneHand::steer(const display::OrbitCamera& camera, int height) {
     const double depth = std::max(glm::dot(place.handle - camera.eye(), forward), 1e-3);
     const double per_pixel = 2.0 * depth * std::tan(0.5 * camera.vertical_field_of_view_rad) / std::max(height, 1);
     const Point by = point(io.MouseDelta);
+    // What the pointer moved before the press is none of it, what it moved before the release is.
+    const bool drags =
+        (ImGui::IsItemActive() ? !ImGui::IsItemActivated() : ImGui::IsItemDeactivated()) && !is_drag_stale_;
     if (!ImGui::IsItemActive()) is_drag_stale_ = false;
-    const bool drags = ImGui::IsItemActive() && !is_drag_stale_;
-    if (drags && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    const auto drags_with = [&](ImGuiMouseButton button) {
+        return drags && (ImGui::IsMouseDown(button) || ImGui::IsMouseReleased(button));
+    };
+    if (drags_with(ImGuiMouseButton_Left)) {
         if (io.KeyShift) cursor_.move(forward * (-by.y * per_pixel), place);
         else cursor_.move((right * by.x - up * by.y) * per_pixel, place);
-    } else if (drags && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    } else if (drags_with(ImGuiMouseButton_Right)) {
         if (io.KeyShift) cursor_.turn(forward * (by.x * radians_per_pixel), place);
         else cursor_.turn((up * by.x + right * by.y) * radians_per_pixel, place);
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) return false;

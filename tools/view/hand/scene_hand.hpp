@@ -38,7 +38,8 @@ public:
     bool has_mouse() const { return is_there_ && is_on_; }
 
     /// Watches where the device lies in the scene; null: no run.
-    void follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline);
+    void follow(const std::shared_ptr<observe::Observer>& observer, const picture::SceneOutline& outline,
+                const compile::Plan& plan);
     void forget() { place_.forget(); }
     /// The buttons above the scene; without a hand of the window, `offer`.
     void tools();

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto between_looks = std::chrono::milliseconds(300);
-constexpr auto written_within = std::chrono::milliseconds(1000);
+constexpr auto written_within = std::chrono::milliseconds(1000), longest_missing = std::chrono::milliseconds(10'000);
 
 const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
 
@@ -148,6 +148,9 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
     if (is_other_patch) follow_patch();
     if (is_other_patch || is_other_run) watch(observer);
     if (is_other_run) {
+        if (plan_ && steps_.size() > steps_at_start_ && !bench_.goes_on())
+            bench_.tell(fmt::format("this run begins with the plan of the patch; that of the run before is in {}",
+                                    file_.string()));
         commands_.clear();
         plan_.reset();
         steps_.clear();
@@ -163,12 +166,18 @@ void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
         read_plan();
     }
     if (study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        has_numbers_ = studied_ == Study::gaps || studied_ == Study::healthy;
         try {
             found_ = study_.get();
         } catch (const std::exception& error) {
             found_ = error.what();
+            has_numbers_ = false;
             bench_.tell(found_, true);
         }
+    }
+    if (has_numbers_ && study_of_ != written_) {
+        has_numbers_ = false;
+        found_.clear();
     }
 }
 
@@ -176,7 +185,12 @@ void CaseRun::look_for_changes() {
     // Also those of the hand's buttons and of commands from elsewhere.
     const double steps = number(node_ + ".steps", -1.0);
     const bool is_step = std::exchange(steps_done_, steps) != steps;
-    if (is_step || commands_.is_under_way() || commands_.is_paused() || is_holding()) unsettled_ = Clock::now();
+    if (is_step) stepped_ = Clock::now();
+    // A slow disk. What a run could not write never comes.
+    const auto done = static_cast<double>(std::ranges::count(steps_, true, &StepLine::is_done));
+    const bool is_missing = plan_ && steps >= 0.0 && steps != done && Clock::now() - stepped_ < longest_missing;
+    if (is_step || is_missing || commands_.is_under_way() || commands_.is_paused() || is_holding())
+        unsettled_ = Clock::now();
 }
 
 bool CaseRun::is_holding() const {
@@ -203,8 +217,10 @@ void CaseRun::read_plan() {
     const fs::file_time_type written = fs::last_write_time(file_, none);
     if (none || written == unread_ || (plan_ && written == written_)) return;
     try {
+        const bool is_first = !plan_;
         plan_ = cases::load_case_plan(file_);
         steps_ = step_lines(*plan_);
+        if (is_first) steps_at_start_ = steps_.size();
         written_ = written;
     } catch (const Error& error) {
         bench_.tell(error.what(), true);

@@ -63,6 +63,8 @@ public:
     /// All that was done to the plan has come into its file: a run that begins with that file loses nothing. False while
     /// a fragment is held or the run is paused.
     bool is_settled() const;
+    /// What was asked of the plan is not yet in the run.
+    bool is_asked() const { return commands_.is_under_way(); }
     /// A person holds a fragment: where it is now is no step yet.
     bool is_holding() const;
     /// For a change with which the run is to begin again. False: not now; the reason is in the messages. In a pause they
@@ -89,7 +91,7 @@ public:
     enum class Study { gaps, healthy, report, files };
     void begin(Study study);
     bool is_busy() const { return study_.valid(); }
-    /// What the last study said.
+    /// What the last study said; numbers go with the state of the plan of which they are.
     const std::string& found() const { return found_; }
 
 private:
@@ -111,6 +113,8 @@ private:
     LiveCommands commands_;
     std::string holding_, which_;  // ports; of the held fragment
     double steps_done_ = -1.0;
+    Clock::time_point stepped_{};
+    std::size_t steps_at_start_ = 0;
     bool is_hand_of_person_ = true;
     Clock::time_point unsettled_{}, looked_{};
     std::filesystem::path file_;
@@ -118,7 +122,10 @@ private:
     std::optional<cases::CasePlan> plan_;
     std::vector<StepLine> steps_;
     std::future<std::string> study_;
+    Study studied_ = Study::gaps;
+    std::filesystem::file_time_type study_of_{};
     std::string found_;
+    bool has_numbers_ = false;  // `found_` is true of `study_of_` only
 };
 
 }  // namespace tactus::view

@@ -76,6 +76,9 @@ void CaseRun::begin(Study what) {
     if (is_busy()) return;
     if (!plan_) return bench_.tell("the run has not written its plan yet", true);
     found_ = "...";
+    has_numbers_ = false;
+    studied_ = what;
+    study_of_ = written_;
     study_ = std::async(std::launch::async, [what, file = file_] { return made(what, file); });
 }
 

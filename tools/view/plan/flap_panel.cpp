@@ -14,6 +14,7 @@
 #include <imgui_stdlib.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace tactus::view {
@@ -30,7 +31,9 @@ Vec3 vector_of(const std::array<float, 3>& v) {
 }  // namespace
 
 void FlapPanel::open(Form form) {
-    form_ = std::move(form);
+    // A click elsewhere, as for a measured point, closes a form.
+    const bool goes_on = is_draft_ && form.of.empty() && form.kind == form_.kind;
+    if (!goes_on) form_ = std::move(form);
     wants_dialog_ = true;
 }
 
@@ -44,7 +47,7 @@ void FlapPanel::line(const char* what, const Named& one, Form form, std::vector<
     mark_spot(fmt::format("remove {} {}", what, one.name));
     if (ImGui::IsItemHovered()) show_tooltip("a step of the plan; 'undo step' brings it back");
     ImGui::SameLine();
-    form.name = one.name;
+    form.of = form.name = one.name;
     if (ImGui::Selectable(fmt::format("{} {}", what, one.name).c_str())) open(std::move(form));
     mark_spot(fmt::format("{} {}", what, one.name));
     ImGui::PopID();
@@ -122,30 +125,33 @@ void FlapPanel::places() {
             "goes");
 }
 
-void FlapPanel::apply() {
+bool FlapPanel::apply() {
     const Form f = form_;
     const auto kind = f.is_vein ? reconstruct::VesselKind::vein : reconstruct::VesselKind::artery;
     switch (f.kind) {
         case Kind::plate:
-            return flap_.lay_plate(f.name, f.screws, static_cast<double>(f.screw_length) * mm,
-                                   static_cast<double>(f.height) * mm);
+            return flap_.lay_plate(
+                {f.name, f.of, f.screws, static_cast<double>(f.screw_length) * mm, static_cast<double>(f.height) * mm});
         case Kind::implant:
             return flap_.change([f](reconstruct::Reconstruction& all) {
                 const Vec3 axis = vector_of(f.axis);
                 if (!(glm::length(axis) > 0.0)) throw Error("implant: 0, 0, 0 is no direction");
-                put_named(all.flap.implants,
+                put_named(all.flap.implants, f.of,
                           {f.name, vector_of(f.at) * mm, glm::normalize(axis), static_cast<double>(f.diameter) * mm,
                            static_cast<double>(f.length) * mm});
             });
         case Kind::vessel:
             return flap_.change([f, kind](reconstruct::Reconstruction& all) {
-                reconstruct::FlapVessel vessel = reconstruct::read_vessel(f.file, kind);
+                const auto known = std::ranges::find(all.flap.vessels, f.of, &reconstruct::FlapVessel::name);
+                if (f.file.empty() && known == all.flap.vessels.end()) throw Error(fmt::format("no vessel '{}'", f.of));
+                reconstruct::FlapVessel vessel = f.file.empty() ? *known : reconstruct::read_vessel(f.file, kind);
                 vessel.name = f.name;
-                put_named(all.flap.vessels, std::move(vessel));
+                vessel.kind = kind;
+                put_named(all.flap.vessels, f.of, std::move(vessel));
             });
         case Kind::site:
             return flap_.change([f, kind](reconstruct::Reconstruction& all) {
-                put_named(all.flap.sites, {f.name, kind, vector_of(f.at) * mm});
+                put_named(all.flap.sites, f.of, {f.name, kind, vector_of(f.at) * mm});
             });
         case Kind::margin:
             return flap_.change([f, folder = run_.file().parent_path()](reconstruct::Reconstruction& all) {
@@ -156,11 +162,13 @@ void FlapPanel::apply() {
                 all.flap.margin = static_cast<double>(f.margin) * mm;
             });
     }
+    return false;
 }
 
 void FlapPanel::dialog() {
     if (std::exchange(wants_dialog_, false)) ImGui::OpenPopup("reconstruction");
     if (!ImGui::BeginPopup("reconstruction")) return;
+    is_draft_ = form_.of.empty() && form_.kind != Kind::margin;
     ImGui::PushItemWidth(16.0f * ImGui::GetFontSize());
     constexpr const char* titles[] = {"Plate", "Dental implant", "Vessel of the leg", "Vessel of the neck",
                                       "Tumour and margin"};
@@ -186,7 +194,10 @@ void FlapPanel::dialog() {
             ImGui::SliderFloat("length, mm", &form_.length, 1.0f, 40.0f, "%.1f");
             break;
         case Kind::vessel:
-            ImGui::InputTextWithHint("file", ".csv of 'tactus vessel', or .mrk.json of 3D Slicer", &form_.file);
+            ImGui::InputTextWithHint("file",
+                                     form_.of.empty() ? ".csv of 'tactus vessel', or .mrk.json of 3D Slicer"
+                                                      : "empty: its course stays as it is",
+                                     &form_.file);
             mark_spot("file of the vessel");
             ImGui::Checkbox("vein", &form_.is_vein);
             break;
@@ -200,16 +211,21 @@ void FlapPanel::dialog() {
             mark_spot("margin of the tumour");
             break;
     }
-    const bool can = (!has_name || !form_.name.empty()) && (form_.kind != Kind::vessel || !form_.file.empty());
+    const bool can =
+        (!has_name || !form_.name.empty()) && (form_.kind != Kind::vessel || !form_.file.empty() || !form_.of.empty());
     ImGui::BeginDisabled(!can || flap_.is_changing());
-    if (ImGui::Button("apply")) {
-        apply();
+    if (ImGui::Button("apply") && apply()) {
+        applied_ = form_;
+        is_draft_ = false;
         ImGui::CloseCurrentPopup();
     }
     mark_spot("apply to the plan");
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (ImGui::Button("cancel")) ImGui::CloseCurrentPopup();
+    if (ImGui::Button("cancel")) {
+        is_draft_ = false;
+        ImGui::CloseCurrentPopup();
+    }
     if (!form_.note.empty()) ImGui::TextDisabled("%s", form_.note.c_str());
     ImGui::TextDisabled("A step of the plan; the run begins again with it.");
     ImGui::PopItemWidth();
@@ -218,6 +234,10 @@ void FlapPanel::dialog() {
 
 void FlapPanel::tend() {
     flap_.tend(std::exchange(is_drawn_, false));
+    if (flap_.take_refusal() && applied_) {
+        form_ = *std::exchange(applied_, std::nullopt);
+        wants_dialog_ = true;
+    }
     if (run_.plan()) scene_.use_plan(run_.file(), *run_.plan(), run_.written());
 }
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace tactus::view {
@@ -27,6 +28,7 @@ private:
     /// What is asked for in the dialog; mm.
     struct Form {
         Kind kind = Kind::plate;
+        std::string of;  ///< the name of what is changed; empty: a new one
         std::string name, file, note;
         std::array<float, 3> at{}, axis{0.0f, 0.0f, -1.0f};
         float diameter = 4.0f, length = 14.0f, screw_length = 12.0f, height = 0.0f, margin = 10.0f;
@@ -37,7 +39,8 @@ private:
     void lists(const reconstruct::Reconstruction& all);
     void dialog();
     void places();
-    void apply();
+    /// False: not now, and the form stays.
+    bool apply();
     /// A line of a list: its name, which opens the dialog, and a button that removes it.
     template <class Named>
     void line(const char* what, const Named& one, Form form, std::vector<Named> reconstruct::Flap::* list);
@@ -46,6 +49,8 @@ private:
     FlapRun flap_;
     ScenePanel& scene_;
     Form form_;
+    std::optional<Form> applied_;  ///< comes back when it is refused
+    bool is_draft_ = false;  ///< a form of a new part was closed by something else: it goes on where it was
     bool wants_dialog_ = false, is_drawn_ = false;
 };
 

@@ -2,6 +2,7 @@
 #include "tools/view/plan/flap_run.hpp"
 
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/json.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tools/study/leaving.hpp"
 #include "tools/study/planning/flap_study.hpp"
@@ -63,6 +64,12 @@ void FlapRun::tend(bool measures) {
         of_ = run_.written();
         now_ = cases::state_of(*run_.plan()).reconstruction;
         verdicts_ = {};
+        follow_plan();
+    }
+    // Nodes read the reconstruction when a run begins: a tumour's margin is a wall, a site holds a vessel's end.
+    if (is_other_ && run_.is_live() && !run_.is_holding() && !is_changing()) {
+        is_other_ = false;
+        begin(nullptr);
     }
     if (!measures || measured_ == of_ || measuring_.is_busy()) return;
     measured_ = of_;
@@ -73,12 +80,20 @@ void FlapRun::tend(bool measures) {
                          }));
 }
 
+/// Undo, redo and another alternative change the reconstruction within a run.
+void FlapRun::follow_plan() {
+    const std::string text = now_ ? reconstruct::json_of(*now_).dump() : std::string();
+    if (std::exchange(began_in_, run_.file()) != run_.file()) began_with_ = text;
+    is_other_ = text != began_with_;
+}
+
 void FlapRun::tend_change() {
     if (is_ready(changing_)) {
         try {
             changed_ = changing_.get();
         } catch (const std::exception& error) {
             bench_.tell(error.what(), true);
+            was_refused_ = true;
         }
     }
     if (!waits_ || changing_.valid() || !run_.plan() || !run_.is_settled()) return;
@@ -87,12 +102,13 @@ void FlapRun::tend_change() {
     make();
 }
 
-void FlapRun::begin(WholeChange change) {
-    if (!run_.plan() || is_changing() || !run_.may_begin_again()) return;
+bool FlapRun::begin(WholeChange change) {
+    if (!run_.plan() || is_changing() || !run_.may_begin_again()) return false;
     change_ = std::move(change);
     waits_ = true;
     was_live_ = run_.is_live();
     tend_change();
+    return true;
 }
 
 void FlapRun::make() {
@@ -102,7 +118,7 @@ void FlapRun::make() {
             const fs::path file = free_plan(folder);
             cases::save_case_plan(plan, file);
             try {
-                study::change_reconstruction(file, change);
+                if (change) study::change_reconstruction(file, change);
             } catch (...) {
                 std::error_code none;
                 fs::remove(file, none);
@@ -112,28 +128,30 @@ void FlapRun::make() {
         });
 }
 
-void FlapRun::change(Change change) {
-    begin([change = std::move(change)](reconstruct::Reconstruction& all, const cases::CasePlan&) { change(all); });
+bool FlapRun::change(Change change) {
+    return begin(
+        [change = std::move(change)](reconstruct::Reconstruction& all, const cases::CasePlan&) { change(all); });
 }
 
-void FlapRun::lay_plate(const std::string& name, int screws_per_segment, double screw_length, double height) {
-    begin([=, folder = run_.file().parent_path()](reconstruct::Reconstruction& all, const cases::CasePlan& plan) {
-        const study::FlapStudy study(plan, cases::state_of(plan), folder);
-        reconstruct::PlateSettings settings;
-        settings.screws_per_segment = screws_per_segment;
-        settings.screw_length = screw_length;
-        settings.height = height;
+bool FlapRun::lay_plate(const PlateChoice& choice) {
+    return begin(
+        [choice, folder = run_.file().parent_path()](reconstruct::Reconstruction& all, const cases::CasePlan& plan) {
+            const study::FlapStudy study(plan, cases::state_of(plan), folder);
+            reconstruct::PlateSettings settings;
+            settings.screws_per_segment = choice.screws_per_segment;
+            settings.screw_length = choice.screw_length;
+            settings.height = choice.height;
         // What nobody is asked for stays as it is.
-        for (const reconstruct::Plate& known : all.flap.plates)
-            if (known.name == name) {
-                settings.width = known.width;
-                settings.thickness = known.thickness;
-                if (!known.screws.empty()) settings.screw_diameter = known.screws.front().diameter;
-            }
-        reconstruct::Plate made = reconstruct::plate_on(study.inputs(), study.fibula(), settings);
-        made.name = name;
-        put_named(all.flap.plates, std::move(made));
-    });
+            for (const reconstruct::Plate& known : all.flap.plates)
+                if (known.name == choice.of) {
+                    settings.width = known.width;
+                    settings.thickness = known.thickness;
+                    if (!known.screws.empty()) settings.screw_diameter = known.screws.front().diameter;
+                }
+            reconstruct::Plate made = reconstruct::plate_on(study.inputs(), study.fibula(), settings);
+            made.name = choice.name;
+            put_named(all.flap.plates, choice.of, std::move(made));
+        });
 }
 
 fs::path FlapRun::take_changed() {
@@ -144,8 +162,9 @@ fs::path FlapRun::take_changed() {
     if (!has_ended && run_.plan() && run_.written() == made_of_) return made;
     std::error_code none;
     fs::remove(made, none);
-    if (has_ended) bench_.tell("the run has ended, and does not begin again with the change: make it once more", true);
-    else waits_ = true;
+    if (!has_ended) waits_ = true;
+    else if (change_)
+        bench_.tell("the run has ended, and does not begin again with the change: make it once more", true);
     return {};
 }
 

@@ -145,6 +145,24 @@ std::filesystem::path PlanAlternatives::take_changed() {
     return {};
 }
 
+bool PlanAlternatives::waits_for_list() const {
+    // What the run refuses never comes.
+    constexpr double longest_s = 5.0;
+    return run_.is_asked() || (asked_of_ == run_.written() && ImGui::GetTime() - asked_at_ < longest_s);
+}
+
+void PlanAlternatives::go_to(int place) {
+    asked_of_ = run_.written();
+    asked_at_ = ImGui::GetTime();
+    run_.go_to_alternative(place);
+}
+
+void PlanAlternatives::drop(int place) {
+    asked_of_ = run_.written();
+    asked_at_ = ImGui::GetTime();
+    run_.drop_alternative(place);
+}
+
 void PlanAlternatives::list(const cases::CasePlan& plan) {
     for (int n = 0; n < static_cast<int>(plan.alternatives.size()); ++n) {
         const std::string& name = plan.alternatives[static_cast<std::size_t>(n)].name;
@@ -155,7 +173,7 @@ void PlanAlternatives::list(const cases::CasePlan& plan) {
             continue;
         }
         const bool is_current = n == plan.current;
-        if (ImGui::RadioButton(name.c_str(), is_current) && !is_current) run_.go_to_alternative(n);
+        if (ImGui::RadioButton(name.c_str(), is_current) && !is_current) go_to(n);
         mark_spot("alternative " + name);
         if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) ask_name(n, name);
         if (ImGui::IsItemHovered())
@@ -168,7 +186,7 @@ void PlanAlternatives::list(const cases::CasePlan& plan) {
             mark_spot("compare " + name);
             if (ImGui::IsItemHovered()) show_tooltip("drawn through the current one, in a second colour");
             continue_line("drop");
-            if (ImGui::SmallButton("drop")) run_.drop_alternative(n);
+            if (ImGui::SmallButton("drop")) drop(n);
             mark_spot("drop " + name);
             if (ImGui::IsItemHovered()) show_tooltip("its steps stay in the file; 'undrop' brings it back");
         }
@@ -179,14 +197,14 @@ void PlanAlternatives::list(const cases::CasePlan& plan) {
 void PlanAlternatives::draw() {
     if (!run_.plan()) return;
     const cases::CasePlan& plan = *run_.plan();
-    ImGui::BeginDisabled(!run_.is_live());
-    if (ImGui::Button("new from here")) run_.go_to_alternative(static_cast<int>(plan.alternatives.size()));
+    ImGui::BeginDisabled(!run_.is_live() || waits_for_list());
+    if (ImGui::Button("new from here")) go_to(static_cast<int>(plan.alternatives.size()));
     mark_spot("new from here");
     if (ImGui::IsItemHovered()) show_tooltip("begins an alternative at the plan as it is now");
     ImGui::SameLine();
     if (ImGui::Button("undrop")) run_.drop_alternative(-2);
     mark_spot("undrop");
-    if (ImGui::IsItemHovered()) show_tooltip("brings the alternative that was dropped last back");
+    if (ImGui::IsItemHovered()) show_tooltip("brings the alternative that was dropped last in this run back");
     list(plan);
     ImGui::EndDisabled();
     if (shown_.empty()) return;

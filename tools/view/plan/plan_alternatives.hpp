@@ -35,6 +35,10 @@ public:
 
 private:
     void list(const cases::CasePlan& plan);
+    /// Places change with what was asked for before.
+    bool waits_for_list() const;
+    void go_to(int place);
+    void drop(int place);
     void ask_name(int place, const std::string& name);
     void name_field(int place);
 
@@ -49,6 +53,8 @@ private:
     study::Beside<Numbers> counting_;
     std::vector<std::string> numbers_;
     std::pair<std::string, std::string> wanted_name_;  ///< of the alternative that gets another one, and that
+    std::filesystem::file_time_type asked_of_{};  ///< the plan of which the last press was
+    double asked_at_ = -1e9;
     int renamed_ = -1;  ///< place of the alternative whose name is asked for
     bool wants_focus_ = false, wants_question_ = false;
     std::string name_;

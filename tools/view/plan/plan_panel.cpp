@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
@@ -137,10 +138,14 @@ void PlanPanel::maps() {
     }
 }
 
-void PlanPanel::step_list() {
+/// Above all that grows: a hand reaches them without scrolling.
+void PlanPanel::history_buttons() {
     if (button("undo step", case_.can_press("undo"), "of the plan; let the fragment go first", true))
         case_.press("undo");
     if (button("redo step", case_.can_press("redo"), "of the plan")) case_.press("redo");
+}
+
+void PlanPanel::step_list() {
     if (!case_.plan()) return ImGui::TextDisabled("the run has written no plan yet");
     // In a small panel, below what it shows first: some steps are seen at once.
     const float least = 7.0f * ImGui::GetTextLineHeightWithSpacing();
@@ -157,15 +162,27 @@ void PlanPanel::step_list() {
     ImGui::EndChild();
 }
 
+/// The run begins again with another hand, and with the plan as it is written.
+bool PlanPanel::may_change_hand() {
+    const bool may = !case_.is_there() || case_.is_settled();
+    if (may) has_told_to_let_go_ = false;
+    else if (case_.is_holding() && !std::exchange(has_told_to_let_go_, true)) case_.may_begin_again();
+    return may;
+}
+
 void PlanPanel::begin_again() {
     // One after the other: each has what the one before has changed.
     std::filesystem::path changed = flap_.flap().take_changed();
     if (changed.empty() && !flap_.flap().is_changing()) changed = alternatives_.take_changed();
-    if (!changed.empty()) bench_.run_with(case_.asset(), std::filesystem::absolute(changed));
+    if (changed.empty()) return;
+    // What the run has written is there after its end, too.
+    const std::filesystem::path now = std::filesystem::absolute(case_.file());
+    bench_.run_with(case_.asset(), std::filesystem::absolute(changed), now);
 }
 
 void PlanPanel::draw(const Fonts&) {
     hand_buttons();
+    history_buttons();
     fit_line();
     fragment_buttons();
     studies();

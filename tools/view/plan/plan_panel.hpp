@@ -20,7 +20,12 @@ public:
           scene_(scene),
           map_(bench, case_, scene),
           alternatives_(bench, case_, scene),
-          flap_(bench, case_, scene) {}
+          flap_(bench, case_, scene) {
+        bench_.is_settled = [this] { return may_change_hand(); };
+    }
+    ~PlanPanel() { bench_.is_settled = nullptr; }
+    PlanPanel(const PlanPanel&) = delete;
+    PlanPanel& operator=(const PlanPanel&) = delete;
 
     CaseRun& case_run() { return case_; }
     /// Once per picture, also while it is not drawn: the scene keeps the colours of a map.
@@ -41,6 +46,7 @@ public:
 private:
     void on_chosen(const char* input);
     void hand_buttons();
+    void history_buttons();
     void fit_line() const;
     void fragment_buttons();
     void studies();
@@ -53,7 +59,10 @@ private:
     PlanMap map_;
     PlanAlternatives alternatives_;
     FlapPanel flap_;
+    bool may_change_hand();
+
     std::size_t listed_ = 0;
+    bool has_told_to_let_go_ = false;
 };
 
 }  // namespace tactus::view

@@ -181,7 +181,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             model_->use_map(map_, map_range_);
             model_->compare(compared_, compared_name_);
             sight_.follow(model_->outline());
-            hand_.follow(observer_, model_->outline());
+            hand_.follow(observer_, model_->outline(), *bench_.plan());
             pulled_.follow(observer_, model_->outline(), *bench_.plan());
             plan_version_ = bench_.plan_version();
             needs_picture_ = true;

@@ -58,6 +58,11 @@ void without_last(std::vector<std::string>& all, const std::vector<std::string>&
             all.erase(std::next(last).base());
 }
 
+void Workbench::change_hand() {
+    if (!wanted_hand_ || (is_settled && !is_settled())) return;
+    begin_with_hand(*std::exchange(wanted_hand_, std::nullopt));
+}
+
 void Workbench::begin_with_hand(bool of_window) {
     const std::vector<std::string> assets = choice_.overrides.assets;
     // The run goes on with the plan that it has written.
@@ -70,13 +75,13 @@ void Workbench::begin_with_hand(bool of_window) {
         const fs::path written = folder / (file == scene->settings.end() ? "case.plan.json" : file->text);
         const fs::path copy = free_plan(folder);
         if (plan != scene->settings.end() && fs::copy_file(written, copy, none)) {
-            std::erase_if(choice_.overrides.assets,
-                          [&](const std::string& given) { return given.starts_with(plan->text + "="); });
-            choice_.overrides.assets.push_back(plan->text + "=" + fs::absolute(copy).string());
+            use_asset(plan->text, fs::absolute(copy));
+            next_goes_on_ = true;
         }
     }
-    if (use_hand_of_window(of_window)) run();
-    else choice_.overrides.assets = assets;
+    if (use_hand_of_window(of_window)) return run();
+    choice_.overrides.assets = assets;
+    next_goes_on_ = false;
 }
 
 }  // namespace tactus::view

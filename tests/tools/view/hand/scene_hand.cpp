@@ -174,3 +174,30 @@ TEST_CASE("a hand holds what it holds through a pause of any length and goes on 
     rig.picture(3 * one_second_ns);
     CHECK_FALSE(rig.hand.is_there());
 }
+
+TEST_CASE("a drag of the hand begins with the press and ends with the release") {
+    Rig rig;
+    ImGuiIO& io = ImGui::GetIO();
+    const auto look = [&](float x, float y, bool is_down) {
+        io.MousePos = ImVec2(x, y);
+        io.MouseDown[0] = is_down;
+        rig.picture();
+        return rig.wanted().pose.position;
+    };
+    ImGui::NewFrame();
+    ImGui::Begin("scene");
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::End();
+    ImGui::EndFrame();
+    const float x = corner.x + 5.0f, y = corner.y + 25.0f;
+    const Vec3 before = look(x - 300.0f, y, false);
+    look(x, y, false);
+    look(x - 300.0f, y, false);
+    // Pictures are slow: the pointer comes and presses within one.
+    CHECK(look(x, y, true) == before);
+    const Vec3 dragged = look(x + 20.0f, y, true);
+    CHECK(dragged.x > before.x);
+    const Vec3 end = look(x + 40.0f, y, false);
+    CHECK(end.x - dragged.x == Approx(dragged.x - before.x));
+    CHECK(look(x, y, false) == end);
+}

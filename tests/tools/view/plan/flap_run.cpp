@@ -5,6 +5,9 @@
 #include "tests/tools/view/plan/plan_rig.hpp"
 
 #include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -72,4 +75,60 @@ TEST_CASE("a change of a reconstruction waits for the end of a pause with the st
     REQUIRE(rig.pause(false));
     REQUIRE(rig.is_made(6000));
     rig.check_made();
+}
+
+TEST_CASE("undo of a change of the reconstruction reaches the nodes that have read it", "[live]") {
+    FlapRig rig;
+    const double before = rig.flap.reconstruction()->flap.margin;
+    REQUIRE(before != 7e-3);
+    rig.flap.change(widen);
+    REQUIRE(rig.is_made(6000));
+    rig.bench.run_with(rig.run.asset(), rig.made, rig.run.file());
+    REQUIRE(rig.comes([&] { return rig.flap.reconstruction() && rig.flap.reconstruction()->flap.margin == 7e-3; }));
+    // The run that has it is not begun again.
+    CHECK_FALSE(rig.is_made(200));
+    const std::size_t steps = rig.run.plan()->steps.size();
+    rig.run.press("undo");
+    REQUIRE(rig.is_made(6000));
+    const cases::CasePlan undone = cases::load_case_plan(rig.made);
+    CHECK(cases::state_of(undone).reconstruction->flap.margin == before);
+    CHECK(undone.steps.size() == steps);
+    rig.bench.run_with(rig.run.asset(), rig.made, rig.run.file());
+    REQUIRE(rig.comes([&] { return rig.flap.reconstruction() && rig.flap.reconstruction()->flap.margin == before; }));
+    rig.run.press("redo");
+    REQUIRE(rig.is_made(6000));
+    CHECK(cases::state_of(cases::load_case_plan(rig.made)).reconstruction->flap.margin == 7e-3);
+}
+
+TEST_CASE("a change with which the patch cannot run is told and the run goes on without it", "[live]") {
+    FlapRig rig;
+    const std::size_t sites = rig.flap.reconstruction()->flap.sites.size();
+    rig.run.press("lock", segment);
+    REQUIRE(rig.comes([&] { return rig.is_locked(segment); }));
+    rig.flap.change([](reconstruct::Reconstruction& all) { all.flap.sites.clear(); });
+    REQUIRE(rig.is_made(6000));
+    rig.bench.run_with(rig.run.asset(), rig.made, std::filesystem::absolute(rig.run.file()));
+    REQUIRE(rig.comes([&] { return rig.has_told("the run could not begin with the change"); }));
+    REQUIRE(rig.comes([&] { return rig.run.is_live() && rig.flap.reconstruction() != nullptr; }));
+    CHECK(rig.flap.reconstruction()->flap.sites.size() == sites);
+    CHECK(rig.is_locked(segment));
+}
+
+TEST_CASE("a part of a reconstruction is changed and renamed in place and takes no name of another one") {
+    struct Part {
+        std::string name;
+        int value = 0;
+    };
+    std::vector<Part> all{{"a", 1}, {"b", 2}};
+    put_named(all, "a", Part{"c", 3});
+    REQUIRE(all.size() == 2);
+    CHECK(all[0].name == "c");
+    put_named(all, "c", Part{"c", 4});
+    CHECK(all[0].value == 4);
+    put_named(all, "", Part{"d", 5});
+    CHECK(all.size() == 3);
+    CHECK_THROWS_WITH(put_named(all, "", Part{"b", 6}), Catch::Matchers::ContainsSubstring("'b' is there already"));
+    CHECK_THROWS_AS(put_named(all, "d", Part{"b", 6}), Error);
+    CHECK(all[1].value == 2);
+    CHECK(all.size() == 3);
 }
