@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 namespace tactus::test {
 
@@ -70,7 +71,8 @@ struct Bounce {
                 fly(x, v, under_way[static_cast<std::size_t>(delay)]);
             }
             elapsed = ticks * period;
-            const bool is_free = x < 0.0 && std::ranges::all_of(under_way, [](double f) { return f == 0.0; });
+            const auto coming = std::span(under_way).first(static_cast<std::size_t>(std::max(delay + 1, 9)));
+            const bool is_free = x < 0.0 && std::ranges::all_of(coming, [](double f) { return f == 0.0; });
             apart = touching > 0 && is_free ? apart + 1 : 0;
             if (apart > 3 || (touching > 0 && v == 0.0 && is_free)) break;
         }
