@@ -80,8 +80,8 @@ Felt felt_live(const std::string& fault) {
         if (!is_edited || !engine.is_settled() || engine.progress_seconds() < 0.25) return;
         const std::int64_t now = steady_now();
         if (since == 0) since = now;
-        // A device that no plan drove for a while comes back as after a late tick.
-        const double leaves_for = plan + 1 == plans.size() ? 1600.0 : 150.0;
+        // Also after a plan that drives no device: that is no late tick.
+        constexpr double leaves_for = 150.0;
         if (ms_between(since, now) < leaves_for) return;
         if (hand.depth == 0.0) {
             hand.depth = 2e-3;

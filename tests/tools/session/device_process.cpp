@@ -140,7 +140,7 @@ TEST_CASE("a run that is killed or stopped leaves no force on the hand after 20 
 TEST_CASE("a run with a device in a process of its own can be replayed to the bit", "[live]") {
     const Watched watched;
     const std::string take = (watched.folder.path / "take").string();
-    const Outcome run = watched.folder.tactus("run --seconds 1 --record " + take + " " + watched.arguments());
+    const Outcome run = watched.folder.tactus("run --seconds 2 --record " + take + " " + watched.arguments());
     CAPTURE(run.err);
     CHECK(run.code == 0);
     CHECK(watched.log->is_closed());
