@@ -3,6 +3,7 @@
 
 #include "devices/hosted/clocks.hpp"
 #include "tools/view/frame/tooltip.hpp"
+#include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
