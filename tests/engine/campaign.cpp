@@ -153,7 +153,8 @@ void Round::act(run::Engine& engine) {
         // its samples stood still: ten ticks more.
         const bool hangs = kind_ == WatchedHand::Blocks::in_acquire && faulty_->is_blocked;
         const double ticks_ms = faulty_ == &left_ ? 10.0 : 20.0;
-        if (hangs) verdicts_.push_back({faulty_, faulty_->blocked_ns, faulty_->blocked_ns + 20 * one_ms, "hung when read"});
+        if (hangs)
+            verdicts_.push_back({faulty_, faulty_->blocked_ns, faulty_->blocked_ns + 20 * one_ms, "hung when read"});
         if (faulty_->is_stale)
             verdicts_.push_back({faulty_, fault_began_ns_,
                                  fault_began_ns_ + static_cast<std::int64_t>((ticks_ms + 12.0) * 1e6), "stale"});
@@ -182,7 +183,8 @@ void Round::act(run::Engine& engine) {
             engine.pause(true);
             pause_ends_ns_ = now + (60 + draws_.below(150)) * one_ms;
             if (faulty_) break;
-            for (const WatchedHand* hand : {&left_, &right_}) verdicts_.push_back({hand, now, now + 20 * one_ms, "pause"});
+            for (const WatchedHand* hand : {&left_, &right_})
+                verdicts_.push_back({hand, now, now + 20 * one_ms, "pause"});
             break;
         case 5:
             if (!faulty_) begin_fault(draws_.chance(0.5) ? left_ : right_);

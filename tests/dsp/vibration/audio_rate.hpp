@@ -6,7 +6,7 @@
 
 namespace tactus::test {
 
-constexpr double card_rate = 48000.0;
+constexpr double audio_rate = 48000.0;
 
 inline double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 

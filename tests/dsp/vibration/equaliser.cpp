@@ -14,7 +14,7 @@
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
-using tactus::test::card_rate;
+using tactus::test::audio_rate;
 using tactus::test::decibel;
 
 namespace {
@@ -24,10 +24,10 @@ vibration::FrequencyResponse identified(const test::Plant& plant) {
     const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 0.3, 1.0, 1};
     std::vector<float> drive;
     for (std::size_t i = 0; i < 9 * 48000; ++i)
-        drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / card_rate)));
+        drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / audio_rate)));
     std::vector<float> heard = plant(drive);
-    test::add_disturbance(heard, card_rate, -50.0, -80.0, 7);
-    return vibration::identify(run, heard, card_rate).response;
+    test::add_disturbance(heard, audio_rate, -50.0, -80.0, 7);
+    return vibration::identify(run, heard, audio_rate).response;
 }
 
 /// Deviation of plant and equaliser together from their mean, over the band, dB.
@@ -134,8 +134,8 @@ TEST_CASE("a long filter convolves, without delay, and remembers what it was giv
 TEST_CASE("the headroom report knows the peak, what is cut, and which band loses") {
     std::vector<double> drive(48000);
     for (std::size_t i = 0; i < drive.size(); ++i)
-        drive[i] = 6.0 * std::sin(2.0 * std::numbers::pi * 200.0 * static_cast<double>(i) / card_rate);
-    const vibration::Headroom over = vibration::headroom(drive, card_rate, 3.0);
+        drive[i] = 6.0 * std::sin(2.0 * std::numbers::pi * 200.0 * static_cast<double>(i) / audio_rate);
+    const vibration::Headroom over = vibration::headroom(drive, audio_rate, 3.0);
     CHECK(over.peak == Approx(6.0).epsilon(1e-3));
     CHECK(over.headroom_db == Approx(-6.02).margin(0.01));
     CHECK(over.limited_fraction == Approx(2.0 / 3.0).margin(0.01));  // |sin| > 1/2
@@ -143,10 +143,10 @@ TEST_CASE("the headroom report knows the peak, what is cut, and which band loses
     CHECK(over.losses[0].hz == Approx(199.5).epsilon(0.01));
     // A sine cut at half its peak keeps the first harmonic (2/π)(asin c + c √(1 − c²)), c = 1/2.
     CHECK(over.losses[0].lost_db == Approx(-20.0 * std::log10(0.6090)).margin(0.05));
-    const vibration::Headroom under = vibration::headroom(drive, card_rate, 12.0);
+    const vibration::Headroom under = vibration::headroom(drive, audio_rate, 12.0);
     CHECK(under.headroom_db == Approx(6.02).margin(0.01));
     CHECK(under.limited_fraction == 0.0);
     CHECK(under.losses.empty());
-    CHECK(vibration::headroom({}, card_rate, 3.0).peak == 0.0);
+    CHECK(vibration::headroom({}, audio_rate, 3.0).peak == 0.0);
     CHECK(vibration::voltage_within(3.0, 0.5, 4.0) == 2.0);
 }
