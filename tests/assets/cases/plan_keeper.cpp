@@ -180,16 +180,22 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
                       Catch::Matchers::ContainsSubstring("cannot be changed"));
 }
 
+namespace {
+
+void tell_of_alternative(cases::PlanKeeper& keeper, int kind, double place) {
+    cases::StepRow row;
+    row.kind = kind;
+    row.after = place;
+    keeper.add(row, 0.0);
+}
+
+}  // namespace
+
 TEST_CASE("a dropped alternative comes back beside one that was begun since, and the plan can be read") {
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
     cases::PlanKeeper keeper(two(), file);
-    const auto tell = [&](int kind, double place) {
-        cases::StepRow row;
-        row.kind = kind;
-        row.after = place;
-        keeper.add(row, 0.0);
-    };
+    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
     tell(cases::row_alternative, 1.0);
     tell(cases::row_alternative, 0.0);
     tell(cases::row_drop, 1.0);
@@ -207,12 +213,7 @@ TEST_CASE("alternatives that were dropped come back one after another and the la
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
     cases::PlanKeeper keeper(two(), file);
-    const auto tell = [&](int kind, double place) {
-        cases::StepRow row;
-        row.kind = kind;
-        row.after = place;
-        keeper.add(row, 0.0);
-    };
+    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
     for (const double place : {1.0, 2.0, 0.0}) tell(cases::row_alternative, place);
     tell(cases::row_drop, 1.0);
     tell(cases::row_drop, 1.0);

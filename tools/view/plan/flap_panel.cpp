@@ -238,6 +238,8 @@ void FlapPanel::tend() {
         form_ = *std::exchange(applied_, std::nullopt);
         wants_dialog_ = true;
     }
+    // What was taken does not come back when another change is refused.
+    if (!flap_.is_changing()) applied_.reset();
     if (run_.plan()) scene_.use_plan(run_.file(), *run_.plan(), run_.written());
 }
 

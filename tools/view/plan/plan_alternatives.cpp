@@ -151,15 +151,18 @@ bool PlanAlternatives::waits_for_list() const {
     return run_.is_asked() || (asked_of_ == run_.written() && ImGui::GetTime() - asked_at_ < longest_s);
 }
 
-void PlanAlternatives::go_to(int place) {
+void PlanAlternatives::note_asked() {
     asked_of_ = run_.written();
     asked_at_ = ImGui::GetTime();
+}
+
+void PlanAlternatives::go_to(int place) {
+    note_asked();
     run_.go_to_alternative(place);
 }
 
 void PlanAlternatives::drop(int place) {
-    asked_of_ = run_.written();
-    asked_at_ = ImGui::GetTime();
+    note_asked();
     run_.drop_alternative(place);
 }
 

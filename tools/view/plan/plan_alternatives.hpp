@@ -37,6 +37,7 @@ private:
     void list(const cases::CasePlan& plan);
     /// Places change with what was asked for before.
     bool waits_for_list() const;
+    void note_asked();
     void go_to(int place);
     void drop(int place);
     void ask_name(int place, const std::string& name);
