@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tests './dev test' runs again, in a folder with a few tests whose outcome is known.
+// Which cases './dev test' runs, and which it repeats, in a folder with a few cases whose outcome is known.
 #include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -20,7 +20,10 @@ public:
         fs::create_directories(folder_.path / "build/release");
         fs::create_directories(folder_.path / "bin");
         fs::create_directories(folder_.path / "cmake");
+        fs::create_directories(folder_.path / "tests");
         fs::copy_file(source_folder() / "dev", folder_.path / "dev");
+        fs::copy_file(source_folder() / "tests/tiers.sh", folder_.path / "tests/tiers.sh");
+        folder_.write("tests/costs.tsv", "# none\n");
         folder_.write("cmake/packages.txt", "always nothing reason\n");
         folder_.write("build/release/build.ninja", "");
         program("cmake", "exit 0");
@@ -36,6 +39,12 @@ public:
                                    std::to_string(failures) + " ] || exit " + std::to_string(code);
         tests_ += "add_test(" + name + " \"bash\" \"-c\" [==[" + script + "]==])\nset_tests_properties(" + name +
                   " PROPERTIES LABELS " + label + " SKIP_RETURN_CODE 77)\n";
+    }
+
+    /// States the processor time of a case.
+    void cost(const std::string& name, int seconds) {
+        costs_ += std::to_string(seconds) + "\t" + name + "\n";
+        folder_.write("tests/costs.tsv", costs_);
     }
 
     /// The exit code of './dev test'.
@@ -66,45 +75,61 @@ private:
     }
 
     Folder folder_;
-    std::string tests_;
+    std::string tests_, costs_;
 };
 
 }  // namespace
 
-TEST_CASE("a test in real time that failed runs again alone, the second time beside a watch over the machine",
-          "[slow]") {
+TEST_CASE("a case in real time that failed runs once more, alone, beside a watch over the machine", "[slow]") {
     Checkout checkout;
     checkout.add("early", "fast", 0);
     checkout.add("absent", "slow", 9, 77);
     checkout.add("once", "live", 1);
-    checkout.add("twice", "live-display", 2);
+    checkout.add("window", "live-display", 1);
     const int code = checkout.test();
     INFO(checkout.printed());
     CHECK(code == 0);
     CHECK(checkout.runs_of("early") == ".");
     CHECK(checkout.runs_of("absent") == ".");
-    CHECK(checkout.runs_of("once") == "..");
-    CHECK(checkout.runs_of("twice") == "..w.");
+    CHECK(checkout.runs_of("once") == ".w.");
+    CHECK(checkout.runs_of("window") == ".w.");
 }
 
-TEST_CASE("a test in real time that never passes fails after three runs", "[slow]") {
+TEST_CASE("a case in real time that fails twice fails the landing", "[slow]") {
     Checkout checkout;
     checkout.add("early", "fast", 0);
-    checkout.add("never", "live", 9);
+    checkout.add("never", "live", 2);
     const int code = checkout.test();
     INFO(checkout.printed());
     CHECK(code == 1);
-    CHECK(checkout.runs_of("never") == "..w.");
+    CHECK(checkout.runs_of("never") == ".w.");
     CHECK(checkout.runs_of("early") == ".");
 }
 
-TEST_CASE("no test runs again when one that is not in real time failed", "[slow]") {
+TEST_CASE("no case runs again that is not in real time", "[slow]") {
     Checkout checkout;
     checkout.add("wrong", "fast", 1);
-    checkout.add("late", "live", 1);
+    checkout.add("flawed", "long", 1);
+    checkout.add("good", "live", 0);
     const int code = checkout.test();
     INFO(checkout.printed());
     CHECK(code == 1);
     CHECK(checkout.runs_of("wrong") == ".");
-    CHECK(checkout.runs_of("late") == ".");
+    CHECK(checkout.runs_of("flawed") == ".");
+    CHECK(checkout.runs_of("good") == ".");
+}
+
+TEST_CASE("a landing runs long cases up to three minutes of their processor time", "[slow]") {
+    Checkout checkout;
+    int run = 0;
+    for (int k = 0; k < 10; ++k) {
+        checkout.add("long_" + std::string(1, static_cast<char>('a' + k)), "long", 0);
+        checkout.cost("long_" + std::string(1, static_cast<char>('a' + k)), 50);
+    }
+    const int code = checkout.test();
+    INFO(checkout.printed());
+    CHECK(code == 0);
+    for (int k = 0; k < 10; ++k) run += checkout.runs_of("long_" + std::string(1, static_cast<char>('a' + k))) == ".";
+    CHECK(run == 3);
+    CHECK(checkout.printed().find("s of processor time") != std::string::npos);
 }

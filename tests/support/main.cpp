@@ -7,9 +7,13 @@
 #include "tests/support/machine_watch.hpp"
 #include "tests/support/skip.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <string>
+
+#include <sys/resource.h>
 
 // OpenVDB loses the node that it was reading when a damaged file makes it throw; AddressSanitizer asks for these names.
 extern "C" const char* __lsan_default_suppressions();
@@ -20,6 +24,30 @@ extern "C" const char* __lsan_default_options() { return "print_suppressions=0";
 namespace {
 
 constexpr int skipped_code = 77;
+
+/// Processor time of this process and of its children that have ended, in s.
+double processor_seconds() {
+    double sum = 0;
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage used{};
+        ::getrusage(who, &used);
+        for (const timeval& time : {used.ru_utime, used.ru_stime})
+            sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    return sum;
+}
+
+/// Appends processor seconds (the start of the process included) and the name of the case, as ctest has it, to the file
+/// that TACTUS_COSTS names.
+void note_cost(const std::string& name) {
+    const char* const path = std::getenv("TACTUS_COSTS");
+    std::FILE* const file = path ? std::fopen(path, "a") : nullptr;
+    if (!file) return;
+    std::string room = program_invocation_short_name;  // test_dsp
+    if (room.starts_with("test_")) room.erase(0, 5);
+    std::fprintf(file, "%.2f\t%s: %s\n", processor_seconds(), room.c_str(), name.c_str());
+    std::fclose(file);
+}
 
 int cases = 0, skipped_cases = 0;
 bool is_skipped = false, is_of_window = false;  // the running case
@@ -42,6 +70,7 @@ struct CountSkipped : Listener {
         Listener::testCaseEnded(stats);
         ++cases;
         skipped_cases += is_skipped;
+        note_cost(stats.testInfo.name);
         if (!stats.totals.assertions.allOk()) shows_window = shows_window || is_of_window;
     }
 };
