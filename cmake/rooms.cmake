@@ -68,16 +68,16 @@ function(tactus_precompile target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>)
 endfunction()
 
-# tactus_unite(TARGET [FOLDER ...]): files of one folder are compiled as one, ten at a time; a folder of fewer than four joins
+# tactus_unite(TARGET [PATTERN ...]): files of one folder are compiled as one, ten at a time; a folder of fewer than four joins
 # the one above it. Reading headers and instantiating templates is most of the time of each file, and is done once for all of
-# them. Files of one folder must not give one name to two things, not even in unnamed namespaces. Files of the folders named
-# here are compiled alone.
+# them. Files of one folder must not give one name to two things, not even in unnamed namespaces. Files that match a pattern
+# are compiled alone.
 function(tactus_unite target)
   if(NOT TACTUS_UNITY)
     return()
   endif()
-  foreach(folder ${ARGN})
-    file(GLOB_RECURSE alone CONFIGURE_DEPENDS ${folder}/*.cpp)
+  foreach(pattern ${ARGN})
+    file(GLOB_RECURSE alone CONFIGURE_DEPENDS ${pattern})
     set_property(SOURCE ${alone} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
   get_target_property(sources ${target} SOURCES)
@@ -114,7 +114,7 @@ function(tactus_unite target)
 endfunction()
 
 # PRECOMPILE: headers that most files of the room include, beside those of TACTUS_PCH_HEADERS. A file still names what it uses:
-# builds with clang or sanitizers have no precompiled headers and check that. ALONE: folders of tactus_unite().
+# builds with clang or sanitizers have no precompiled headers and check that. ALONE: patterns of tactus_unite().
 function(tactus_room name)
   cmake_parse_arguments(ROOM "OPTIMISE" "" "LINKS;PRIVATE_LINKS;PRECOMPILE;ALONE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.cpp)

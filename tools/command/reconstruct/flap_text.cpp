@@ -17,8 +17,6 @@ namespace {
 
 constexpr double to_mm = 1e3, to_deg = 180.0 / std::numbers::pi;
 
-Json in_mm(const std::optional<double>& metres) { return metres ? Json(*metres * to_mm) : Json(nullptr); }
-
 Json point_json(const Vec3& p) { return {p.x * to_mm, p.y * to_mm, p.z * to_mm}; }
 
 Json reach_json(const reconstruct::SiteReach& r) {

@@ -11,6 +11,11 @@
 
 namespace tactus::command {
 
+/// Millimetres, or null.
+inline file::Json in_mm(const std::optional<double>& metres) {
+    return metres ? file::Json(*metres * 1e3) : file::Json(nullptr);
+}
+
 file::Json flap_json(const reconstruct::FlapMeasures& measures);
 file::Json candidates_json(std::span<const reconstruct::Candidate> all);
 /// What a plan holds, without points of vessels and plates.

@@ -3,6 +3,7 @@
 #include "assets/file/json.hpp"
 #include "assets/reconstruct/fibula_inputs.hpp"
 #include "tools/command/options.hpp"
+#include "tools/command/reconstruct/flap_text.hpp"
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
@@ -28,8 +29,6 @@ struct FibulaChoice {
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 Json in_mm2(const std::optional<double>& area) { return area ? Json(*area * 1e6) : Json(nullptr); }
-
-Json in_mm(const std::optional<double>& metres) { return metres ? Json(*metres * 1e3) : Json(nullptr); }
 
 /// Row by row; lengths in mm.
 Json matrix_of(const Pose& pose) {

@@ -56,13 +56,9 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
     return selection;
 }
 
-struct Count {
-    std::size_t passed = 0, failed = 0, bad = 0;
-};
-
 /// `failures`: the error of each pair, empty for success.
-Count count_of(std::span<const ComparedPair> pairs, std::span<const std::string> failures) {
-    Count count;
+VerdictCounts count_of(std::span<const ComparedPair> pairs, std::span<const std::string> failures) {
+    VerdictCounts count;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         ++(!failures[i].empty() ? count.bad : pairs[i].verdict.passed() ? count.passed : count.failed);
     return count;
@@ -83,7 +79,7 @@ std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<st
     return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
 }
 
-std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures, const Count& count) {
+std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures, const VerdictCounts& count) {
     file::Json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
                     {"passed", count.passed},
                     {"failed", count.failed},
@@ -136,7 +132,7 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
             picture::write_figure(picture::draw_comparison(pairs[i]),
                                   fs::path(choice.plot) / (varied.filename().string() + ".svg"));
         });
-    const Count count = count_of(pairs, failures);
+    const VerdictCounts count = count_of(pairs, failures);
     tell_failures(failures);
     if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(pairs, failures));
     if (!choice.report.empty()) file::write_whole_file(choice.report, page_of(pairs, failures, count.passed));

@@ -4,11 +4,17 @@
 
 #include "tools/study/vibration/comparison.hpp"
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace tactus::command {
+
+/// How many comparisons passed, failed, or could not be made.
+struct VerdictCounts {
+    std::size_t passed = 0, failed = 0, bad = 0;
+};
 
 std::string comparison_json(const study::ComparedPair& pair);
 /// Prints on standard output.

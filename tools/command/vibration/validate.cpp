@@ -35,10 +35,6 @@ struct ValidateChoice {
     bool json = false;
 };
 
-struct Count {
-    std::size_t passed = 0, failed = 0, bad = 0;
-};
-
 Json run_json(const ValidationRun& run) {
     Json json{{"file", run.recording->file.string()},
               {"state", run.recording->cutting ? "cutting" : "free_air"},
@@ -52,7 +48,7 @@ Json run_json(const ValidationRun& run) {
     return json;
 }
 
-std::string json_text(const Validation& validation, const study::ValidateSettings& settings, const Count& count) {
+std::string json_text(const Validation& validation, const study::ValidateSettings& settings, const VerdictCounts& count) {
     Json json{{"patch", validation.patch},
               {"set", validation.set->path.string()},
               {"synthesised", validation.set->synthesised},
@@ -68,7 +64,7 @@ std::string json_text(const Validation& validation, const study::ValidateSetting
     return json.dump(2) + "\n";
 }
 
-void print(const Validation& validation, const study::ValidateSettings& settings, const Count& count) {
+void print(const Validation& validation, const study::ValidateSettings& settings, const VerdictCounts& count) {
     fmt::print("{} at {}, beside {}{}\n", validation.patch, validation.path.out, validation.set->path.string(),
                validation.set->synthesised ? " (synthesised, no recordings)" : "");
     fmt::print("compared: {} to {} s of each run, with the stretch of the recording that was played then\n",
@@ -104,7 +100,7 @@ int validate(const ValidateChoice& choice) {
             study::validate(validation, i, settings,
                             pictures && validation.runs[i].level_db == settings.levels.front());
         });
-    Count count;
+    VerdictCounts count;
     count.bad = tell_failures(failures);
     for (std::size_t i = 0; i < failures.size(); ++i) {
         ValidationRun& run = validation.runs[i];
