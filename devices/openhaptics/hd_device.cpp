@@ -3,6 +3,7 @@
 
 #include "devices/driver/buttons.hpp"
 #include "devices/openhaptics/hd_api.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 
 #include <fmt/format.h>
@@ -88,7 +89,7 @@ unsigned call_servo(void* data) noexcept {
     Servo& servo = *static_cast<Servo*>(data);
     servo.is_inside.store(true);
     if (!servo.has_ended.load() && !servo.is_lost.load()) run_servo(servo);
-    servo.called_ns.store(hosted::steady_ns());
+    servo.called_ns.store(steady_ns());
     servo.is_inside.store(false);
     return servo.has_ended.load() ? 0 : callback_continue;
 }
@@ -150,7 +151,7 @@ public:
     }
 
     bool round(driver::Exchange&) noexcept override {
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         if (!runs_) {
             servo_->called_ns = now;
             handle_ = api_->schedule(call_servo, servo_, priority);
@@ -171,7 +172,7 @@ public:
         if (servo_) servo_->has_ended = true;
         if (runs_) {
             // A thread of the vendor that hangs still has the device; whoever ends the driver does not wait for it.
-            while (servo_->is_inside) hosted::sleep_until(hosted::steady_ns() + 1'000'000);
+            while (servo_->is_inside) sleep_for(1'000'000);
             api_->stop_scheduler();
             api_->unschedule(handle_);
         }

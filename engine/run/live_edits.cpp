@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/live_edits.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/made_thread.hpp"
 #include "graph/patch/sub_patch.hpp"
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -160,7 +160,7 @@ bool LiveEdits::end() {
             building_->thread.detach();
             return false;
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        sleep_for(1'000'000);
     }
     building_->thread.join();
     building_.reset();
