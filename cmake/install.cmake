@@ -16,6 +16,11 @@ file(RELATIVE_PATH programs_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_IN
 set_property(SOURCE devices/hosted/host_process.cpp APPEND PROPERTY
              COMPILE_DEFINITIONS TACTUS_INSTALLED_PROGRAMS="${programs_from_command}")
 
+install(TARGETS tactus-openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus)
+file(RELATIVE_PATH modules_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/tactus)
+set_property(SOURCE assets/file/module.cpp APPEND PROPERTY
+             COMPILE_DEFINITIONS TACTUS_INSTALLED_MODULES="${modules_from_command}")
+
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} FILES_MATCHING PATTERN "*.png")

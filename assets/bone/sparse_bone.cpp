@@ -49,17 +49,6 @@ SparseBone::SparseBone(volume::Grid size_and_place, float outside_of_blocks)
     blocks.resize(static_cast<std::size_t>(x) * static_cast<std::size_t>(y) * static_cast<std::size_t>(z));
 }
 
-std::array<int, 3> SparseBone::blocks_per_axis() const {
-    return {(layout.size[0] + side - 1) / side, (layout.size[1] + side - 1) / side, (layout.size[2] + side - 1) / side};
-}
-
-std::size_t SparseBone::block_index(int bx, int by, int bz) const {
-    const auto per_axis = blocks_per_axis();
-    return (static_cast<std::size_t>(bz) * static_cast<std::size_t>(per_axis[1]) + static_cast<std::size_t>(by)) *
-               static_cast<std::size_t>(per_axis[0]) +
-           static_cast<std::size_t>(bx);
-}
-
 std::size_t SparseBone::stored() const {
     return static_cast<std::size_t>(
         std::count_if(blocks.begin(), blocks.end(), [](const auto& b) { return b != nullptr; }));

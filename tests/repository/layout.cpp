@@ -245,6 +245,18 @@ TEST_CASE("two files alone include the JSON library, which takes seconds to comp
     CHECK(found == std::vector<std::string>{"assets/file/json.cpp", "engine/take/take_reader.cpp"});
 }
 
+TEST_CASE("only the module of bone files and benchmarks include OpenVDB, which is slow to load") {
+    for (const auto room : rooms)
+        for (const fs::path& file : files_under(room, {".cpp"})) {
+            const std::string path = fs::relative(file, root).string();
+            if (path.starts_with("assets/bone/openvdb/") || path.starts_with("tools/bench/")) continue;
+            for (const std::string& name : includes_of(file)) {
+                CAPTURE(path, name);
+                CHECK_FALSE(name.starts_with("openvdb/"));
+            }
+        }
+}
+
 TEST_CASE("rooms of tools include only what stands left of them") {
     for (std::size_t room = 0; room < tool_rooms.size(); ++room) {
         const std::string folder = "tools/" + std::string(tool_rooms[room]);
