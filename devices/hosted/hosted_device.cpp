@@ -185,6 +185,11 @@ std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const hapt
     return device;
 }
 
+double added_latency_s(const DeviceRequest& request, double period_s) {
+    Options options(request.owner, request.settings, request.where);
+    return read_placement(options, request.driver).added_latency_s(period_s);
+}
+
 haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve) {
     Options options(request.owner, request.settings, request.where);
     read_placement(options, request.driver);

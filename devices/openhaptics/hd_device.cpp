@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::int64_t longest_silence_ns = 500'000'000;
 constexpr unsigned short priority = 32767;  // the vendor's default
+constexpr double servo_delay_s = 1e-3;  // one tick of the servo loop
 
 // OpenHaptics has x to the right, y up, z towards the user.
 Vec3 from_hd(const Vec3& v) noexcept { return {v.x, -v.z, v.y}; }
@@ -110,6 +111,7 @@ public:
     driver::Outline outline() const override {
         driver::Outline outline;
         outline.info.name = "3D Systems Touch";
+        outline.info.delay = servo_delay_s;
         outline.info.senses_rotation = true;
         try {
             HdApi api(library_);
@@ -237,7 +239,7 @@ private:
         info.max_torque = info.actuates_torque ? torque * 1e-3 : 0.0;
         info.resolution = 55e-6;
         info.angular_resolution = 1e-3;
-        info.delay = 1e-3;
+        info.delay = servo_delay_s;
         info.senses_rotation = true;
         return opened;
     }
