@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -19,17 +18,6 @@
 namespace tactus::table {
 
 namespace {
-
-bool speaks_of_time(const std::string& name) {
-    const std::string word = lower(name);
-    for (const std::string_view known :
-         {"t", "seconds", "second", "sec", "s", "ms", "us", "millis", "micros", "zeit", "zeitstempel", "temps", "tid",
-          "tiempo", "tempo", "x_value", "datetime", "uptime"})
-        if (word == known) return true;
-    return word.starts_with("t_") || word.starts_with("time") || word.starts_with("elapsed") ||
-           word.starts_with("date/time") || word.starts_with("date time") || word.ends_with(" time") ||
-           word.ends_with("_time");
-}
 
 class Chooser {
 public:
@@ -79,7 +67,7 @@ private:
     std::optional<std::size_t> found_time() const {
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) &&
-                (shape_.header_line > 0 ? speaks_of_time(out_.named[i].name) : shape_.names.size() > 1))
+                (shape_.header_line > 0 ? is_time_name(out_.named[i].name) : shape_.names.size() > 1))
                 return i;
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) && shape_.kinds[i] == CellKind::time) return i;
@@ -91,10 +79,15 @@ private:
     void choose_time() {
         if (selection_.rate) {
             if (!selection_.time_column.empty()) fail("a rate and a time column are stated; state one of them");
+            out_.rate = *selection_.rate;
             return;
         }
         if (!selection_.time_column.empty()) out_.time = find(selection_.time_column, "time column");
         else out_.time = found_time();
+        if (!out_.time && shape_.rate) {
+            out_.rate = shape_.rate->value;
+            return;
+        }
         if (!out_.time && shape_.names.size() == 1)
             fail(
                 "there is only one column, and it holds no time; state the rate of the rows, as --sample-rate \"3.2 "
@@ -108,26 +101,24 @@ private:
     }
 
     void choose_time_unit() {
-        constexpr std::array<std::pair<std::string_view, double>, 4> units{
-            {{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"s", 1.0}}};
         if (!selection_.time_unit.empty()) {
-            for (const auto& [unit, seconds] : units)
-                if (selection_.time_unit == unit) {
-                    out_.unit = unit, out_.seconds = seconds;
-                    return;
-                }
-            throw Error(
-                fmt::format("{}: the unit of time must be s, ms, us or ns, not '{}'", file_, selection_.time_unit));
+            const auto found = std::ranges::find(time_units(), selection_.time_unit, &TimeUnit::symbol);
+            if (found == time_units().end())
+                throw Error(
+                    fmt::format("{}: the unit of time must be s, ms, us or ns, not '{}'", file_, selection_.time_unit));
+            out_.unit = *found;
+            return;
         }
         const NamedColumn& column = out_.named[*out_.time];
         std::optional<ColumnUnit> unit = column.unit;
         if (!unit) unit = parse_column_unit(column.name);
-        out_.is_unit_stated = unit && unit->is_time();
-        if (!out_.is_unit_stated) return;
-        out_.unit = unit->text;
-        out_.seconds = unit->si;
-        for (const auto& [symbol, seconds] : units)
-            if (std::abs(out_.seconds / seconds - 1.0) < 1e-9) out_.unit = symbol;
+        if (!unit || !unit->is_time()) {
+            if (shape_.header_line > 0) out_.unit = time_unit_in_name(shape_.names[*out_.time]);
+            return;
+        }
+        out_.unit = TimeUnit{unit->text, unit->si};
+        for (const TimeUnit& known : time_units())
+            if (std::abs(unit->si / known.seconds - 1.0) < 1e-9) out_.unit = known;
     }
 
     /// The axes of the sensor that most probably measured the vibration.
@@ -160,7 +151,7 @@ private:
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
             // With a stated rate a column of times is no vibration.
-            if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && speaks_of_time(out_.named[i].name))
+            if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && is_time_name(out_.named[i].name))
                 continue;
             numbers.push_back(i);
             const auto& unit = out_.named[i].unit;

@@ -97,7 +97,7 @@ TEST_CASE("times of day are read and go on at midnight") {
 }
 
 TEST_CASE("a clock that is set in the middle of a log is one clear error") {
-    CHECK_THROWS_WITH(read_logger("t,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
+    CHECK_THROWS_WITH(read_logger("t_s,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
                       ContainsSubstring("l.csv:4:1") && ContainsSubstring("more than a day"));
 }
 
@@ -221,4 +221,17 @@ TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors 
     log = read_logger("x-axis,1\nsecond,Volt\n0,0.5\n1e-5,0.25\n");
     CHECK(log.units[0]->is_voltage());
     CHECK(log.times[1] == 1e-5);
+}
+
+TEST_CASE("a rate that stands above the rows is used without times, and decides their unit") {
+    using namespace std::string_literals;
+    for (const std::string& line : {"# sample rate: 1.6 kHz"s, "Sampling frequency [Hz]: 1600"s, "% fs ; samplerate = 1600"s,
+                                   "# Sample Interval: 0.625 ms"s, "# Abtastrate 1600 Hz"s}) {
+        CAPTURE(line);
+        const table::SampleLog log = read_logger(line + "\nax\n1.5\n2.5\n3.5\n");
+        CHECK(log.times[1] == Approx(1.0 / 1600.0));
+        CHECK_THAT(table::describe(log.form), ContainsSubstring("1600 Hz, as line 1 states"));
+    }
+    CHECK(read_logger("# sample rate: 50000 Hz\nt,ax\n0.02,1\n0.04,2\n0.06,3\n").times[0] == Approx(2e-5));
+    CHECK(read_logger("# sample rate: 50 Hz\nt,ax\n0.02,1\n0.04,2\n0.06,3\n").times[0] == Approx(0.02));
 }
