@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -34,6 +35,8 @@ public:
         }
         choose_time();
         choose_values();
+        choose_clock();
+        choose_sources();
         return std::move(out_);
     }
 
@@ -144,15 +147,76 @@ private:
         return families.front().second;
     }
 
+    /// A column of times is no vibration.
+    bool is_clock(std::size_t i) const {
+        return shape_.header_line > 0 && shape_.names.size() > 1 && can_be_time(i) &&
+               (is_time_name(out_.named[i].name) || (out_.named[i].unit && out_.named[i].unit->is_time()));
+    }
+
+    /// In "t1, a1, t2, a2" every channel follows the clock to its left.
+    void choose_clock() {
+        if (!out_.time || !selection_.time_column.empty()) return;
+        for (const std::size_t value : out_.values) {
+            std::size_t clock = *out_.time;
+            for (std::size_t i = 0; i < value; ++i)
+                if (is_clock(i) && i + 1 < shape_.names.size() && !is_clock(i + 1) && shape_.kinds[i] == CellKind::number)
+                    clock = i;
+            // Several clocks side by side, before all values: the first counts.
+            bool is_between = clock == *out_.time;
+            for (std::size_t i = *out_.time + 1; i < clock; ++i) is_between = is_between || !is_clock(i);
+            if (!is_between) clock = *out_.time;
+            if (std::ranges::find(out_.clocks, clock) == out_.clocks.end()) out_.clocks.push_back(clock);
+        }
+        if (out_.clocks.size() == 1 && out_.clocks.front() != *out_.time) {
+            out_.time = out_.clocks.front();
+            choose_time_unit();
+        }
+        if (out_.clocks.size() < 2) out_.clocks.clear();
+    }
+
+public:
+    static bool names_source(std::string_view name) {
+        const std::string word = lower(name);
+        constexpr std::array<std::string_view, 18> sensors{"sensor", "device", "node", "instance", "imu", "source",
+                                                           "address", "addr", "mac", "probe", "sensortype", "sensorid",
+                                                           "deviceid", "i", "id", "channel", "type", "kanal"};
+        if (std::ranges::find(sensors, word) != sensors.end()) return true;
+        bool is_sensor = false, is_number = false;
+        for (std::size_t at = 0; at < word.size();) {
+            const std::size_t end = std::min(word.find_first_of(" _-.:/", at), word.size());
+            const std::string_view part = std::string_view(word).substr(at, end - at);
+            is_sensor = is_sensor || std::ranges::find(sensors, part) != sensors.end();
+            is_number = is_number || part == "id" || part == "name" || part == "nr" || part == "no" || part == "number" ||
+                        part == "index" || part == "type";
+            at = end + 1;
+        }
+        return is_sensor && is_number;
+    }
+
+private:
+    void choose_sources() {
+        if (!selection_.where.empty()) {
+            const std::size_t sign = selection_.where.find('=');
+            if (sign == std::string::npos)
+                throw Error(fmt::format("{}: --where needs COLUMN=VALUE, not '{}'", file_, selection_.where));
+            out_.where = find(selection_.where.substr(0, sign), "column");
+            out_.wanted = selection_.where.substr(sign + 1);
+        }
+        if (shape_.header_line == 0) return;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i) {
+            if (i == out_.time || i == out_.where || std::ranges::find(out_.values, i) != out_.values.end()) continue;
+            if (shape_.kinds[i] == CellKind::word || (shape_.kinds[i] == CellKind::number && names_source(shape_.names[i])))
+                out_.sources.push_back(i);
+        }
+    }
+
     void choose_values() {
         for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
         if (!out_.values.empty()) return;
         std::vector<std::size_t> numbers, accelerations;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
-            // With a stated rate a column of times is no vibration.
-            if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && is_time_name(out_.named[i].name))
-                continue;
+            if (is_clock(i)) continue;
             numbers.push_back(i);
             const auto& unit = out_.named[i].unit;
             if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
@@ -177,6 +241,8 @@ private:
 };
 
 }  // namespace
+
+bool is_source_name(std::string_view name) { return Chooser::names_source(name); }
 
 LogColumns choose_log_columns(const LogShape& shape, const std::vector<std::string_view>& first_row,
                               const std::string& file, const LogSelection& selection) {

@@ -19,6 +19,8 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -51,8 +53,10 @@ public:
             split_fields(line, shape_.separator, fields_);
             if (is_first) choose();
             is_first = false;
-            row(line, lines.at_end());
+            if (is_selected()) row(line, lines.at_end());
         }
+        check_sources();
+        check_clocks();
         if (const auto doubt = sign_.doubt()) fail_at(doubt->line, 1, doubt->why);
         if (log_.times.empty()) fail_at(0, 0, "there is no row with a number in every chosen column");
         settle_time_unit();
@@ -80,10 +84,93 @@ private:
             needed_ = std::max(needed_, *columns_.time);
         }
         log_.columns.resize(columns_.values.size());
+        for (const std::size_t column : columns_.sources) sources_.push_back({column, {}, {}, 0});
+        clock_times_.resize(columns_.clocks.size());
+    }
+
+    bool is_selected() {
+        if (!columns_.where) return true;
+        if (*columns_.where >= fields_.size()) return false;
+        const std::string_view field = fields_[*columns_.where];
+        if (field == columns_.wanted) return true;
+        const std::optional<double> number = sign_.parse(field), wanted = sign_.parse(columns_.wanted);
+        return number && wanted && *number == *wanted;
+    }
+
+    /// Rows from several sensors in turn have a column that says which.
+    struct Source {
+        std::size_t column;
+        std::map<std::string, std::size_t, std::less<>> rows;  // of each value
+        std::string last;
+        std::size_t changes;
+    };
+    static constexpr std::size_t most_sources = 64;
+
+    void note_sources() {
+        for (Source& source : sources_) {
+            if (source.rows.size() > most_sources || source.column >= fields_.size()) continue;
+            const std::string_view field = fields_[source.column];
+            if (field.empty()) continue;
+            const auto found = source.rows.find(field);
+            if (found != source.rows.end()) ++found->second;
+            else source.rows.emplace(std::string(field), 1);
+            if (field == source.last) continue;
+            if (!source.last.empty()) ++source.changes;
+            source.last = field;
+        }
+    }
+
+    [[noreturn]] void refuse_sources(const Source& source) const {
+        std::vector<std::string> values;
+        for (const auto& [value, rows] : source.rows)
+            if (values.size() < 8) values.push_back(fmt::format("{} ({} rows)", as_utf8(value), rows));
+        const std::string& name = shape_.names[source.column];
+        fail_at(shape_.header_line, static_cast<int>(source.column) + 1,
+                fmt::format("the rows are from {} sensors, by column '{}': {}; choose one, as --where \"{}={}\"",
+                            source.rows.size(), name, fmt::join(values, ", "), name,
+                            as_utf8(source.rows.begin()->first)));
+    }
+
+    void check_sources() const {
+        for (const Source& source : sources_) {
+            const std::size_t values = source.rows.size();
+            if (values < 2 || values > most_sources || 2 * values > rows_) continue;
+            const bool is_named = is_source_name(shape_.names[source.column]);
+            // Words that change all the time, in a column of any name.
+            if (is_named || (values <= 8 && 5 * source.changes > rows_)) refuse_sources(source);
+        }
+    }
+
+    void check_clocks() const {
+        std::vector<double> steps;
+        for (const std::vector<double>& times : clock_times_) steps.push_back(mean_step(times));
+        for (std::size_t i = 1; i < steps.size(); ++i) {
+            if (clock_times_[i].size() < 3 || steps[0] <= 0.0) continue;
+            // The units may differ.
+            double ratio = steps[i] / steps[0];
+            while (ratio > 31.6) ratio *= 1e-3;
+            while (ratio > 0.0 && ratio < 0.0316) ratio *= 1e3;
+            if (std::abs(ratio - 1.0) < 0.02) continue;
+            std::vector<std::string> names;
+            for (const std::size_t column : columns_.clocks) names.push_back(shape_.names[column]);
+            fail_at(shape_.header_line, static_cast<int>(columns_.clocks[i]) + 1,
+                    fmt::format("the columns follow clocks of different rates: {}; choose one with --time-column, or columns "
+                                "that follow one clock with --column; there are {}",
+                                fmt::join(names, ", "), fmt::join(shape_.names, ", ")));
+        }
+    }
+
+    void note_clocks() {
+        for (std::size_t i = 0; i < clock_times_.size(); ++i)
+            if (columns_.clocks[i] < fields_.size() && clock_times_[i].size() < 100'000)
+                if (const std::optional<double> time = sign_.parse(fields_[columns_.clocks[i]]))
+                    clock_times_[i].push_back(*time);
     }
 
     void row(std::string_view line, bool is_last) {
         const auto index = static_cast<double>(rows_++);
+        note_sources();
+        note_clocks();
         if (fields_.size() <= needed_) {
             // A logger that lost power may leave an incomplete last line.
             if (!is_last)
@@ -114,6 +201,11 @@ private:
     void note_advance(double time, std::string_view line) {
         const double last = log_.times.back();
         const int column = columns_.time ? static_cast<int>(fields_[*columns_.time].data() - line.data()) + 1 : 1;
+        if (time < last)
+            for (const Source& source : sources_)
+                if (source.changes > 0 && source.rows.size() <= most_sources &&
+                    (is_source_name(shape_.names[source.column]) || source.rows.size() <= 8))
+                    refuse_sources(source);
         if (time < last)
             fail_at(line_, column,
                     fmt::format("time runs backwards, from {} to {}; cut the file there{}", time_text(last),
@@ -314,6 +406,8 @@ private:
     int line_ = 0;
     std::vector<std::string_view> fields_;
     std::vector<double> values_;
+    std::vector<Source> sources_;
+    std::vector<std::vector<double>> clock_times_;
     // Times of the clock.
     bool has_clock_ = false, has_numbers_ = false, has_day_ = false, has_zone_ = false;
     std::int64_t first_day_ = 0;

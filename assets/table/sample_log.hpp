@@ -20,6 +20,7 @@ struct LogSelection {
     std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else the only plausible one
     std::optional<int> skip_rows = std::nullopt;  ///< lines before the names; none: found
     std::optional<double> rate = std::nullopt;    ///< Hz: rows follow at this rate, no time column is read
+    std::string where{};  ///< "SENSOR=2": only rows with this value in this column; empty: all rows
 };
 
 /// What was understood of the form of a log, so that a wrong guess is seen.
@@ -53,7 +54,8 @@ struct SampleLog {
 /// '%' or "//". With semicolons, tabs or one column a number may have a decimal comma; thousands separators, and numbers
 /// that could have one, are refused. Times are numbers, ISO 8601 or times of day; at midnight a time of day goes on. A
 /// row with an empty field or "nan" counts as lost. A unit of time that is neither stated nor named is the only one that
-/// makes the rate plausible (`guess_time_unit`); if there is no such unit the log is refused. Throws Error with file:line:column.
+/// makes the rate plausible (`guess_time_unit`); if there is no such unit the log is refused. So is a log that
+/// holds several sensors in turn, unless `where` chooses one, or chosen columns with clocks of different rates. Throws Error with file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
 /// The same for a file of at most 4 GiB.
