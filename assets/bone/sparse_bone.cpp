@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/sparse_bone.hpp"
 
+#include "assets/bone/from_hu.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -129,6 +130,10 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
                     for (int x = 0; x < std::min(side, cells.size[0]); ++x) {
                         if (!(cells.at(x, y, z) < 0.0f)) continue;
                         const double density = block->density[sample_index(x, y, z)];
+                        if (density > max_bone_density) {
+                            ++part.metal;
+                            continue;
+                        }
                         part.mean += density;
                         part.least = std::min(part.least, density);
                         part.most = std::max(part.most, density);
@@ -153,8 +158,10 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
         all.least = std::min(all.least, part.least);
         all.most = std::max(all.most, part.most);
         all.inside += part.inside;
+        all.metal += part.metal;
     }
     if (all.inside > 0) all.mean /= static_cast<double>(all.inside);
+    else all.least = all.most = all.mean = all.metal > 0 ? max_bone_density : 0.0;
     return all;
 }
 

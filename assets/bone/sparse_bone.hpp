@@ -53,7 +53,7 @@ volume::Grid dense_distance_of(const SparseBone& sparse);
 /// Volume (m³) and area (m²) of the surface, and statistics of the density inside.
 struct BoneMeasures {
     double volume = 0.0, area = 0.0, least = 0.0, most = 0.0, mean = 0.0;
-    std::size_t inside = 0;
+    std::size_t inside = 0, metal = 0;  ///< samples of bone, and denser ones, which the densities leave out
 };
 BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run = run_in_turn);
 
