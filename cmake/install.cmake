@@ -11,10 +11,15 @@ set_property(SOURCE tools/session/load_plan.cpp APPEND PROPERTY
 install(TARGETS tactus tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Not for users to call: the command finds it from its own place.
-install(TARGETS tactus-device-host RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tactus)
+install(TARGETS tactus-device-host tactus-scan-decoder RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tactus)
 file(RELATIVE_PATH programs_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tactus)
-set_property(SOURCE devices/hosted/host_process.cpp APPEND PROPERTY
+set_property(SOURCE devices/hosted/host_process.cpp assets/volume/dicom_reader.cpp APPEND PROPERTY
              COMPILE_DEFINITIONS TACTUS_INSTALLED_PROGRAMS="${programs_from_command}")
+
+install(TARGETS tactus-openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus)
+file(RELATIVE_PATH modules_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/tactus)
+set_property(SOURCE assets/file/module.cpp APPEND PROPERTY
+             COMPILE_DEFINITIONS TACTUS_INSTALLED_MODULES="${modules_from_command}")
 
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")

@@ -12,6 +12,8 @@ add_library(tactus_flags INTERFACE)
 target_compile_options(tactus_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Woverloaded-virtual
   -ffp-contract=off -fno-omit-frame-pointer)
+# A program loads the libraries that it calls, not all that its rooms may call.
+target_link_options(tactus_flags INTERFACE -Wl,--as-needed)
 if(TACTUS_UNITY)
   # A class of one .cpp may have a member of a type of its unnamed namespace (gcc takes the .cpp for a header), and names
   # of one .cpp may be local ones of another. Builds with clang or sanitizers warn of both within a file.
@@ -120,7 +122,7 @@ function(tactus_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.cpp)
   # Programs of their own.
   list(FILTER sources EXCLUDE REGEX "/(main|make_library)\\.cpp$")
-  list(FILTER sources EXCLUDE REGEX "/tools/bench/")
+  list(FILTER sources EXCLUDE REGEX "/tools/bench/|/assets/bone/openvdb/")
   if(NOT sources)
     file(WRITE ${CMAKE_BINARY_DIR}/empty_${name}.cpp "")
     set(sources ${CMAKE_BINARY_DIR}/empty_${name}.cpp)
@@ -133,4 +135,15 @@ function(tactus_room name)
   endif()
   tactus_precompile(tactus_${name} ${ROOM_PRECOMPILE})
   tactus_unite(tactus_${name} ${ROOM_ALONE})
+endfunction()
+
+# tactus_module(NAME SOURCE ... LINKS ...): a part of the program that file::load_module() loads from beside the program on first
+# use, because the libraries that it LINKS take longer to load than most commands run. It does not link its room, whose
+# united files would bring the room's other libraries.
+function(tactus_module name)
+  cmake_parse_arguments(MODULE "" "" "LINKS" ${ARGN})
+  add_library(${name} MODULE ${MODULE_UNPARSED_ARGUMENTS})
+  set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+  target_link_libraries(${name} PRIVATE ${MODULE_LINKS} tactus_flags)
+  target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL)
 endfunction()

@@ -21,6 +21,9 @@ struct BoneSurface {
     bool fill = true;          ///< closed hollows count as bone; they keep their low density
 };
 
+/// Above it lies no bone (enamel reaches 2900 to 3000 kg/m³): fillings, implants, or artefacts beside them. kg/m³.
+inline constexpr double max_bone_density = 3000.0;
+
 /// Density in kg/m³ from HU by the default linear relation, at least 0. No density phantom was in the scan.
 float density_of_hu(float hu);
 /// The inverse of density_of_hu for densities above 0, HU.

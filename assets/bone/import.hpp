@@ -24,6 +24,7 @@ struct ImportOptions {
     std::string series;                 ///< DICOM: the series to read, by its UID or the end of it
     /// HU; samples at or above it are bone. Default: suggested_threshold of the whole volume, which `info` prints.
     std::optional<double> threshold;
+    bool fill_gaps = false;             ///< DICOM: interpolate where slices are missing; else such a series is refused
     std::string crop;  ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
     /// "largest", "all", or the number of components to keep, largest first. Default: of a label all, else the largest.
     std::string component;
@@ -55,6 +56,7 @@ struct ImportSummary {
     struct {
         double min = 0.0, max = 0.0, mean = 0.0;
     } density;  ///< kg/m³ over the samples inside
+    double metal_mm3 = 0.0;  ///< inside, above max_bone_density (fillings, implants); left out of `density`
     std::size_t components = 0;  ///< found, before selection
     struct {
         std::optional<double> hu;  ///< of a CT; none for meshes and label maps

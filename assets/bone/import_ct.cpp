@@ -105,11 +105,12 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     source.set_line(options.rescale);
     const auto check = [&] {
         source.settle();
-        if (about.kind == volume::VolumeKind::labels && !options.rescale)
+        if (about.kind != volume::VolumeKind::ct && !options.rescale)
             throw Error(
-                fmt::format("{}: this is a label map, not a CT. Choose the bone with --label and its number or name, "
+                fmt::format("{}: this {} a label map, not a CT. Choose the bone with --label and its number or name, "
                             "or make one bone per label with --label all ({})",
-                            options.input.string(), list_of_labels(about, source.tally())));
+                            options.input.string(), about.kind == volume::VolumeKind::labels ? "is" : "may be",
+                            list_of_labels(about, source.tally())));
         require_hu(about, source.tally(), options, options.input);
     };
     if (source.is_turned()) check();

@@ -120,6 +120,23 @@ volume::Grid part_around(volume::ReorientedVolume& source, const volume::Grid& l
     return volume::part_of(source, low, high);
 }
 
+/// One layer of a label map; a map without layers is one.
+struct LabelLayer {
+    int layer;
+    std::unique_ptr<volume::ReorientedVolume> source;
+    std::map<int, volume::Components::Box> boxes;
+};
+
+LabelLayer read_labels(volume::SliceReader& reader, int layer, const RunJobs& run) {
+    reader.show_layer(layer);
+    LabelLayer made{layer, std::make_unique<volume::ReorientedVolume>(reader, run), {}};
+    reader.about.kind = volume::VolumeKind::labels;
+    if (made.source->is_turned()) made.source->settle();
+    made.boxes = boxes_of(*made.source);
+    made.source->settle();
+    return made;
+}
+
 }  // namespace
 
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress) {
@@ -130,13 +147,21 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     const std::string file = options.input.string();
     report(0.0, "reading");
     const std::unique_ptr<volume::SliceReader> reader = open_scan(options.input, options, options.series);
-    volume::ReorientedVolume source(*reader, options.run);
-    reader->about.kind = volume::VolumeKind::labels;
-    if (source.is_turned()) source.settle();
-    const std::map<int, volume::Components::Box> boxes = boxes_of(source);
-    source.settle();
-    const std::vector<volume::Segment> chosen =
-        choose_segments(options.label, labels_of(source.tally(), file), reader->about.segments, file);
+    const std::vector<std::string> notes = reader->about.notes;
+    // Overlapping segments lie in layers: each is read from its own, so that none loses voxels to another.
+    std::vector<LabelLayer> layers;
+    std::vector<int> labels;
+    for (int layer = 0; layer < reader->layer_count(); ++layer) {
+        layers.push_back(read_labels(*reader, layer, options.run));
+        const std::vector<int> found = labels_of(layers.back().source->tally(), file);
+        labels.insert(labels.end(), found.begin(), found.end());
+    }
+    std::ranges::sort(labels);
+    const std::vector<volume::Segment> chosen = choose_segments(options.label, labels, reader->about.segments, file);
+    std::vector<std::string> empty;
+    for (const volume::Segment& segment : reader->about.segments)
+        if (!std::ranges::binary_search(labels, segment.label))
+            empty.push_back(segment.name.empty() ? fmt::format("label {}", segment.label) : segment.name);
     LabelBone how;
     how.spacing = options.spacing;
     // One label of many: maps of whole bodies have muscles and organs around it.
@@ -154,11 +179,20 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         how.hu_is_masked = hu == volume::HuKind::masked;
     }
     const std::string source_hash = hash_of_source(options.input);
+    // What reading the values added, as of voxels that are not numbers.
+    std::vector<std::string> settled;
+    for (std::size_t n = notes.size(); n < reader->about.notes.size(); ++n)
+        if (std::ranges::find(settled, reader->about.notes[n]) == settled.end())
+            settled.push_back(reader->about.notes[n]);
     std::vector<ImportedBone> bones;
     for (const volume::Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
         // One label at a time is in memory.
-        const volume::Components::Box& box = boxes.at(segment.label);
+        const auto of_label = std::ranges::find_if(
+            layers, [&](const LabelLayer& each) { return each.boxes.contains(segment.label); });
+        reader->show_layer(of_label->layer);
+        volume::ReorientedVolume& source = *of_label->source;
+        const volume::Components::Box& box = of_label->boxes.at(segment.label);
         volume::Grid map = part_around(source, source.layout(), box, 0);
         const std::size_t parts = keep > 0 ? keep_parts(map, segment.label, keep) : 0;
         const volume::Grid values = ct ? part_around(*ct, source.layout(), box, 4) : volume::Grid{};
@@ -166,7 +200,11 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         ImportedBone made;
         made.bone = bone_of_label(map, segment, how, options.run);
         made.summary.hu = volume::name_of(hu);
-        made.summary.notes = reader->about.notes;
+        made.summary.notes = notes;
+        made.summary.notes.insert(made.summary.notes.end(), settled.begin(), settled.end());
+        if (!empty.empty())
+            made.summary.notes.push_back(fmt::format("of {} named segments {} have no voxels: {}",
+                                                     reader->about.segments.size(), empty.size(), fmt::join(empty, ", ")));
         made.summary.components = keep > 0 ? parts : pieces_of(made.bone.distance);
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);

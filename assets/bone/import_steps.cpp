@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import_steps.hpp"
 
+#include "assets/bone/from_hu.hpp"
 #include "assets/bone/surface_points.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
@@ -80,11 +81,24 @@ std::unique_ptr<volume::SliceReader> open_scan(const std::filesystem::path& path
                                                const std::string& series) {
     if (options.mesh_density)
         throw Error(fmt::format("{}: --density is for meshes; a scan has its own", path.string()));
-    std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series, options.unit});
+    std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series, options.unit, options.fill_gaps});
     if (const std::string question = volume::unit_question(reader->about); !question.empty())
         throw Error(fmt::format("{}: {}", path.string(), question));
     return reader;
 }
+
+namespace {
+
+/// Fillings and implants are normal in jaws: the import goes on, and says how much there is.
+void note_metal(std::size_t samples, const Vec3& spacing, ImportSummary& summary) {
+    if (samples == 0) return;
+    summary.metal_mm3 = static_cast<double>(samples) * spacing.x * spacing.y * spacing.z / (mm * mm * mm);
+    summary.notes.push_back(fmt::format("{} voxels ({:.3g} mm³) are denser than {:.0f} kg/m³, as metal is; they are "
+                                        "counted separately from the density of the bone",
+                                        samples, summary.metal_mm3, max_bone_density));
+}
+
+}  // namespace
 
 void measure(const Bone& bone, ImportSummary& summary) {
     const geometry::TriangleSurface surface = geometry::iso_surface(bone.distance, 0.0f, false);
@@ -95,17 +109,23 @@ void measure(const Bone& bone, ImportSummary& summary) {
     summary.bone_volume_mm3 = mesh::volume_of(surface) / (mm * mm * mm);
     summary.surface_area_mm2 = mesh::area_of(surface) / (mm * mm);
     double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = 0.0;
-    std::size_t inside = 0;
+    std::size_t inside = 0, metal = 0;
     for (std::size_t n = 0; n < bone.distance.values.size(); ++n) {
         if (n % (1 << 20) == 0) leave_if_stopped();
         if (bone.distance.values[n] >= 0.0f) continue;
         const double density = bone.density.values[n];
+        if (density > max_bone_density) {
+            ++metal;
+            continue;
+        }
         sum += density;
         low = std::min(low, density);
         high = std::max(high, density);
         ++inside;
     }
-    if (inside == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    note_metal(metal, bone.distance.spacing, summary);
+    if (inside + metal == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    if (inside == 0) low = high = max_bone_density, sum = high * static_cast<double>(inside = metal);
     summary.density.min = low;
     summary.density.max = high;
     summary.density.mean = sum / static_cast<double>(inside);
@@ -113,7 +133,8 @@ void measure(const Bone& bone, ImportSummary& summary) {
 
 void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run) {
     const BoneMeasures found = measures_of(bone, run);
-    if (found.inside == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    note_metal(found.metal, bone.layout.spacing, summary);
+    if (found.inside + found.metal == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
     summary.frame = "LPS";
     summary.size = bone.layout.size;
     for (int axis = 0; axis < 3; ++axis)

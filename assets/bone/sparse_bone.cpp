@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/sparse_bone.hpp"
 
+#include "assets/bone/from_hu.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -47,17 +48,6 @@ SparseBone::SparseBone(volume::Grid size_and_place, float outside_of_blocks)
     layout.values.clear();
     const auto [x, y, z] = blocks_per_axis();
     blocks.resize(static_cast<std::size_t>(x) * static_cast<std::size_t>(y) * static_cast<std::size_t>(z));
-}
-
-std::array<int, 3> SparseBone::blocks_per_axis() const {
-    return {(layout.size[0] + side - 1) / side, (layout.size[1] + side - 1) / side, (layout.size[2] + side - 1) / side};
-}
-
-std::size_t SparseBone::block_index(int bx, int by, int bz) const {
-    const auto per_axis = blocks_per_axis();
-    return (static_cast<std::size_t>(bz) * static_cast<std::size_t>(per_axis[1]) + static_cast<std::size_t>(by)) *
-               static_cast<std::size_t>(per_axis[0]) +
-           static_cast<std::size_t>(bx);
 }
 
 std::size_t SparseBone::stored() const {
@@ -140,6 +130,10 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
                     for (int x = 0; x < std::min(side, cells.size[0]); ++x) {
                         if (!(cells.at(x, y, z) < 0.0f)) continue;
                         const double density = block->density[sample_index(x, y, z)];
+                        if (density > max_bone_density) {
+                            ++part.metal;
+                            continue;
+                        }
                         part.mean += density;
                         part.least = std::min(part.least, density);
                         part.most = std::max(part.most, density);
@@ -164,8 +158,10 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
         all.least = std::min(all.least, part.least);
         all.most = std::max(all.most, part.most);
         all.inside += part.inside;
+        all.metal += part.metal;
     }
     if (all.inside > 0) all.mean /= static_cast<double>(all.inside);
+    else all.least = all.most = all.mean = all.metal > 0 ? max_bone_density : 0.0;
     return all;
 }
 

@@ -6,6 +6,7 @@
 #include "dsp/core/jobs.hpp"
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -26,8 +27,16 @@ struct SparseBone {
     std::vector<std::unique_ptr<Block>> blocks;  ///< x fastest
 
     explicit SparseBone(volume::Grid size_and_place = {}, float outside_of_blocks = 0.0f);
-    std::array<int, 3> blocks_per_axis() const;
-    std::size_t block_index(int bx, int by, int bz) const;
+    std::array<int, 3> blocks_per_axis() const {
+        const auto blocks_along = [&](std::size_t axis) { return (layout.size[axis] + side - 1) / side; };
+        return {blocks_along(0), blocks_along(1), blocks_along(2)};
+    }
+    std::size_t block_index(int bx, int by, int bz) const {
+        const auto per_axis = blocks_per_axis();
+        return (static_cast<std::size_t>(bz) * static_cast<std::size_t>(per_axis[1]) + static_cast<std::size_t>(by)) *
+                   static_cast<std::size_t>(per_axis[0]) +
+               static_cast<std::size_t>(bx);
+    }
     std::size_t stored() const;  ///< blocks
 
     /// Adds layers. They start at a block border and end at one or at the last layer. Stores the blocks that have a
@@ -44,7 +53,7 @@ volume::Grid dense_distance_of(const SparseBone& sparse);
 /// Volume (m³) and area (m²) of the surface, and statistics of the density inside.
 struct BoneMeasures {
     double volume = 0.0, area = 0.0, least = 0.0, most = 0.0, mean = 0.0;
-    std::size_t inside = 0;
+    std::size_t inside = 0, metal = 0;  ///< samples of bone, and denser ones, which the densities leave out
 };
 BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run = run_in_turn);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/plan_lock.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fcntl.h>
@@ -10,14 +11,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 
 namespace tactus::cases {
 
 namespace {
 
-constexpr useconds_t pause_us = 20'000;
+constexpr std::int64_t pause_ns = 20'000'000;
 
 /// The previous holder of the lock may have removed its file.
 bool is_still_there(int handle, const std::filesystem::path& file) {
@@ -30,7 +30,7 @@ bool is_still_there(int handle, const std::filesystem::path& file) {
 
 PlanLock::PlanLock(const std::filesystem::path& plan, std::chrono::milliseconds patience)
     : file_(plan.parent_path() / ("." + plan.filename().string() + ".lock")) {
-    const auto until = std::chrono::steady_clock::now() + patience;
+    const std::int64_t until = steady_ns() + std::chrono::nanoseconds(patience).count();
     for (;;) {
         handle_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (handle_ < 0) throw Error(fmt::format("{}: cannot be changed: {}", plan.string(), std::strerror(errno)));
@@ -38,12 +38,12 @@ PlanLock::PlanLock(const std::filesystem::path& plan, std::chrono::milliseconds 
             if (is_still_there(handle_, file_)) return;
         } else if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks
         ::close(handle_);
-        if (std::chrono::steady_clock::now() > until)
+        if (steady_ns() > until)
             throw Error(
                 fmt::format("{}: another program (a run or another 'tactus plan') is changing this plan; nothing was "
                             "changed, try again when it has ended",
                             plan.string()));
-        ::usleep(pause_us);
+        sleep_for(pause_ns);
     }
 }
 

@@ -175,6 +175,7 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
                                 .shortest_step = even.shortest_step,
                                 .longest_step = even.longest_step,
                                 .step_deviation = deviation_of_steps(log.times, even.longest_step),
+                                .clock_step = even.clock_step,
                                 .levels = {},
                                 .at_limit = {},
                                 .form = log.form,

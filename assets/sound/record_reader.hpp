@@ -22,6 +22,7 @@ struct LogFacts {
     double lost_seconds = 0.0;
     double shortest_step = 0.0, longest_step = 0.0;  ///< s
     double step_deviation = 0.0;         ///< s, standard deviation of the steps without gaps
+    double clock_step = 0.0;             ///< s, of a coarse clock whose rounded times were taken as even; 0: none
     std::vector<signal::Level> levels;   ///< per channel, of the rows themselves, calibrated
     std::vector<std::size_t> at_limit;  ///< rows at the ends of 16 bits in a channel of whole numbers
     table::LogForm form;

@@ -20,17 +20,6 @@ namespace tactus::table {
 
 namespace {
 
-bool speaks_of_time(const std::string& name) {
-    const std::string word = lower(name);
-    for (const std::string_view known :
-         {"t", "seconds", "second", "sec", "s", "ms", "us", "millis", "micros", "zeit", "zeitstempel", "temps", "tid",
-          "tiempo", "tempo", "x_value", "datetime", "uptime"})
-        if (word == known) return true;
-    return word.starts_with("t_") || word.starts_with("time") || word.starts_with("elapsed") ||
-           word.starts_with("date/time") || word.starts_with("date time") || word.ends_with(" time") ||
-           word.ends_with("_time");
-}
-
 class Chooser {
 public:
     Chooser(const LogShape& shape, const std::vector<std::string_view>& first_row, const std::string& file,
@@ -46,6 +35,8 @@ public:
         }
         choose_time();
         choose_values();
+        choose_clock();
+        choose_sources();
         return std::move(out_);
     }
 
@@ -79,7 +70,7 @@ private:
     std::optional<std::size_t> found_time() const {
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) &&
-                (shape_.header_line > 0 ? speaks_of_time(out_.named[i].name) : shape_.names.size() > 1))
+                (shape_.header_line > 0 ? is_time_name(out_.named[i].name) : shape_.names.size() > 1))
                 return i;
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) && shape_.kinds[i] == CellKind::time) return i;
@@ -91,10 +82,15 @@ private:
     void choose_time() {
         if (selection_.rate) {
             if (!selection_.time_column.empty()) fail("a rate and a time column are stated; state one of them");
+            out_.rate = *selection_.rate;
             return;
         }
         if (!selection_.time_column.empty()) out_.time = find(selection_.time_column, "time column");
         else out_.time = found_time();
+        if (!out_.time && shape_.rate) {
+            out_.rate = shape_.rate->value;
+            return;
+        }
         if (!out_.time && shape_.names.size() == 1)
             fail(
                 "there is only one column, and it holds no time; state the rate of the rows, as --sample-rate \"3.2 "
@@ -108,26 +104,24 @@ private:
     }
 
     void choose_time_unit() {
-        constexpr std::array<std::pair<std::string_view, double>, 4> units{
-            {{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"s", 1.0}}};
         if (!selection_.time_unit.empty()) {
-            for (const auto& [unit, seconds] : units)
-                if (selection_.time_unit == unit) {
-                    out_.unit = unit, out_.seconds = seconds;
-                    return;
-                }
-            throw Error(
-                fmt::format("{}: the unit of time must be s, ms, us or ns, not '{}'", file_, selection_.time_unit));
+            const auto found = std::ranges::find(time_units(), selection_.time_unit, &TimeUnit::symbol);
+            if (found == time_units().end())
+                throw Error(
+                    fmt::format("{}: the unit of time must be s, ms, us or ns, not '{}'", file_, selection_.time_unit));
+            out_.unit = *found;
+            return;
         }
         const NamedColumn& column = out_.named[*out_.time];
         std::optional<ColumnUnit> unit = column.unit;
         if (!unit) unit = parse_column_unit(column.name);
-        out_.is_unit_stated = unit && unit->is_time();
-        if (!out_.is_unit_stated) return;
-        out_.unit = unit->text;
-        out_.seconds = unit->si;
-        for (const auto& [symbol, seconds] : units)
-            if (std::abs(out_.seconds / seconds - 1.0) < 1e-9) out_.unit = symbol;
+        if (!unit || !unit->is_time()) {
+            if (shape_.header_line > 0) out_.unit = time_unit_in_name(shape_.names[*out_.time]);
+            return;
+        }
+        out_.unit = TimeUnit{unit->text, unit->si};
+        for (const TimeUnit& known : time_units())
+            if (std::abs(unit->si / known.seconds - 1.0) < 1e-9) out_.unit = known;
     }
 
     /// The axes of the sensor that most probably measured the vibration.
@@ -153,15 +147,76 @@ private:
         return families.front().second;
     }
 
+    /// A column of times is no vibration.
+    bool is_clock(std::size_t i) const {
+        return shape_.header_line > 0 && shape_.names.size() > 1 && can_be_time(i) &&
+               (is_time_name(out_.named[i].name) || (out_.named[i].unit && out_.named[i].unit->is_time()));
+    }
+
+    /// In "t1, a1, t2, a2" every channel follows the clock to its left.
+    void choose_clock() {
+        if (!out_.time || !selection_.time_column.empty()) return;
+        for (const std::size_t value : out_.values) {
+            std::size_t clock = *out_.time;
+            for (std::size_t i = 0; i < value; ++i)
+                if (is_clock(i) && i + 1 < shape_.names.size() && !is_clock(i + 1) && shape_.kinds[i] == CellKind::number)
+                    clock = i;
+            // Several clocks side by side, before all values: the first counts.
+            bool is_between = clock == *out_.time;
+            for (std::size_t i = *out_.time + 1; i < clock; ++i) is_between = is_between || !is_clock(i);
+            if (!is_between) clock = *out_.time;
+            if (std::ranges::find(out_.clocks, clock) == out_.clocks.end()) out_.clocks.push_back(clock);
+        }
+        if (out_.clocks.size() == 1 && out_.clocks.front() != *out_.time) {
+            out_.time = out_.clocks.front();
+            choose_time_unit();
+        }
+        if (out_.clocks.size() < 2) out_.clocks.clear();
+    }
+
+public:
+    static bool names_source(std::string_view name) {
+        const std::string word = lower(name);
+        constexpr std::array<std::string_view, 18> sensors{"sensor", "device", "node", "instance", "imu", "source",
+                                                           "address", "addr", "mac", "probe", "sensortype", "sensorid",
+                                                           "deviceid", "i", "id", "channel", "type", "kanal"};
+        if (std::ranges::find(sensors, word) != sensors.end()) return true;
+        bool is_sensor = false, is_number = false;
+        for (std::size_t at = 0; at < word.size();) {
+            const std::size_t end = std::min(word.find_first_of(" _-.:/", at), word.size());
+            const std::string_view part = std::string_view(word).substr(at, end - at);
+            is_sensor = is_sensor || std::ranges::find(sensors, part) != sensors.end();
+            is_number = is_number || part == "id" || part == "name" || part == "nr" || part == "no" || part == "number" ||
+                        part == "index" || part == "type";
+            at = end + 1;
+        }
+        return is_sensor && is_number;
+    }
+
+private:
+    void choose_sources() {
+        if (!selection_.where.empty()) {
+            const std::size_t sign = selection_.where.find('=');
+            if (sign == std::string::npos)
+                throw Error(fmt::format("{}: --where needs COLUMN=VALUE, not '{}'", file_, selection_.where));
+            out_.where = find(selection_.where.substr(0, sign), "column");
+            out_.wanted = selection_.where.substr(sign + 1);
+        }
+        if (shape_.header_line == 0) return;
+        for (std::size_t i = 0; i < shape_.names.size(); ++i) {
+            if (i == out_.time || i == out_.where || std::ranges::find(out_.values, i) != out_.values.end()) continue;
+            if (shape_.kinds[i] == CellKind::word || (shape_.kinds[i] == CellKind::number && names_source(shape_.names[i])))
+                out_.sources.push_back(i);
+        }
+    }
+
     void choose_values() {
         for (const std::string& wanted : selection_.columns) out_.values.push_back(find(wanted, "column"));
         if (!out_.values.empty()) return;
         std::vector<std::size_t> numbers, accelerations;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || shape_.kinds[i] != CellKind::number) continue;
-            // With a stated rate a column of times is no vibration.
-            if (!out_.time && shape_.header_line > 0 && shape_.names.size() > 1 && speaks_of_time(out_.named[i].name))
-                continue;
+            if (is_clock(i)) continue;
             numbers.push_back(i);
             const auto& unit = out_.named[i].unit;
             if (unit ? unit->is_acceleration() : lower(out_.named[i].name).starts_with("acc"))
@@ -186,6 +241,8 @@ private:
 };
 
 }  // namespace
+
+bool is_source_name(std::string_view name) { return Chooser::names_source(name); }
 
 LogColumns choose_log_columns(const LogShape& shape, const std::vector<std::string_view>& first_row,
                               const std::string& file, const LogSelection& selection) {

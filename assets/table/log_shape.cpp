@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
@@ -55,6 +56,52 @@ struct Table {
     std::vector<CellKind> kinds;
 };
 
+/// The first number in a text, and the letters behind it; none if there is no number above 0.
+std::optional<std::pair<double, std::string>> number_in_text(std::string_view text) {
+    const std::size_t begin = text.find_first_of("0123456789");
+    if (begin == std::string_view::npos) return std::nullopt;
+    std::string rest(text.substr(begin, 64));
+    // "0,0005": no list of a rate has less than three digits behind a comma that separates.
+    if (const std::size_t comma = rest.find_first_not_of("0123456789"); comma != std::string::npos && comma + 1 < rest.size() &&
+        rest[comma] == ',' && rest[comma + 1] >= '0' && rest[comma + 1] <= '9')
+        rest[comma] = '.';
+    char* end = nullptr;
+    const double number = std::strtod(rest.c_str(), &end);
+    if (!(number > 0.0)) return std::nullopt;
+    std::string_view unit = trimmed(end);
+    while (!unit.empty() && (unit.front() == ',' || unit.front() == ';' || unit.front() == '[' || unit.front() == '('))
+        unit = trimmed(unit.substr(1));
+    std::size_t letters = 0;
+    while (letters < unit.size() && ((unit[letters] | 0x20) >= 'a' || unit[letters] == '/') && unit[letters] != '[')
+        ++letters;
+    return std::pair(number, lower(unit.substr(0, letters)));
+}
+
+/// Hz: "# sample rate: 3.2 kHz", "Sampling frequency,1000,Hz", "Sample Interval,1e-05,s".
+std::optional<double> rate_in(std::string_view line) {
+    const std::string text = lower(line);
+    const auto behind = [&](std::initializer_list<std::string_view> names) -> std::optional<std::pair<double, std::string>> {
+        for (const std::string_view name : names)
+            if (const std::size_t at = text.find(name); at != std::string::npos)
+                return number_in_text(std::string_view(text).substr(at + name.size()));
+        return std::nullopt;
+    };
+    if (const auto found = behind({"sample rate", "samplerate", "sample_rate", "sampling rate", "sampling_rate", "samplingrate",
+                                   "sampling frequency", "sample frequency", "sampling freq", "samples per second",
+                                   "abtastrate", "abtastfrequenz"})) {
+        const auto& [number, unit] = *found;
+        if (unit.starts_with("khz") || unit.starts_with("ks")) return 1e3 * number;
+        if (unit.starts_with("mhz") || unit.starts_with("ms")) return 1e6 * number;
+        return number;
+    }
+    if (const auto found = behind({"sample interval", "sampling interval", "sample period", "sampling period", "delta_x",
+                                   "time increment", "abtastintervall"})) {
+        const auto& [number, unit] = *found;
+        return unit.starts_with("ms") ? 1e3 / number : unit.starts_with("us") ? 1e6 / number : 1.0 / number;
+    }
+    return std::nullopt;
+}
+
 class Finder {
 public:
     Finder(std::string_view text, const std::string& file, std::optional<int> skip_rows)
@@ -80,6 +127,8 @@ public:
         const std::size_t first = first_row();
         shape.first_row = lines_[first].number;
         name_columns(first, shape);
+        for (std::size_t i = 0; i < first && !shape.rate; ++i)
+            if (const std::optional<double> rate = rate_in(lines_[i].text)) shape.rate = {*rate, lines_[i].number};
         shape.separator = table_.separator;
         shape.kinds = table_.kinds;
         shape.kinds.resize(shape.names.size(), CellKind::lost);
@@ -341,7 +390,24 @@ CellKind kind_of(std::string_view field) {
     for (const std::string_view lost : {"nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf", "-", "--",
                                         "infinity", "-infinity", "-nan", "+nan"})
         if (word == lost) return CellKind::lost;
-    return CellKind::word;
+    return split_measure(field) ? CellKind::number : CellKind::word;
+}
+
+std::optional<Measure> split_measure(std::string_view field) {
+    const std::size_t end = field.find_first_not_of("+-0123456789.,");
+    if (end == 0 || end == std::string_view::npos || field.substr(0, end).find_first_of("0123456789") > end)
+        return std::nullopt;
+    std::size_t begin = end;
+    // "1.5e-3 V": the exponent belongs to the number.
+    if (field[end] == 'e' || field[end] == 'E') {
+        std::size_t digit = end + 1;
+        if (digit < field.size() && (field[digit] == '+' || field[digit] == '-')) ++digit;
+        const std::size_t behind = std::min(field.find_first_not_of("0123456789", digit), field.size());
+        if (behind > digit) begin = behind;
+    }
+    const Measure parts{field.substr(0, begin), trimmed(field.substr(begin))};
+    if (parts.unit.empty() || !parse_column_unit(as_utf8(parts.unit))) return std::nullopt;
+    return parts;
 }
 
 LogShape find_log_shape(std::string_view text, const std::string& file, std::optional<int> skip_rows) {

@@ -10,7 +10,7 @@
 namespace tactus::table {
 
 enum class CellKind {
-    number,  ///< with a decimal point or comma
+    number,  ///< with a decimal point or comma, also with a unit behind it: "0.0005 sec"
     time,    ///< a date with a time, or a time of day
     lost,    ///< empty, "nan", "null", …
     word,
@@ -18,6 +18,18 @@ enum class CellKind {
 
 /// Whether a comma is decimal or groups thousands is not decided here.
 CellKind kind_of(std::string_view field);
+
+/// A number with a unit behind it, "0.0005 sec"; none for other text.
+struct Measure {
+    std::string_view number, unit;
+};
+std::optional<Measure> split_measure(std::string_view field);
+
+/// A number that a line above the rows states, in SI units.
+struct StatedNumber {
+    double value = 0.0;
+    int line = 0;
+};
 
 struct LogShape {
     char separator = ',';               ///< or no_separator
@@ -27,6 +39,7 @@ struct LogShape {
     std::vector<std::string> names;     ///< as written, in UTF-8; "1", "2", … without a header
     std::vector<std::string> units;     ///< of the row of units; as many as names, or none
     std::vector<CellKind> kinds;        ///< of most cells of a column
+    std::optional<StatedNumber> rate;   ///< Hz: a sample rate or interval that a line above the rows states
 };
 
 /// Looks at the first thousand lines. The table begins at the first rows that look like most: with as many fields, and numbers in

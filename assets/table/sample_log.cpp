@@ -8,20 +8,28 @@
 #include "assets/table/log_columns.hpp"
 #include "assets/table/log_lines.hpp"
 #include "assets/table/log_shape.hpp"
+#include "assets/table/time_unit.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <optional>
+#include <span>
 
 namespace tactus::table {
 
 namespace {
 
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
+constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {
 public:
@@ -45,10 +53,13 @@ public:
             split_fields(line, shape_.separator, fields_);
             if (is_first) choose();
             is_first = false;
-            row(line, lines.at_end());
+            if (is_selected()) row(line, lines.at_end());
         }
+        check_sources();
+        check_clocks();
         if (const auto doubt = sign_.doubt()) fail_at(doubt->line, 1, doubt->why);
         if (log_.times.empty()) fail_at(0, 0, "there is no row with a number in every chosen column");
+        settle_time_unit();
         note_form();
         return std::move(log_);
     }
@@ -73,10 +84,93 @@ private:
             needed_ = std::max(needed_, *columns_.time);
         }
         log_.columns.resize(columns_.values.size());
+        for (const std::size_t column : columns_.sources) sources_.push_back({column, {}, {}, 0});
+        clock_times_.resize(columns_.clocks.size());
+    }
+
+    bool is_selected() {
+        if (!columns_.where) return true;
+        if (*columns_.where >= fields_.size()) return false;
+        const std::string_view field = fields_[*columns_.where];
+        if (field == columns_.wanted) return true;
+        const std::optional<double> number = sign_.parse(field), wanted = sign_.parse(columns_.wanted);
+        return number && wanted && *number == *wanted;
+    }
+
+    /// Rows from several sensors in turn have a column that says which.
+    struct Source {
+        std::size_t column;
+        std::map<std::string, std::size_t, std::less<>> rows;  // of each value
+        std::string last;
+        std::size_t changes;
+    };
+    static constexpr std::size_t most_sources = 64;
+
+    void note_sources() {
+        for (Source& source : sources_) {
+            if (source.rows.size() > most_sources || source.column >= fields_.size()) continue;
+            const std::string_view field = fields_[source.column];
+            if (field.empty()) continue;
+            const auto found = source.rows.find(field);
+            if (found != source.rows.end()) ++found->second;
+            else source.rows.emplace(std::string(field), 1);
+            if (field == source.last) continue;
+            if (!source.last.empty()) ++source.changes;
+            source.last = field;
+        }
+    }
+
+    [[noreturn]] void refuse_sources(const Source& source) const {
+        std::vector<std::string> values;
+        for (const auto& [value, rows] : source.rows)
+            if (values.size() < 8) values.push_back(fmt::format("{} ({} rows)", as_utf8(value), rows));
+        const std::string& name = shape_.names[source.column];
+        fail_at(shape_.header_line, static_cast<int>(source.column) + 1,
+                fmt::format("the rows are from {} sensors, by column '{}': {}; choose one, as --where \"{}={}\"",
+                            source.rows.size(), name, fmt::join(values, ", "), name,
+                            as_utf8(source.rows.begin()->first)));
+    }
+
+    void check_sources() const {
+        for (const Source& source : sources_) {
+            const std::size_t values = source.rows.size();
+            if (values < 2 || values > most_sources || 2 * values > rows_) continue;
+            const bool is_named = is_source_name(shape_.names[source.column]);
+            // Words that change all the time, in a column of any name.
+            if (is_named || (values <= 8 && 5 * source.changes > rows_)) refuse_sources(source);
+        }
+    }
+
+    void check_clocks() const {
+        std::vector<double> steps;
+        for (const std::vector<double>& times : clock_times_) steps.push_back(mean_step(times));
+        for (std::size_t i = 1; i < steps.size(); ++i) {
+            if (clock_times_[i].size() < 3 || steps[0] <= 0.0) continue;
+            // The units may differ.
+            double ratio = steps[i] / steps[0];
+            while (ratio > 31.6) ratio *= 1e-3;
+            while (ratio > 0.0 && ratio < 0.0316) ratio *= 1e3;
+            if (std::abs(ratio - 1.0) < 0.02) continue;
+            std::vector<std::string> names;
+            for (const std::size_t column : columns_.clocks) names.push_back(shape_.names[column]);
+            fail_at(shape_.header_line, static_cast<int>(columns_.clocks[i]) + 1,
+                    fmt::format("the columns follow clocks of different rates: {}; choose one with --time-column, or columns "
+                                "that follow one clock with --column; there are {}",
+                                fmt::join(names, ", "), fmt::join(shape_.names, ", ")));
+        }
+    }
+
+    void note_clocks() {
+        for (std::size_t i = 0; i < clock_times_.size(); ++i)
+            if (columns_.clocks[i] < fields_.size() && clock_times_[i].size() < 100'000)
+                if (const std::optional<double> time = sign_.parse(fields_[columns_.clocks[i]]))
+                    clock_times_[i].push_back(*time);
     }
 
     void row(std::string_view line, bool is_last) {
         const auto index = static_cast<double>(rows_++);
+        note_sources();
+        note_clocks();
         if (fields_.size() <= needed_) {
             // A logger that lost power may leave an incomplete last line.
             if (!is_last)
@@ -87,7 +181,7 @@ private:
         }
         std::optional<double> time;
         if (columns_.time) time = time_in(*columns_.time);
-        else time = index / *selection_.rate;
+        else time = index / columns_.rate;
         bool is_lost = !time;
         values_.assign(columns_.values.size(), 0.0);
         for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -99,40 +193,150 @@ private:
             ++log_.lost_rows;
             return;
         }
-        if (!log_.times.empty()) check_advance(*time, line);
+        if (!log_.times.empty()) note_advance(*time, line);
         log_.times.push_back(*time);
         for (std::size_t i = 0; i < values_.size(); ++i) log_.columns[i].push_back(values_[i]);
     }
 
-    void check_advance(double time, std::string_view line) const {
+    void note_advance(double time, std::string_view line) {
         const double last = log_.times.back();
         const int column = columns_.time ? static_cast<int>(fields_[*columns_.time].data() - line.data()) + 1 : 1;
         if (time < last)
+            for (const Source& source : sources_)
+                if (source.changes > 0 && source.rows.size() <= most_sources &&
+                    (is_source_name(shape_.names[source.column]) || source.rows.size() <= 8))
+                    refuse_sources(source);
+        if (time < last)
             fail_at(line_, column,
-                    fmt::format("time runs backwards, from {:.9g} s to {:.9g} s; cut the file there{}", last, time,
+                    fmt::format("time runs backwards, from {} to {}; cut the file there{}", time_text(last),
+                                time_text(time),
                                 shape_.header_line == 0
                                     ? ", or state what the times are with --time-column or --sample-rate, for the "
                                       "columns have no names"
                                     : ""));
-        if (time - last > longest_pause)
-            fail_at(line_, column,
-                    fmt::format("time jumps by more than a day, from {:.9g} s to {:.9g} s; cut the file there", last,
-                                time));
+        if (time - last > longest_step_.length) longest_step_ = {time - last, last, line_, column};
+    }
+
+    std::string time_text(double time) const {
+        const std::string_view unit = has_clock_ || !columns_.time ? "s" : columns_.unit ? columns_.unit->symbol : "";
+        return fmt::format("{:.9g}{}{}", static_cast<double>(origin_) + time, unit.empty() ? "" : " ", unit);
+    }
+
+    /// Without a stated or named unit the rate of the samples decides, if only one unit makes it plausible.
+    void settle_time_unit() {
+        double seconds = 1.0;
+        if (columns_.time && !has_clock_) {
+            if (!columns_.unit) columns_.unit = guessed_unit();
+            seconds = columns_.unit->seconds;
+            for (double& time : log_.times) time *= seconds;
+        }
+        if (longest_step_.length * seconds > longest_pause)
+            fail_at(longest_step_.line, longest_step_.column,
+                    fmt::format("time jumps by more than a day, from {} to {}; cut the file there",
+                                time_text(longest_step_.from), time_text(longest_step_.from + longest_step_.length)));
+    }
+
+    TimeUnit guessed_unit() {
+        const double step = mean_step(std::span(log_.times).first(std::min(log_.times.size(), most_steps)));
+        if (step == 0.0) return time_units().front();
+        const TimeUnitGuess guess = guess_time_unit(static_cast<double>(origin_) + log_.times.front(), step);
+        const auto at_rate = [&](const TimeUnit& unit) {
+            return fmt::format("{} ({:.4g} Hz)", unit.symbol, 1.0 / (step * unit.seconds));
+        };
+        if (shape_.rate)
+            for (const TimeUnit& unit : time_units())
+                if (std::abs(step * unit.seconds * shape_.rate->value - 1.0) < 0.05) {
+                    unit_reason_ = fmt::format("no unit is stated; {} agrees with the rate in line {}", at_rate(unit),
+                                               shape_.rate->line);
+                    return unit;
+                }
+        if (guess.fitting.size() == 1) {
+            unit_reason_ = guess.is_epoch
+                               ? fmt::format("no unit is stated; the times are dates in {}", guess.fitting[0].symbol)
+                               : fmt::format("no unit is stated; only {} is plausible", at_rate(guess.fitting[0]));
+            return guess.fitting.front();
+        }
+        std::vector<std::string> rates;
+        for (const TimeUnit& unit : guess.fitting) rates.push_back(at_rate(unit));
+        fail_at(shape_.header_line > 0 ? shape_.header_line : shape_.first_row,
+                static_cast<int>(*columns_.time) + 1,
+                fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}",
+                            log_.time_name,
+                            rates.empty()
+                                ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
+                                : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
+                            rates.empty() ? ": s, ms, us or ns"
+                                          : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
+                                                        guess.fitting.back().symbol)));
     }
 
     /// None: the field has no value.
     std::optional<double> number_in(std::size_t column) {
-        const std::string_view field = fields_[column];
+        std::string_view field = fields_[column];
         if (field.empty()) return std::nullopt;
+        double factor = 1.0;
+        if (const std::optional<Measure> measure = with_unit(field)) {
+            field = measure->number;
+            factor = factor_of(column, measure->unit);
+        }
         if (const auto refused = sign_.note(field, line_)) fail_at(line_, 1, *refused);
         const std::optional<double> number = sign_.parse(field);
-        if (number) return std::isfinite(*number) ? number : std::nullopt;
+        if (number) return std::isfinite(*number) ? std::optional(factor * *number) : std::nullopt;
         if (kind_of(field) == CellKind::lost) return std::nullopt;
         const bool is_header = column < shape_.names.size() && as_utf8(field) == shape_.names[column];
         fail(column, is_header
                          ? fmt::format("the names of the columns come again, as if the logger was started anew; "
                                        "cut the file there")
                          : fmt::format("'{}' in field {} is not a number", as_utf8(field.substr(0, 40)), column + 1));
+    }
+
+    static std::optional<Measure> with_unit(std::string_view field) {
+        const char last = field.back();
+        if ((last >= '0' && last <= '9') || last == '.') return std::nullopt;
+        return split_measure(field);
+    }
+
+    /// Of a value with that unit behind it, in the unit of its column; the first such value sets it.
+    double factor_of(std::size_t column, std::string_view text) {
+        if (column == cell_column_ && text == cell_text_) return cell_factor_;
+        const std::optional<ColumnUnit> unit = parse_column_unit(as_utf8(text));
+        double factor = 1.0;
+        if (column == columns_.time && unit->is_time()) {
+            if (!columns_.unit) {
+                columns_.unit = TimeUnit{unit->text, unit->si};
+                if (const std::optional<TimeUnit> known = time_unit_of_word(unit->text)) columns_.unit = known;
+            }
+            factor = unit->si / columns_.unit->seconds;
+        } else if (const auto chosen = std::ranges::find(columns_.values, column); chosen != columns_.values.end()) {
+            std::optional<ColumnUnit>& known = log_.units[static_cast<std::size_t>(chosen - columns_.values.begin())];
+            if (!known && log_.times.empty()) known = unit;
+            if (!known || known->dimension != unit->dimension)
+                fail(column, fmt::format("the value has the unit '{}', and the column {}", as_utf8(text),
+                                         known ? fmt::format("'{}'", known->text) : std::string("none")));
+            factor = unit->si / known->si;
+        }
+        cell_column_ = column, cell_text_ = text, cell_factor_ = factor;
+        return factor;
+    }
+
+    /// Epochs have more digits than a double: from 1e9 on, whole units are counted from those of the first time.
+    double since_origin(std::string_view field, double number) {
+        if (!has_numbers_ && std::abs(number) >= 1e9 && std::abs(number) < 9e18)
+            origin_ = static_cast<std::int64_t>(number);
+        has_numbers_ = true;
+        if (origin_ == 0) return number;
+        std::int64_t whole = 0;
+        const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), whole);
+        const std::string_view rest(end, field.size() - static_cast<std::size_t>(end - field.data()));
+        if (failure != std::errc{} || (!rest.empty() && rest.front() != '.' && rest.front() != ','))
+            return number - static_cast<double>(origin_);
+        double fraction = 0.0;
+        if (!rest.empty()) {
+            const std::optional<double> parsed = rest.size() > 1 ? sign_.parse(rest) : 0.0;
+            if (!parsed) return number - static_cast<double>(origin_);
+            fraction = field.front() == '-' ? -*parsed : *parsed;
+        }
+        return static_cast<double>(whole - origin_) + fraction;
     }
 
     std::optional<double> time_in(std::size_t column) {
@@ -143,8 +347,7 @@ private:
                 fail(column, fmt::format("'{}' in field {} is not a time", as_utf8(field.substr(0, 40)), column + 1));
             const std::optional<double> number = number_in(column);
             if (!number) return std::nullopt;
-            has_numbers_ = true;
-            return *number * columns_.seconds;
+            return since_origin(field, *number);
         }
         if (has_numbers_)
             fail(column, fmt::format("'{}' in field {} is not a number", as_utf8(field.substr(0, 40)), column + 1));
@@ -179,13 +382,15 @@ private:
         form.units_line = shape_.units_line;
         form.first_row = shape_.first_row;
         form.skipped = shape_.skipped + std::max(0, selection_.skip_rows.value_or(0));
-        if (!columns_.time) form.time = fmt::format("{:.6g} Hz, as stated", *selection_.rate);
+        if (!columns_.time)
+            form.time = selection_.rate ? fmt::format("{:.6g} Hz, as stated", columns_.rate)
+                                        : fmt::format("{:.6g} Hz, as line {} states", columns_.rate, shape_.rate->line);
         else if (has_clock_)
             form.time = fmt::format("{} in column '{}'", has_day_ ? "dates and times" : "times of day", log_.time_name);
         else {
-            form.is_time_unit_stated = columns_.is_unit_stated;
-            form.time = fmt::format("column '{}' in {}{}", log_.time_name, columns_.unit,
-                                    columns_.is_unit_stated ? "" : " (assumed: no unit is stated)");
+            form.is_time_unit_stated = unit_reason_.empty();
+            form.time = fmt::format("column '{}' in {}{}", log_.time_name, columns_.unit->symbol,
+                                    unit_reason_.empty() ? "" : fmt::format(" ({})", unit_reason_));
         }
     }
 
@@ -201,11 +406,24 @@ private:
     int line_ = 0;
     std::vector<std::string_view> fields_;
     std::vector<double> values_;
+    std::vector<Source> sources_;
+    std::vector<std::vector<double>> clock_times_;
     // Times of the clock.
     bool has_clock_ = false, has_numbers_ = false, has_day_ = false, has_zone_ = false;
     std::int64_t first_day_ = 0;
     std::string_view date_;
     double wraps_ = 0.0, last_clock_ = -1e300;
+    // Times that are numbers, in the unit of their column.
+    std::int64_t origin_ = 0;  // whole units that are subtracted
+    std::string unit_reason_;  // why this unit; empty: stated or named
+    struct Step {
+        double length = 0.0, from = 0.0;
+        int line = 0, column = 0;
+    } longest_step_;
+    // The last unit behind a value.
+    std::size_t cell_column_ = 0;
+    std::string_view cell_text_;
+    double cell_factor_ = 1.0;
 };
 
 }  // namespace

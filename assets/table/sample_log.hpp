@@ -17,9 +17,10 @@ struct LogSelection {
     std::string time_column;           ///< name or number from 1; empty: the first whose name indicates time
     std::vector<std::string>
         columns;  ///< names or numbers from 1; empty: the only other column, or those named like axes
-    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else s
+    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the names, else the only plausible one
     std::optional<int> skip_rows = std::nullopt;  ///< lines before the names; none: found
     std::optional<double> rate = std::nullopt;    ///< Hz: rows follow at this rate, no time column is read
+    std::string where{};  ///< "SENSOR=2": only rows with this value in this column; empty: all rows
 };
 
 /// What was understood of the form of a log, so that a wrong guess is seen.
@@ -29,7 +30,7 @@ struct LogForm {
     int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
     int skipped = 0;         ///< lines above the rows that were not used, without comments
     std::string time;        ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
-    bool is_time_unit_stated = true;
+    bool is_time_unit_stated = true;  ///< by an option, a name or the cells; false: the only plausible one
 
     std::string separator_name() const;  ///< "comma", "semicolon", "tab", "blanks", "none"
     std::string decimal_name() const;    ///< "point", "comma", "none seen"
@@ -39,7 +40,7 @@ struct LogForm {
 std::string describe(const LogForm& form);
 
 struct SampleLog {
-    std::vector<double> times;  ///< s, never decreasing
+    std::vector<double> times;  ///< s, never decreasing; epochs are counted from the whole unit of the first time
     std::vector<std::string> names;  ///< names of the chosen columns, without units in brackets
     std::vector<std::optional<ColumnUnit>> units;  ///< of the chosen columns, as stated in the file
     std::vector<std::vector<double>> columns;  ///< values per chosen column, as many as times
@@ -52,7 +53,9 @@ struct SampleLog {
 /// two lines above, names and units. Fields are separated by semicolons, tabs, commas or blanks. Comments begin with '#',
 /// '%' or "//". With semicolons, tabs or one column a number may have a decimal comma; thousands separators, and numbers
 /// that could have one, are refused. Times are numbers, ISO 8601 or times of day; at midnight a time of day goes on. A
-/// row with an empty field or "nan" counts as lost. Throws Error with file:line:column.
+/// row with an empty field or "nan" counts as lost. A unit of time that is neither stated nor named is the only one that
+/// makes the rate plausible (`guess_time_unit`); if there is no such unit the log is refused. So is a log that
+/// holds several sensors in turn, unless `where` chooses one, or chosen columns with clocks of different rates. Throws Error with file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
 /// The same for a file of at most 4 GiB.

@@ -14,6 +14,8 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +29,14 @@ namespace {
 using Images = std::vector<DicomImage>;
 constexpr std::size_t most_files = 100'000;
 constexpr std::size_t mark_end = 132;  // bytes: preamble and mark
+
+// Old files begin with their first element, of group 2 or 8: its tag, and a representation or a short length.
+bool is_without_preamble(std::string_view start) {
+    const auto byte = [&](std::size_t n) { return static_cast<unsigned char>(start[n]); };
+    if ((byte(0) != 2 && byte(0) != 8) || byte(1) != 0 || byte(3) != 0) return false;
+    const auto is_capital = [&](std::size_t n) { return start[n] >= 'A' && start[n] <= 'Z'; };
+    return (is_capital(4) && is_capital(5)) || (byte(5) == 0 && byte(6) == 0 && byte(7) == 0 && byte(4) > 0);
+}
 
 bool has_dicom_mark(std::string_view start) { return start.size() >= mark_end && start.substr(128, 4) == "DICM"; }
 
@@ -46,7 +56,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 }
 
 // The images in a zip. Images of one name get their number, so that they stay different files.
-Images collect_zip(const std::filesystem::path& path) {
+Images collect_zip(DicomReader& reader, const std::filesystem::path& path) {
     const auto archive = std::make_shared<const file::ZipFile>(path);
     Images all;
     std::set<std::string> names;
@@ -55,7 +65,7 @@ Images collect_zip(const std::filesystem::path& path) {
             entry.name.ends_with("/DICOMDIR"))
             continue;
         if (!names.insert(entry.name).second) entry.name += fmt::format("#{}", entry.index + 1);
-        Images found = dicom_images(archive, entry);
+        Images found = reader.images(archive, entry);
         all.insert(all.end(), found.begin(), found.end());
     }
     if (all.empty())
@@ -65,12 +75,12 @@ Images collect_zip(const std::filesystem::path& path) {
 }
 
 // The images of a folder, a zip or a file. A file with a single image adds the other files of its series in the folder.
-Images collect(const std::filesystem::path& path) {
+Images collect(DicomReader& reader, const std::filesystem::path& path) {
     // The first bytes of a DICOM file are free, so they may look like those of a zip.
     if (!std::filesystem::is_directory(path) && !is_dicom_file(path) && file::is_zip_file(path))
-        return collect_zip(path);
+        return collect_zip(reader, path);
     if (!std::filesystem::is_directory(path)) {
-        Images own = dicom_images(path);
+        Images own = reader.images(path);
         if (own.empty()) throw Error(fmt::format("{}: no image can be read as DICOM", path.string()));
         if (own.size() > 1) return own;
         const auto folder = std::filesystem::absolute(path).parent_path();
@@ -79,7 +89,7 @@ Images collect(const std::filesystem::path& path) {
             leave_if_stopped();
             if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path()))
                 continue;
-            Images found = dicom_images(entry.path());
+            Images found = reader.images(entry.path());
             if (!found.empty() && found.front().series == own.front().series)
                 all.insert(all.end(), found.begin(), found.end());
         }
@@ -89,25 +99,71 @@ Images collect(const std::filesystem::path& path) {
     Images all;
     for (const auto& file : files_in(path)) {
         leave_if_stopped();
-        Images found = dicom_images(file);
+        Images found = reader.images(file);
         all.insert(all.end(), found.begin(), found.end());
     }
     if (all.empty()) throw Error(fmt::format("{}: the folder has no DICOM images", path.string()));
     return all;
 }
 
-// The images of the selected series, or of the only one. Scout views are not counted.
-Images choose(Images all, const std::string& wanted, const std::string& place) {
+std::string where(const DicomImage& image) {
+    return image.frame > 0 ? fmt::format("{} frame {}", image.file.filename().string(), image.frame + 1)
+                           : image.file.filename().string();
+}
+
+// "3 scout views (a.dcm, b.dcm, ...)", or "1 colour image (c.dcm)".
+std::string counted(const Images& images, const char* what) {
+    std::string names;
+    for (std::size_t n = 0; n < images.size() && n < 3; ++n) names += (n > 0 ? ", " : "") + where(images[n]);
+    return fmt::format("{} {}{} ({}{})", images.size(), what, images.size() == 1 ? "" : "s", names,
+                       images.size() > 3 ? ", ..." : "");
+}
+
+// Takes the images that are no slices, as `is_other` finds them, and notes them. Keeps all when nothing would be left.
+void set_aside(Images& images, const char* what, const std::function<bool(const DicomImage&)>& is_other,
+               std::vector<std::string>& notes) {
+    Images others;
+    std::ranges::copy_if(images, std::back_inserter(others), is_other);
+    if (others.empty() || others.size() == images.size()) return;
+    std::erase_if(images, is_other);
+    notes.push_back("left out: " + counted(others, what));
+}
+
+// The images of the selected series, or of the only one. Scout views are not counted. Everything that is left out is noted.
+Images choose(Images all, const std::string& wanted, const std::string& place, std::vector<std::string>& notes) {
+    if (std::ranges::all_of(all, &DicomImage::is_colour))
+        throw Error(fmt::format("{}: {} holds colour images, which are no CT", place, where(all.front())));
+    set_aside(all, "colour image", [](const DicomImage& image) { return image.is_colour; }, notes);
     std::map<std::string, Images> series;
     for (DicomImage& image : all) series[image.series].push_back(std::move(image));
     std::string list;
     std::vector<std::string> fitting;
+    std::size_t positions = 0;
     for (const auto& [uid, images] : series) {
+        const bool is_scout = std::ranges::all_of(images, &DicomImage::is_localizer);
         list += fmt::format("\n  {}  {} {} \"{}\"{}", uid, images.size(), images.size() == 1 ? "image" : "images",
-                            images.front().description, images.front().is_localizer ? " (scout view)" : "");
-        if (wanted.empty() ? !images.front().is_localizer : uid.ends_with(wanted)) fitting.push_back(uid);
+                            images.front().description, is_scout ? " (scout view)" : "");
+        if (wanted.empty() ? !is_scout : uid.ends_with(wanted)) fitting.push_back(uid);
+        positions += images.front().position.has_value();
     }
-    if (fitting.size() == 1) return std::move(series[fitting.front()]);
+    // Documents and captures of a screen lie nowhere in the patient.
+    if (wanted.empty() && fitting.size() > 1 && positions > 0)
+        std::erase_if(fitting, [&](const std::string& uid) {
+            return std::ranges::none_of(series[uid], [](const DicomImage& image) { return image.position.has_value(); });
+        });
+    if (fitting.size() == 1) {
+        Images chosen = std::move(series[fitting.front()]);
+        for (const auto& [uid, images] : series)
+            if (uid != fitting.front()) {
+                const bool is_scout = std::ranges::all_of(images, &DicomImage::is_localizer);
+                notes.push_back(fmt::format("left out: series {}, {} {} \"{}\"{}", uid, images.size(),
+                                            images.size() == 1 ? "image" : "images", images.front().description,
+                                            is_scout ? ", a scout view" : ""));
+            }
+        set_aside(chosen, "scout view", [](const DicomImage& image) { return image.is_localizer; }, notes);
+        set_aside(chosen, "image without a position", [](const DicomImage& image) { return !image.position; }, notes);
+        return chosen;
+    }
     if (wanted.empty())
         throw Error(
             fmt::format("{}: there are {} series; choose one with --series UID:{}", place, series.size(), list));
@@ -115,9 +171,29 @@ Images choose(Images all, const std::string& wanted, const std::string& place) {
         fmt::format("{}: --series {} matches {} of {} series:{}", place, wanted, fitting.size(), series.size(), list));
 }
 
-std::string where(const DicomImage& image) {
-    return image.frame > 0 ? fmt::format("{} frame {}", image.file.filename().string(), image.frame + 1)
-                           : image.file.filename().string();
+// Frames of one file that states one position for all of them, as cone-beam scanners write: they follow each other along
+// the normal by the stated spacing of slices, or by their thickness.
+void stack_frames(Images& images, const std::string& place, std::vector<std::string>& notes) {
+    DicomImage& first = images.front();
+    const bool is_one_file = std::ranges::all_of(images, [&](const DicomImage& image) {
+        return image.file == first.file && image.is_one_of_several && !image.has_own_position;
+    });
+    if (!is_one_file || images.size() < 2 || glm::length(first.along_row) < 0.5 || glm::length(first.along_column) < 0.5)
+        return;
+    const bool has_spacing = first.slice_spacing != 0.0;
+    const double spacing = has_spacing ? first.slice_spacing : first.slice_thickness;
+    if (!(std::abs(spacing) > 0.0))
+        throw Error(fmt::format("{}: its {} frames have one position and no spacing between slices; add it to the file "
+                                "(SpacingBetweenSlices), or export one file per slice",
+                                place, images.size()));
+    const bool has_position = first.position.has_value();
+    const Vec3 start = first.position.value_or(Vec3(0.0)),
+               normal = glm::normalize(glm::cross(first.along_row, first.along_column));
+    for (DicomImage& image : images) image.position = start + normal * (spacing * image.frame);
+    notes.push_back(fmt::format("the file states {} for its {} frames: they were stacked along their normal by the {} of "
+                                "{:.4g} mm; check which end is up",
+                                has_position ? "one position" : "no position", images.size(),
+                                has_spacing ? "spacing between slices" : "slice thickness", std::abs(spacing)));
 }
 
 // Throws unless all images have one size, spacing and orientation.
@@ -151,7 +227,7 @@ struct Slices {
     std::vector<double> height;  // mm along the normal
 };
 
-Slices in_order(Images images, const std::string& place) {
+Slices in_order(DicomReader& reader, Images images, const std::string& place) {
     const Vec3 normal = glm::normalize(glm::cross(images.front().along_row, images.front().along_column));
     const auto height = [&](const DicomImage& image) { return glm::dot(normal, *image.position); };
     std::stable_sort(images.begin(), images.end(), [&](const auto& a, const auto& b) { return height(a) < height(b); });
@@ -160,7 +236,7 @@ Slices in_order(Images images, const std::string& place) {
         const double h = height(image);
         if (!slices.height.empty() && h - slices.height.back() < 1e-3) {
             const DicomImage& before = slices.images.back();
-            if (image.file == before.file || dicom_samples({image}) != dicom_samples({before}))
+            if (image.file == before.file || reader.samples(image).values != reader.samples(before).values)
                 throw Error(
                     fmt::format("{}: two different images at the same position ({} and {}): the series has several "
                                 "phases or reconstructions; keep the files of one",
@@ -174,45 +250,99 @@ Slices in_order(Images images, const std::string& place) {
     return slices;
 }
 
-double median_gap(const std::vector<double>& height) {
-    std::vector<double> gaps;
-    for (std::size_t n = 1; n < height.size(); ++n) gaps.push_back(height[n] - height[n - 1]);
-    std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
-    return gaps[gaps.size() / 2];
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
-// A few gaps of two or three slice steps among even ones: slices are missing and must not be interpolated.
-void check_complete(const Slices& slices, const std::string& place) {
-    const double usual = median_gap(slices.height);
-    std::size_t wide = 0, at = 0;
-    for (std::size_t n = 1; n < slices.height.size(); ++n) {
-        const double times = (slices.height[n] - slices.height[n - 1]) / usual, whole = std::round(times);
-        if (whole >= 2.0 && std::abs(times - whole) < 0.03) ++wide, at = n;
-        else if (std::abs(times - 1.0) > 0.03) return;  // the spacing is irregular
+// Gaps that are about two or more of the gaps around them: slices are missing there. One or two wide gaps in a row are
+// isolated; more are a part of the scan with another spacing, as in heads that are scanned in two parts. Returns the
+// indices of the upper slices.
+std::vector<std::size_t> missing_at(const std::vector<double>& height) {
+    std::vector<double> gaps;
+    for (std::size_t n = 1; n < height.size(); ++n) gaps.push_back(height[n] - height[n - 1]);
+    std::vector<std::size_t> missing;
+    constexpr std::size_t reach = 5, most_in_row = 2;
+    for (std::size_t first = 0; first < gaps.size();) {
+        std::size_t end = first + 1;
+        bool is_isolated = false;
+        // The longest row of gaps that are all wide beside their surroundings on both sides.
+        for (std::size_t count = most_in_row; count > 0 && !is_isolated; --count) {
+            end = first + count;
+            if (end > gaps.size()) continue;
+            // At an end of the scan only a single gap is isolated.
+            if (count > 1 && (first == 0 || end == gaps.size())) continue;
+            std::vector<double> before(gaps.begin() + static_cast<std::ptrdiff_t>(first > reach ? first - reach : 0),
+                                       gaps.begin() + static_cast<std::ptrdiff_t>(first)),
+                after(gaps.begin() + static_cast<std::ptrdiff_t>(end),
+                      gaps.begin() + static_cast<std::ptrdiff_t>(std::min(end + reach, gaps.size())));
+            if (before.empty() && after.empty()) continue;
+            if (before.size() + after.size() < 2) continue;
+            // The gaps beside the row decide: where the spacing changes, one side is as wide.
+            double local = 0.0;
+            for (const std::vector<double>* side : {&before, &after})
+                if (!side->empty()) local = std::max(local, median_of(*side));
+            if (!before.empty() && before.back() > 1.5 * local) continue;
+            if (!after.empty() && after.front() > 1.5 * local) continue;
+            std::size_t even = 0;
+            for (const std::vector<double>* side : {&before, &after})
+                even += static_cast<std::size_t>(
+                    std::ranges::count_if(*side, [&](double gap) { return std::abs(gap - local) < 0.4 * local; }));
+            const auto is_wide = [&](double gap) {
+                const double times = gap / local, whole = std::round(times);
+                return whole >= 2.0 && std::abs(times - whole) <= 0.1 * times;
+            };
+            is_isolated = 4 * even >= 3 * (before.size() + after.size()) &&
+                          std::all_of(gaps.begin() + static_cast<std::ptrdiff_t>(first),
+                                      gaps.begin() + static_cast<std::ptrdiff_t>(end), is_wide);
+        }
+        if (is_isolated)
+            for (std::size_t n = first; n < end; ++n) missing.push_back(n + 1);
+        else end = first + 1;
+        first = end;
     }
-    if (wide > 0 && wide <= std::max<std::size_t>(1, slices.height.size() / 10))
-        throw Error(
-            fmt::format("{}: slices are missing in {} {}, as between {} and {} ({:.2f} mm apart, elsewhere {:.2f} "
-                        "mm); copy the series again",
-                        place, wide, wide == 1 ? "place" : "places", where(slices.images[at - 1]),
-                        where(slices.images[at]), slices.height[at] - slices.height[at - 1], usual));
+    return missing;
+}
+
+// Throws when slices are missing, unless they are to be interpolated. Returns a note.
+std::string check_complete(const Slices& slices, const std::string& place, bool fills) {
+    const std::vector<std::size_t> missing = missing_at(slices.height);
+    if (missing.empty()) return {};
+    std::string places;
+    for (std::size_t n = 0; n < missing.size() && n < 3; ++n) {
+        const std::size_t at = missing[n];
+        places += fmt::format("{}between {} and {} (at {:.2f} and {:.2f} mm, {:.2f} mm apart)", n > 0 ? ", " : "",
+                              where(slices.images[at - 1]), where(slices.images[at]), slices.height[at - 1],
+                              slices.height[at], slices.height[at] - slices.height[at - 1]);
+    }
+    if (missing.size() > 3) places += ", ...";
+    const std::string text = fmt::format("slices are missing in {} {}: {}", missing.size(),
+                                         missing.size() == 1 ? "place" : "places", places);
+    if (fills) return text + "; they were interpolated";
+    throw Error(fmt::format("{}: {}; copy the series again, or interpolate there with --fill-gaps", place, text));
 }
 
 // Decodes the slices of a series on request. A multi-frame file is decoded once and cached.
 class Samples {
 public:
-    Samples(const Slices& slices, std::size_t each) : slices_(slices), each_(each) {}
+    Samples(DicomReader& reader, const Slices& slices, std::size_t each)
+        : reader_(reader), slices_(slices), each_(each) {}
+
+    std::size_t padded = 0;  // samples so far
+    double padding = 0.0;
+    bool is_padding_stated = true;
 
     void read(std::size_t n, std::span<float> values) {
         const DicomImage& image = slices_.images[n];
         if (!image.is_one_of_several) {
-            const std::vector<float> samples = dicom_samples({image});
+            const std::vector<float> samples = decoded(image);
             std::copy_n(samples.begin(), each_, values.begin());
             return;
         }
         std::vector<CompactSlice>& frames = frames_[image.file];
         if (frames.empty()) {
-            const std::vector<float> samples = dicom_samples(dicom_images_beside(image));
+            const std::vector<float> samples = decoded(image);
             for (std::size_t at = 0; at < samples.size(); at += each_)
                 frames.emplace_back(std::span(samples).subspan(at, each_));
         }
@@ -220,9 +350,23 @@ public:
     }
 
 private:
+    std::vector<float> decoded(const DicomImage& image) {
+        DicomSamples read = reader_.samples(image);
+        if (read.values.size() < each_ || read.values.size() % each_ != 0)
+            throw Error(fmt::format("{}: the number of samples differs from the header", image.file.string()));
+        if (read.padded > 0 && counted_.insert(image.file).second) {
+            padded += read.padded;
+            padding = read.padding;
+            is_padding_stated = read.is_padding_stated;
+        }
+        return std::move(read.values);
+    }
+
+    DicomReader& reader_;
     const Slices& slices_;
     std::size_t each_;
     std::map<std::filesystem::path, std::vector<CompactSlice>> frames_;
+    std::set<std::filesystem::path> counted_;
 };
 
 // Evenly spaced slices by cubic Hermite interpolation over four slices of the file, with slopes from parabolas.
@@ -255,8 +399,14 @@ public:
         for (std::size_t i = 0; i < each_; ++i) {
             const double y0 = from[a - before][i], y1 = from[b - before][i];
             const double m0 = slope(a, before, b, i) * gap, m1 = slope(b, a, after, i) * gap;
-            out[i] = static_cast<float>(
-                y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1))));
+            const double value = y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1)));
+            // A cubic overshoots at edges; densities that no sample has are artefacts.
+            double low = y0, high = y0;
+            for (std::size_t n = before; n <= after; ++n) {
+                low = std::min(low, double(from[n - before][i]));
+                high = std::max(high, double(from[n - before][i]));
+            }
+            out[i] = static_cast<float>(std::clamp(value, low, high));
         }
     }
 
@@ -284,11 +434,13 @@ class DicomSlices final : public SliceReader {
 public:
     DicomSlices(const std::filesystem::path& path, const ReadOptions& options) {
         const std::string place = path.string();
-        Images chosen = choose(collect(path), options.series, place);
+        Images chosen = choose(collect(reader_, path), options.series, place, about.notes);
+        stack_frames(chosen, place, about.notes);
         check_alike(chosen, place);
         const std::size_t found = chosen.size();
-        slices_ = in_order(std::move(chosen), place);
-        check_complete(slices_, place);
+        slices_ = in_order(reader_, std::move(chosen), place);
+        if (std::string filled = check_complete(slices_, place, options.fill_gaps); !filled.empty())
+            about.notes.push_back(std::move(filled));
         const Vec3 per_mm = line_through(slices_, place);
 
         about.format = "DICOM";
@@ -320,9 +472,11 @@ public:
                 shortest, mean, gap_));
         if (found > slices_.images.size())
             about.notes.push_back(fmt::format("{} duplicate images ignored", found - slices_.images.size()));
+        if (std::ranges::any_of(slices_.images, &DicomImage::has_decimal_commas))
+            about.notes.push_back("numbers are written with decimal commas, against the standard; they were read as such");
         if (first.is_inverted)
             about.notes.push_back("MONOCHROME1: only the display is inverted; the values are not changed");
-        samples_.emplace(slices_, slice_size());
+        samples_.emplace(reader_, slices_, slice_size());
         resampled_.emplace(slices_, slice_size());
     }
 
@@ -333,6 +487,11 @@ public:
 
     void settle(const Tally& tally) override {
         settle_meaning(about, tally, false);
+        if (samples_->padded > 0)
+            about.notes.push_back(fmt::format("{} samples are padding ({:g}{}); they were read as air", samples_->padded,
+                                              samples_->padding,
+                                              samples_->is_padding_stated ? "" : ", the only value above 32767"));
+        samples_->padded = 0;
         const DicomImage& first = slices_.images.front();
         const bool rescaled = first.has_rescale && (first.rescale_type.empty() || first.rescale_type == "HU");
         if (first.modality == "CT" && about.hu == HuKind::scanner && rescaled && first.intercept != 0.0)
@@ -341,6 +500,7 @@ public:
     }
 
 private:
+    DicomReader reader_;
     Slices slices_;
     double gap_ = 0.0;  // mm
     std::optional<Samples> samples_;
@@ -352,7 +512,7 @@ private:
 bool is_dicom_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::string start(mark_end, '\0');
-    return file.read(start.data(), mark_end) && has_dicom_mark(start);
+    return file.read(start.data(), mark_end) && (has_dicom_mark(start) || is_without_preamble(start));
 }
 
 std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/dicom_elements.hpp"
 
-#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -23,9 +20,20 @@ class Walk {
 public:
     Walk(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
+    std::string doubt() {
+        try {
+            whole_file();
+        } catch (const Error& error) {
+            if (lacks_samples_) throw;
+            return error.what();
+        }
+        return {};
+    }
+
+private:
     void whole_file() {
-        if (bytes_.size() < 132 || bytes_.substr(128, 4) != "DICM") fail("no DICM mark");
-        at_ = 132;
+        // Files without a preamble begin with their first element.
+        if (bytes_.size() >= 132 && bytes_.substr(128, 4) == "DICM") at_ = 132;
         while (at_ < bytes_.size() && peek16() == 2) {
             const Element e = element();
             if (e.length == undefined || e.length > bytes_.size() - at_) fail("cut short");
@@ -33,15 +41,13 @@ public:
             at_ += e.length;
         }
         while (!syntax_.empty() && (syntax_.back() == '\0' || syntax_.back() == ' ')) syntax_.remove_suffix(1);
-        if (syntax_.empty()) fail("it does not say its transfer syntax");
-        if (syntax_ == "1.2.840.10008.1.2.1.99") fail("deflated files are not supported; save it without deflate");
-        implicit_ = syntax_ == "1.2.840.10008.1.2";
+        if (syntax_ == "1.2.840.10008.1.2.1.99") return;  // deflated: only the library can walk it
+        implicit_ = syntax_.empty() ? !has_representation() : syntax_ == "1.2.840.10008.1.2";
         big_ = syntax_ == "1.2.840.10008.1.2.2";
         if (at_ >= bytes_.size()) fail("cut short: it has only a header");
         elements(bytes_.size(), 0, false);
     }
 
-private:
     struct Element {
         unsigned group = 0, number = 0;
         std::string_view kind;
@@ -66,6 +72,12 @@ private:
         const std::uint32_t value = number(2);
         at_ = start;
         return value;
+    }
+
+    /// Without a stated transfer syntax: two capital letters follow the tag of an explicit element.
+    bool has_representation() const {
+        const auto is_capital = [&](std::size_t at) { return at < bytes_.size() && bytes_[at] >= 'A' && bytes_[at] <= 'Z'; };
+        return is_capital(at_ + 4) && is_capital(at_ + 5);
     }
 
     Element element() {
@@ -97,6 +109,8 @@ private:
     void elements(std::size_t end, int depth, bool to_mark) {
         if (depth > deepest) fail("sequences are nested too deeply");
         while (at_ < end) {
+            // Some programs fill files with zeros behind the last element.
+            if (depth == 0 && bytes_.find_first_not_of('\0', at_) == std::string_view::npos) return;
             const Element e = element();
             if (e.group == 0xfffe) {
                 if (to_mark && e.number == 0xe00d && e.length == 0) return;
@@ -107,10 +121,17 @@ private:
             const bool is_pixels = e.group == 0x7fe0 && e.number == 0x10;
             if (e.length == undefined || e.kind == "SQ") {
                 if (e.length != undefined && e.length > end - at_) fail("a sequence reaches beyond the file");
+                // Correction 246: the items of an unknown sequence of undefined length are implicit.
+                const bool is_implicit = implicit_;
+                if (e.kind == "UN") implicit_ = true;
                 items(e.length == undefined ? end : at_ + e.length, depth, e.length == undefined, is_pixels);
+                implicit_ = is_implicit;
                 continue;
             }
-            if (e.length > end - at_) fail(is_pixels ? "cut short: samples are missing" : "cut short");
+            if (e.length > end - at_) {
+                if (is_pixels && depth == 0) lacks_samples_ = true;
+                fail(is_pixels ? "cut short: samples are missing" : "cut short");
+            }
             at_ += e.length;
         }
         if (to_mark) fail("cut short: an item has no end");
@@ -137,15 +158,11 @@ private:
     std::string_view bytes_, syntax_;
     const std::string& file_;
     std::size_t at_ = 0;
-    bool implicit_ = false, big_ = false;
+    bool implicit_ = false, big_ = false, lacks_samples_ = false;
 };
 
 }  // namespace
 
-void check_dicom_elements(const std::filesystem::path& path) {
-    check_dicom_elements(file::read_whole_file(path), path.string());
-}
-
-void check_dicom_elements(std::string_view bytes, const std::string& file) { Walk(bytes, file).whole_file(); }
+std::string doubt_about_dicom(std::string_view bytes, const std::string& file) { return Walk(bytes, file).doubt(); }
 
 }  // namespace tactus::volume

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the structure of a DICOM file.
+// The structure of a DICOM file.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace tactus::volume {
 
-/// Walks all elements, sequences and items of a file with the DICM mark. Throws Error when one does not lie within the
-/// file or its container. GDCM aborts the program on some of these errors, so it only gets files that pass.
-void check_dicom_elements(const std::filesystem::path& path);
-/// The same for the bytes of a file; `file` names it in messages.
-void check_dicom_elements(std::string_view bytes, const std::string& file);
+/// Walks all elements, sequences and items of a file and reports what it does not understand, with its place; empty: the
+/// whole file. This is no reason to refuse a file that the library reads: it explains why one cannot be read. Throws
+/// Error when the samples themselves reach beyond the end of the file, which no library can repair. `file` names it.
+std::string doubt_about_dicom(std::string_view bytes, const std::string& file);
 
 }  // namespace tactus::volume

@@ -4,6 +4,7 @@
 #include "assets/volume/readers.hpp"
 #include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -44,6 +45,7 @@ struct Header {
     std::array<std::array<double, 4>, 3> rows{};
     double vox_offset = 0.0, slope = 0.0, intercept = 0.0;
     int datatype = 0, qform = 0, sform = 0, intent = 0, units = 0;
+    bool is_pair = false;  // the samples are in a file of their own
 };
 
 template <typename Whole, typename Real, typename Code>
@@ -76,24 +78,25 @@ Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
         return fields.get<std::int32_t>(0) == size;
     };
     if (is_size(348)) {
-        if (std::memcmp(&fields.bytes[344], "ni1", 4) == 0)
-            throw Error(
-                fmt::format("{}: the samples are in another file (.img); convert the pair to one .nii file", name));
-        if (std::memcmp(&fields.bytes[344], "n+1", 4) != 0)
+        const bool is_pair = std::memcmp(&fields.bytes[344], "ni1", 4) == 0;
+        if (!is_pair && std::memcmp(&fields.bytes[344], "n+1", 4) != 0)
             throw Error(fmt::format(
                 "{}: this is an Analyze file, which does not distinguish left from right; NIfTI is needed", name));
         Header h = take<std::int16_t, float, std::int16_t>(fields, {40, 76, 256, 268, 280, 112, 116, 70, 252, 254, 68});
         h.vox_offset = fields.get<float>(108);
         h.units = fields.bytes[123];
+        h.is_pair = is_pair;
         return h;
     }
     if (!is_size(540)) throw Error(fmt::format("{}: not a NIfTI header", name));
     fields.bytes.resize(540);
     file.read(std::span(fields.bytes).subspan(348));
-    if (std::memcmp(&fields.bytes[4], "n+2", 4) != 0) throw Error(fmt::format("{}: not a single-file NIfTI-2", name));
+    const bool is_pair = std::memcmp(&fields.bytes[4], "ni2", 4) == 0;
+    if (!is_pair && std::memcmp(&fields.bytes[4], "n+2", 4) != 0) throw Error(fmt::format("{}: not a NIfTI-2 header", name));
     Header h = take<std::int64_t, double, std::int32_t>(fields, {16, 104, 352, 376, 400, 176, 184, 12, 344, 348, 504});
     h.vox_offset = static_cast<double>(fields.get<std::int64_t>(168));
     h.units = fields.get<std::int32_t>(500);
+    h.is_pair = is_pair;
     return h;
 }
 
@@ -159,9 +162,30 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
     }
 }
 
+// The other file of a pair: "a.img", or "a.img.gz", of "a.hdr", and the reverse.
+std::filesystem::path other_of_pair(const std::filesystem::path& path, const char* ending) {
+    std::filesystem::path stem = path;
+    if (stem.extension() == ".gz") stem.replace_extension();
+    const bool is_capital = stem.extension() == ".HDR" || stem.extension() == ".IMG";
+    std::string wanted = ending;
+    if (is_capital)
+        for (char& c : wanted) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    for (const std::filesystem::path& other :
+         {std::filesystem::path(stem).replace_extension(wanted), std::filesystem::path(stem).replace_extension(wanted + ".gz")})
+        if (std::filesystem::exists(other)) return other;
+    throw Error(fmt::format("{}: the other file of the pair, {}, is missing", path.string(),
+                            std::filesystem::path(stem).replace_extension(wanted).filename().string()));
+}
+
+bool is_image_of_pair(const std::filesystem::path& path) {
+    const std::string name = lower(path.filename().string());
+    return name.ends_with(".img") || name.ends_with(".img.gz");
+}
+
 class NiftiSlices final : public SliceReader {
 public:
-    explicit NiftiSlices(const std::filesystem::path& path) {
+    explicit NiftiSlices(const std::filesystem::path& given) {
+        const std::filesystem::path path = is_image_of_pair(given) ? other_of_pair(given, ".hdr") : given;
         const std::string name = path.string();
         PackedFile file(path);
         Fields fields;
@@ -173,20 +197,22 @@ public:
                 throw Error(fmt::format("{}: has {} volumes; extract one of them first", name, h.dim[n]));
         const SampleType type = type_of(h.datatype, name);
         const std::size_t count = checked_count({h.dim[1], h.dim[2], h.dim[3]}, name);
-        const auto header_size = static_cast<double>(fields.bytes.size());
+        const std::filesystem::path samples = h.is_pair ? other_of_pair(path, ".img") : path;
+        const PackedFile in_samples(samples);
+        const double header_size = h.is_pair ? 0.0 : static_cast<double>(fields.bytes.size());
         if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
             throw Error(fmt::format("{}: an invalid start of the samples, byte {:g}", name, h.vox_offset));
-        if (h.vox_offset + static_cast<double>(count * type.bytes()) > file.most_bytes())
+        if (h.vox_offset + static_cast<double>(count * type.bytes()) > in_samples.most_bytes())
             throw Error(
                 fmt::format("{}: cut short: its header states {} voxels, more than the file can hold", name, count));
         about.format = "NIfTI";
         about.source = path.filename().string();
-        about.encoding = file.is_packed() ? "gzip" : "raw";
+        about.encoding = in_samples.is_packed() ? "gzip" : "raw";
         for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(h.dim[n + 1]);
         read_geometry(h, about, name);
         const auto start = static_cast<std::uint64_t>(h.vox_offset);
-        const bool packed = file.is_packed();
-        stream_.emplace(std::vector{SampleStream::Piece{path, packed ? 0 : start, packed ? start : 0, count}}, type,
+        const bool packed = in_samples.is_packed();
+        stream_.emplace(std::vector{SampleStream::Piece{samples, packed ? 0 : start, packed ? start : 0, count}}, type,
                         fields.swapped, packed);
         scaled_ = std::isfinite(h.slope) && h.slope != 0.0 && (h.slope != 1.0 || h.intercept != 0.0);
         slope_ = h.slope, intercept_ = h.intercept;

@@ -86,7 +86,10 @@ void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const s
             map.step[static_cast<int>(axis)][row] = nrrd.axis[first + axis].spaceDirection[n] * flip;
         map.origin[row] = nrrd.spaceOrigin[n] * flip;
     }
-    if (!is_finite(map.origin)) map.origin = Vec3(0.0);  // not given
+    if (!is_finite(map.origin)) {
+        map.origin = Vec3(0.0);
+        volume.notes.push_back("the file states no space origin: its first voxel was placed at 0");
+    }
     volume.map = is_ras ? to_lps(SampleMap<Frame::ras>{map.step, map.origin}) : map;
     volume.file_frame = is_ras ? Frame::ras : Frame::lps;
     volume.unit_stated = nrrd.spaceUnits[0] && *nrrd.spaceUnits[0];
@@ -241,8 +244,13 @@ public:
         nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
         if (nrrdLoad(header.get(), file.c_str(), io.get())) refuse(file);
         segments_ = segments_of(*header);
-        const unsigned first = header->dim == 4 && !segments_.empty() ? 1 : 0;
-        if (header->dim != 3 + first)
+        unsigned first = header->dim == 4 && !segments_.empty() ? 1 : 0;
+        bool has_single = false;
+        if (header->dim == 4 && segments_.empty()) {
+            has_single = header->axis[0].size == 1 || header->axis[3].size == 1;
+            if (header->axis[0].size == 1 && header->axis[3].size > 1) first = 1;
+        }
+        if (header->dim != 3 + first && !has_single)
             throw Error(fmt::format("{}: has {} axes; a CT volume must have 3 (extract one frame with 'unu slice')",
                                     file, header->dim));
         about.format = "NRRD";
@@ -252,6 +260,7 @@ public:
         check_header(*header, *io, path, first);
         for (unsigned axis = 0; axis < 3; ++axis) about.size[axis] = static_cast<int>(header->axis[first + axis].size);
         layers_ = first == 1 ? header->axis[0].size : 1;
+        if (has_single) about.notes.push_back("a fourth axis of one sample was left out");
         integers_ = nrrdTypeIsIntegral[header->type] != 0;
         flatten_segments();
         stream_ = stream_of(*header, *io, path, about.count() * layers_);
@@ -270,9 +279,10 @@ public:
         std::vector<float> layered(values.size() * layers_);
         take(first, layered);
         std::fill(values.begin(), values.end(), 0.0f);
-        const bool counts = k == counted_;
+        const bool counts = shown_ < 0 && k == counted_;
         for (std::size_t s = 0; s < segments_.size(); ++s) {
             const Layered& segment = segments_[s];
+            if (shown_ >= 0 && segment.layer != shown_) continue;
             const auto label = static_cast<float>(segment.label), in_one = static_cast<float>(segment.segment.label);
             for (std::size_t n = 0; n < values.size(); ++n)
                 if (layered[n * layers_ + static_cast<std::size_t>(segment.layer)] == label) {
@@ -283,9 +293,14 @@ public:
         counted_ += counts;
     }
 
+    int layer_count() const override { return static_cast<int>(layers_); }
+    void show_layer(int layer) override { shown_ = layers_ > 1 ? layer : -1; }
     bool in_any_order() const override { return !stream_ || stream_->in_any_order(); }
 
     void settle(const Tally& tally) override {
+        if (layers_ > 1 && shown_ < 0)
+            about.notes.push_back(
+                fmt::format("{} segment layers were merged into one label map, numbered from 1", layers_));
         if (covered_ > 0)
             about.notes.push_back(
                 fmt::format("{} voxels lie in several segments; the last segment takes them", covered_));
@@ -312,9 +327,6 @@ private:
             }
             about.segments.push_back(segment.segment);
         }
-        if (layers_ > 1)
-            about.notes.push_back(
-                fmt::format("{} segment layers were merged into one label map, numbered from 1", layers_));
     }
 
     // Text and bzip2 are read at once.
@@ -340,6 +352,7 @@ private:
     std::optional<SampleStream> stream_;
     std::vector<float> whole_;
     std::size_t layers_ = 1, covered_ = 0;
+    int shown_ = -1;   // layer; -1: all
     int counted_ = 0;  // slices whose overlapping voxels are counted
     bool integers_ = false;
 };

@@ -124,11 +124,12 @@ void ReorientedVolume::read(const std::vector<int>& slices, bool keep) {
     std::vector<std::vector<float>> values(std::min(at_once, slices.size()), std::vector<float>(reader_.slice_size()));
     for (std::size_t start = 0; start < slices.size(); start += at_once) {
         const std::size_t count = std::min(at_once, slices.size() - start);
+        std::vector<Tally> tallies(count);
         for (std::size_t n = 0; n < count; ++n) {
             leave_if_stopped();
-            reader_.read(slices[start + n], values[n]);
+            const std::size_t replaced = reader_.read_finite(slices[start + n], values[n]);
+            if (!is_counted_[static_cast<std::size_t>(slices[start + n])]) tallies[n].not_numbers = replaced;
         }
-        std::vector<Tally> tallies(count);
         run_(static_cast<int>(count), [&](int job) {
             const auto n = static_cast<std::size_t>(job);
             const int slice = slices[start + n];
@@ -195,16 +196,19 @@ double ReorientedVolume::cubic_at(const Vec3& u) const {
         weight[a] = cubic(u[axis] - base[a]);
     }
     const auto clamped = [&](std::size_t a, int n) { return std::clamp(base[a] - 1 + n, 0, size[a] - 1); };
-    double sum = 0.0;
+    double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
             double along = 0.0;
-            for (int i = 0; i < 4; ++i)
-                along +=
-                    weight[0][static_cast<std::size_t>(i)] * double(value(clamped(0, i), clamped(1, j), clamped(2, k)));
+            for (int i = 0; i < 4; ++i) {
+                const auto sample = double(value(clamped(0, i), clamped(1, j), clamped(2, k)));
+                low = std::min(low, sample), high = std::max(high, sample);
+                along += weight[0][static_cast<std::size_t>(i)] * sample;
+            }
             sum += weight[1][static_cast<std::size_t>(j)] * weight[2][static_cast<std::size_t>(k)] * along;
         }
-    return sum;
+    // A cubic overshoots at edges; values that no sample has are artefacts.
+    return std::clamp(sum, low, high);
 }
 
 double ReorientedVolume::nearest_at(const Vec3& u) const {

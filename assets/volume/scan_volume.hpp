@@ -22,10 +22,14 @@ enum class HuKind {
     scanner,     ///< uncalibrated: HU needs two known points
     none         ///< labels, no densities
 };
-enum class VolumeKind { ct, labels };
+enum class VolumeKind {
+    ct,
+    labels,
+    maybe_labels  ///< floating-point samples with values like those of labels: the file does not state which
+};
 
 std::string_view name_of(HuKind kind);      ///< "calibrated", "masked", "scanner", "none"
-std::string_view name_of(VolumeKind kind);  ///< "ct", "labels"
+std::string_view name_of(VolumeKind kind);  ///< "ct", "labels", "labels?"
 std::string_view name_of(Frame frame);      ///< "LPS", "RAS"
 
 /// One structure of a label map.
@@ -61,7 +65,8 @@ struct ScanVolume {
 
 struct ReadOptions {
     std::string series;  ///< DICOM: the series to read, by its UID or the end of it; needed when a folder has several
-    std::optional<std::string> unit;  ///< "mm", "cm" or "m", for files that state no unit of length; default: mm
+    std::optional<std::string> unit{};  ///< "mm", "cm" or "m", for files that state no unit of length; default: mm
+    bool fill_gaps = false;  ///< DICOM: interpolate where slices are missing, with a note; else such a series is refused
 };
 
 /// Reads NRRD (.nrrd, .nhdr, .seg.nrrd), NIfTI-1 and -2 (.nii, .nii.gz), a DICOM file, a folder or zip of them,

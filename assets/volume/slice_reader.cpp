@@ -6,6 +6,7 @@
 #include "dsp/volume/value_range.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tactus::volume {
@@ -16,7 +17,6 @@ void Tally::add(std::span<const float> slice, int k, const std::array<int, 3>& s
     const auto width = static_cast<std::size_t>(size[0]), rows = static_cast<std::size_t>(size[1]);
     const ValueRange range = range_of(slice);
     low = std::min(low, range.low), high = std::max(high, range.high);
-    finite = finite && range.finite;
     zeros += range.zeros;
     count += slice.size();
     const auto edge = [&](float value) { ++border, border_zeros += value == 0.0f; };
@@ -47,13 +47,26 @@ void Tally::add(const Tally& other) {
     if (other.count == 0) return;
     low = count == 0 ? other.low : std::min(low, other.low);
     high = count == 0 ? other.high : std::max(high, other.high);
-    finite = finite && other.finite;
+    not_numbers += other.not_numbers;
     whole = whole && other.whole;
     count += other.count;
     zeros += other.zeros;
     border += other.border;
     border_zeros += other.border_zeros;
     if (whole && labels.size() <= 1000) labels.insert(other.labels.begin(), other.labels.end());
+}
+
+std::size_t SliceReader::read_finite(int k, std::span<float> values) {
+    read(k, values);
+    if (values.empty() || range_of(values).finite) return 0;
+    float low = std::numeric_limits<float>::infinity();
+    for (const float value : values)
+        if (std::isfinite(value)) low = std::min(low, value);
+    if (!std::isfinite(low)) low = 0.0f;
+    std::size_t replaced = 0;
+    for (float& value : values)
+        if (!std::isfinite(value)) value = low, ++replaced;
+    return replaced;
 }
 
 ScanVolume read_all(SliceReader& reader) {
@@ -64,7 +77,7 @@ ScanVolume read_all(SliceReader& reader) {
     for (int k = 0; k < reader.about.size[2]; ++k) {
         leave_if_stopped();
         const auto slice = std::span(values).subspan(static_cast<std::size_t>(k) * each, each);
-        reader.read(k, slice);
+        tally.not_numbers += reader.read_finite(k, slice);
         tally.add(slice, k, reader.about.size);
     }
     reader.settle(tally);

@@ -3,6 +3,7 @@
 
 #include "devices/audio/portaudio_session.hpp"
 #include "devices/audio/quiet.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -10,10 +11,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 namespace tactus::audio {
 
@@ -114,7 +113,7 @@ Captured play_and_capture(const Duplex& duplex, const std::vector<float>& sample
     }
     std::size_t before = 0;
     for (int idle = 0; before < samples.size();) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        sleep_for(10'000'000);
         const std::size_t now = shared->done.load(std::memory_order_acquire);
         idle = now == before ? idle + 1 : 0;
         before = now;

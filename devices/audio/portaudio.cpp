@@ -5,6 +5,7 @@
 #include "devices/audio/portaudio_session.hpp"
 #include "devices/audio/quiet.hpp"
 #include "devices/audio/stream_state.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -86,19 +87,15 @@ struct OpenStream {
 
 constexpr std::size_t most_unheard = 65536;  // frames in one callback of a card without outputs
 
-std::int64_t steady_now_ns() {
-    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// In freewheel mode the server waits for its clients, so the callback waits for the engine's sound, up to a limit.
 void wait_for_sound(const StreamState& state, unsigned long frames) {
-    for (int i = 0; i < 5000 && !state.can_feed(frames); ++i) std::this_thread::sleep_for(200us);
+    for (int i = 0; i < 5000 && !state.can_feed(frames); ++i) sleep_for(200'000);
 }
 
 int feed_card(const void* input, void* output, unsigned long frames, const PaStreamCallbackTimeInfo*,
               PaStreamCallbackFlags flags, void* opened) {
     auto& open = *static_cast<OpenStream*>(opened);
-    const std::int64_t now = steady_now_ns();
+    const std::int64_t now = steady_ns();
     if (open.inputs)
         open.inputs->capture(static_cast<const float*>(input), frames, now,
                              (flags & (paInputOverflow | paInputUnderflow)) != 0);
@@ -107,7 +104,7 @@ int feed_card(const void* input, void* output, unsigned long frames, const PaStr
         if (frames <= most_unheard) open.state.feed(open.unheard.data(), frames, now);
         return paContinue;
     }
-    open.state.feed(static_cast<float*>(output), frames, open.inputs ? now : steady_now_ns());
+    open.state.feed(static_cast<float*>(output), frames, open.inputs ? now : steady_ns());
     return paContinue;
 }
 
@@ -186,7 +183,7 @@ private:
         open_->state.end();
         std::int64_t frames = open_->state.progress().frames;
         for (int idle = 0; idle < 50 && !open_->state.is_empty();) {
-            std::this_thread::sleep_for(10ms);
+            sleep_for(10'000'000);
             const std::int64_t now = open_->state.progress().frames;
             idle = now == frames ? idle + 1 : 0;
             frames = now;
@@ -202,7 +199,7 @@ private:
         std::promise<void> done;
         std::future<void> closed = done.get_future();
         std::thread([opened = std::move(open_), promise = std::move(done)]() mutable {
-            if (opened->jack && opened->jack->is_gone()) std::this_thread::sleep_for(std::chrono::hours(24 * 365));
+            if (opened->jack && opened->jack->is_gone()) sleep_for(std::chrono::nanoseconds(std::chrono::hours(24 * 365)).count());
             Pa_StopStream(opened->stream);
             Pa_CloseStream(opened->stream);
             opened.reset();

@@ -5,6 +5,7 @@
 #include "devices/board/mechanism.hpp"
 #include "devices/driver/buttons.hpp"
 #include "devices/gripper/serial_port.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 
 #include <fmt/format.h>
@@ -66,12 +67,12 @@ public:
             throw Error(fmt::format("{}; {}", why, lines_here()));
         protocol_->reset();
         gives_ = mode == driver::OpenMode::run;
-        heard_ns_ = hosted::steady_ns();
+        heard_ns_ = steady_ns();
         const std::uint64_t before = count_ = protocol_->told().count;
         step("wait for an answer of the board");
         const std::vector<std::uint8_t> hello = protocol_->greeting();
-        for (const std::int64_t end = hosted::steady_ns() + longest_opening_ns; protocol_->told().count == before;) {
-            if (hosted::steady_ns() > end)
+        for (const std::int64_t end = steady_ns() + longest_opening_ns; protocol_->told().count == before;) {
+            if (steady_ns() > end)
                 throw Error(
                     fmt::format("the board at {} does not answer; is it the right port, and does the board run "
                                 "the right program?",
@@ -80,7 +81,7 @@ public:
             // Some boards start anew when their line is opened: asked again until they have.
             for (int i = 0; i < 50 && protocol_->told().count == before; ++i) {
                 if (may_ask()) ask({}, false);
-                hosted::sleep_until(hosted::steady_ns() + 2 * ms);
+                sleep_for(2 * ms);
                 if (!listen()) throw Error("the line was lost");
             }
         }
@@ -95,7 +96,7 @@ public:
 
     bool round(driver::Exchange& exchange) noexcept override {
         if (!listen()) return false;
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         const Told& told = protocol_->told();
         if (told.count != count_) {
             count_ = told.count;
@@ -167,14 +168,14 @@ private:
     }
 
     void ask(const std::array<double, 2>& torque, bool run) noexcept {
-        asked_ns_ = hosted::steady_ns();
+        asked_ns_ = steady_ns();
         asked_count_ = protocol_->told().heard;
         port_.send(protocol_->request(torque, run && gives_));
     }
 
     /// A line that is never silent is told all the same: its board may hold a force.
     bool may_ask() const noexcept {
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         return protocol_->told().heard != asked_count_ ||
                now - asked_ns_ >= std::max(longest_patience_ns, 2 * protocol_->patience_ns()) ||
                now - std::max(asked_ns_, byte_ns_) >= protocol_->patience_ns();
@@ -185,7 +186,7 @@ private:
         std::array<std::uint8_t, 512> bytes;
         const std::size_t count = port_.read(bytes);
         if (count > 0) {
-            const std::int64_t now = hosted::steady_ns();
+            const std::int64_t now = steady_ns();
             protocol_->take({bytes.data(), count}, now - byte_ns_);
             byte_ns_ = now;
         }

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "devices/haptic/pulled_hand.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/force_gate.hpp"
 #include "devices/hosted/seqlock.hpp"
 #include "dsp/control/adaptive_window.hpp"
+#include "dsp/core/clock.hpp"
 #include "graph/node/device.hpp"
 
 #include <atomic>
@@ -36,7 +36,7 @@ public:
     static constexpr std::int64_t oldest_sample_ns = 20'000'000;
     static constexpr std::int64_t oldest_force_ns = 5'000'000, force_fade_ns = 5'000'000;  ///< 0 N after both
 
-    explicit Exchange(Clock now = hosted::boot_ns) noexcept : now_(now) {}
+    explicit Exchange(Clock now = boot_ns) noexcept : now_(now) {}
 
     /// Before the threads begin, and by the device's thread when a device is there again: forces begin anew with small
     /// ones. `noise` in m: most that a position is away from the truth; `angular_noise` in rad.

@@ -2,7 +2,7 @@
 #include "devices/driver/threaded_device.hpp"
 
 #include "devices/driver/confirmation.hpp"
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -109,13 +109,13 @@ void ThreadedDevice::Shared::wait(std::chrono::milliseconds time) noexcept {
 
 /// Until the device is lost or the end; true: lost.
 bool ThreadedDevice::Shared::serve() noexcept {
-    std::int64_t next = hosted::steady_ns();
+    std::int64_t next = steady_ns();
     while (!must_end.load(std::memory_order_acquire)) {
         if (!backend->round(*exchange)) return true;
-        const std::int64_t step = backend->round_ns(), now = hosted::steady_ns();
+        const std::int64_t step = backend->round_ns(), now = steady_ns();
         // Also a round that takes longer leaves time to others.
         next = std::max(next + step, now + step / 4);
-        hosted::sleep_until(next);
+        sleep_until(next);
     }
     return false;
 }

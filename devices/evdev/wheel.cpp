@@ -3,6 +3,7 @@
 
 #include "devices/driver/buttons.hpp"
 #include "devices/evdev/force_effect.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
@@ -172,7 +173,7 @@ public:
         exchange.publish(reading(angle));
         if (!gives_) return true;
         const Wrench wanted = exchange.force();
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         if (effect_.give(strength(angle, wanted), now)) {
             refused_ns_ = 0;
             return true;

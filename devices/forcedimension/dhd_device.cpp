@@ -30,6 +30,7 @@ Quat from_sdk(const double (&rows)[3][3]) noexcept {
 }
 
 constexpr unsigned char watchdog_of_device = 160;  // of 125 µs: 20 ms
+constexpr double delay_s = 1e-3;  // two of the SDK's exchanges and one round of the driver's thread
 constexpr int most_failures = 5;
 constexpr int rounds_between_looks = 40;
 
@@ -40,6 +41,7 @@ public:
     driver::Outline outline() const override {
         driver::Outline outline;
         outline.info.name = "Force Dimension device";
+        outline.info.delay = delay_s;
         outline.info.senses_rotation = true;
         try {
             DhdApi api(library_);
@@ -148,7 +150,7 @@ private:
         info.max_stiffness = model_.stiffness;
         info.resolution = model_.resolution;
         info.angular_resolution = 1.6e-3;
-        info.delay = 1e-3;  // two of the SDK's exchanges and one round of the driver's thread
+        info.delay = delay_s;
         info.senses_rotation = model_.turns;
         if (model_.type == 0) info.name += fmt::format(" (unknown type {})", type);
         return info;

@@ -3,6 +3,7 @@
 
 #include "devices/haply/inverse_messages.hpp"
 #include "devices/haply/web_socket.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +69,7 @@ public:
         is_first_ = true;
         waits_ = false;
         gives_ = mode == driver::OpenMode::run;
-        heard_ns_ = hosted::steady_ns();
+        heard_ns_ = steady_ns();
         driver::Opened opened;
         opened.info = info();
         if (!state.type.empty()) opened.info.name = fmt::format("Haply {}", state.type);
@@ -80,7 +81,7 @@ public:
     /// The service says one state for each text: it is asked again when it has answered, or seems to have lost a text.
     bool round(driver::Exchange& exchange) noexcept override {
         try {
-            const std::int64_t now = hosted::steady_ns();
+            const std::int64_t now = steady_ns();
             if (!waits_ || now - told_ns_ > tell_again_ns) {
                 const Wrench force = gives_ ? exchange.force() : Wrench{};
                 if (!service_.send(force_text(device_, force.force, key_, is_first_))) return false;
@@ -135,9 +136,9 @@ private:
     }
 
     InverseState first_state() {
-        const auto until = std::chrono::steady_clock::now() + longest_opening;
+        const std::int64_t until = steady_ns() + std::chrono::nanoseconds(longest_opening).count();
         std::string why = "it says nothing";
-        while (std::chrono::steady_clock::now() < until) {
+        while (steady_ns() < until) {
             const auto heard = service_.receive(milliseconds(100));
             if (heard == WebSocket::Heard::closed) throw Error("the service hung up");
             if (heard == WebSocket::Heard::nothing) continue;

@@ -2,6 +2,7 @@
 #include "devices/haply/web_socket.hpp"
 
 #include "devices/haply/handshake.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -22,15 +23,11 @@ namespace tactus::haply {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr std::size_t longest_greeting = 8 * 1024;
 
-int left_of(Clock::time_point until) {
-    const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now()).count();
-    return static_cast<int>(std::max<std::int64_t>(left, 0));
-}
+std::int64_t after(milliseconds time) { return steady_ns() + std::chrono::nanoseconds(time).count(); }
 
 bool wait_for(int file, short what, int longest_ms) {
     pollfd one{file, what, 0};
@@ -107,7 +104,7 @@ std::string client_frame(int opcode, std::string_view text, std::uint32_t key) {
 void WebSocket::open(const std::string& host, int port, milliseconds longest) {
     close();
     reader_ = {};
-    const auto until = Clock::now() + longest;
+    const std::int64_t until = after(longest);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -122,18 +119,18 @@ void WebSocket::open(const std::string& host, int port, milliseconds longest) {
     ::setsockopt(file_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     if (::connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
         if (errno != EINPROGRESS) fail(std::strerror(errno));
-        if (!wait_for(file_, POLLOUT, left_of(until))) fail("no answer");
+        if (!wait_for(file_, POLLOUT, ms_until(until))) fail("no answer");
         int failure = 0;
         socklen_t size = sizeof failure;
         ::getsockopt(file_, SOL_SOCKET, SO_ERROR, &failure, &size);
         if (failure != 0) fail(std::strerror(failure));
     }
     const std::string key = handshake_key(), hello = greeting(host, port, key);
-    if (!write_all(hello, milliseconds(left_of(until)))) fail("it takes no greeting");
+    if (!write_all(hello, milliseconds(ms_until(until)))) fail("it takes no greeting");
     std::string answer;
     std::size_t end = std::string::npos;
     while (end == std::string::npos) {
-        if (!wait_for(file_, POLLIN, left_of(until))) fail("it does not answer a WebSocket's greeting");
+        if (!wait_for(file_, POLLIN, ms_until(until))) fail("it does not answer a WebSocket's greeting");
         std::array<char, 512> bytes;
         const ssize_t count = ::recv(file_, bytes.data(), bytes.size(), 0);
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) fail("it hung up");
@@ -150,12 +147,12 @@ void WebSocket::close() noexcept {
 }
 
 bool WebSocket::write_all(std::string_view bytes, milliseconds longest) {
-    const auto until = Clock::now() + longest;
+    const std::int64_t until = after(longest);
     while (!bytes.empty()) {
         const ssize_t count = ::send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
         if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
         else if (count < 0 && errno != EAGAIN && errno != EINTR) return false;
-        else if (!wait_for(file_, POLLOUT, left_of(until))) return false;
+        else if (!wait_for(file_, POLLOUT, ms_until(until))) return false;
     }
     return true;
 }
@@ -166,7 +163,7 @@ bool WebSocket::send(std::string_view text) {
 }
 
 WebSocket::Heard WebSocket::receive(milliseconds longest) {
-    const auto until = Clock::now() + longest;
+    const std::int64_t until = after(longest);
     // The bound is for a peer that floods with pings.
     for (int turns = 0; turns < 64; ++turns) {
         switch (reader_.next()) {
@@ -178,7 +175,7 @@ WebSocket::Heard WebSocket::receive(milliseconds longest) {
             case MessageReader::Found::broken: return Heard::closed;
             case MessageReader::Found::nothing: break;
         }
-        if (!wait_for(file_, POLLIN, left_of(until))) return Heard::nothing;
+        if (!wait_for(file_, POLLIN, ms_until(until))) return Heard::nothing;
         std::array<char, 4096> bytes;
         const ssize_t count = ::recv(file_, bytes.data(), bytes.size(), 0);
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return Heard::closed;

@@ -4,8 +4,8 @@
 #include "devices/evdev/force_effect.hpp"
 #include "devices/haptic/operated.hpp"
 #include "devices/haptic/pulled_hand.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/seqlock.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fcntl.h>
@@ -103,7 +103,7 @@ private:
 
     /// A line that is slow gets no more than it can take.
     void rumble() noexcept {
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         if (rumble_file_ < 0 || now - rumbled_ns_ < rumble_ms * std::int64_t{1'000'000}) return;
         effect_.give(glm::length(felt_.get().force) / full_N_, now);
         rumbled_ns_ = now;
@@ -230,7 +230,7 @@ public:
         simulate::advance(hand_, steered_, force_.get(), elapsed_s);
         // A lost gamepad is a fault of the device: no sample is valid any more, which fades the force.
         const bool is_here = steered_.state.is_lost == 0;
-        if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), hosted::steady_ns()});
+        if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), steady_ns()});
         return {hand_.pose, hand_.twist, static_cast<std::uint32_t>(steered_.state.buttons), ++counter_,
                 is_here && is_valid(hand_.pose)};
     }

@@ -2,7 +2,7 @@
 #include "devices/haptic/mouse.hpp"
 
 #include "devices/haptic/operated.hpp"
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -153,7 +153,7 @@ std::unique_ptr<HapticDevice> open_mouse(Options& options, WindowHand& link, std
 }
 
 std::unique_ptr<HapticDevice> open_mouse(Options& options, const PathResolver&) {
-    return open_mouse(options, window_hand(), hosted::steady_ns);
+    return open_mouse(options, window_hand(), steady_ns);
 }
 
 }  // namespace tactus::haptic

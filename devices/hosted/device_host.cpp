@@ -2,9 +2,9 @@
 #include "devices/hosted/device_host.hpp"
 
 #include "devices/driver/threaded_device.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/driver_loop.hpp"
 #include "devices/hosted/host_process.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ public:
         const std::string reason = wait_for_end();
         loop_.end();
         const std::int64_t give_up = steady_ns() + longest_farewell_ns;
-        while (!loop_.is_over() && steady_ns() < give_up) sleep_until(steady_ns() + 1'000'000);
+        while (!loop_.is_over() && steady_ns() < give_up) sleep_for(1'000'000);
         tell(reason);
         // Neither joined nor unwound: who does not return from a driver never will.
         if (!loop_.is_over() || driver::abandoned_threads() > 0) ::_exit(3);

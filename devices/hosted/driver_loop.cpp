@@ -2,8 +2,8 @@
 #include "devices/hosted/driver_loop.hpp"
 
 #include "devices/haptic/catalogue.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/placement.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 

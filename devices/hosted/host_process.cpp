@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/host_process.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -144,14 +144,13 @@ bool HostProcess::has_ended() noexcept {
 }
 
 bool HostProcess::wait(std::chrono::milliseconds longest) noexcept {
-    using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + longest;
+    const std::int64_t until = steady_ns() + std::chrono::nanoseconds(longest).count();
     while (!has_ended()) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
-        if (left <= 0) return false;
+        const int left = ms_until(until);
+        if (left == 0) return false;
         pollfd ended{handle_, POLLIN, 0};
-        if (handle_ >= 0) ::poll(&ended, 1, static_cast<int>(left));
-        else std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (handle_ >= 0) ::poll(&ended, 1, left);
+        else sleep_for(1'000'000);
     }
     return true;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/hosted_device.hpp"
 
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/force_gate.hpp"
 #include "devices/hosted/message.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -88,11 +88,9 @@ std::string HostedDevice::how_it_ended() const {
 }
 
 void HostedDevice::wait_for(const char* reply, const haptic::PathResolver& resolve) {
-    using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + std::chrono::duration<double>(placement_.open_timeout);
+    const std::int64_t until = steady_ns() + std::llround(1e9 * placement_.open_timeout);
     for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
-        const Received heard = receive(socket_.ours, std::max(left, std::chrono::milliseconds(0)));
+        const Received heard = receive(socket_.ours, std::chrono::milliseconds(ms_until(until)));
         if (heard.kind == Received::nothing) {
             process_->kill();
             fail(fmt::format(
@@ -185,6 +183,11 @@ std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const hapt
     std::unique_ptr<HapticDevice> device = haptic::open_haptic_device(request.driver, request.where, options, resolve);
     options.finish();
     return device;
+}
+
+double added_latency_s(const DeviceRequest& request, double period_s) {
+    Options options(request.owner, request.settings, request.where);
+    return read_placement(options, request.driver).added_latency_s(period_s);
 }
 
 haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve) {

@@ -93,6 +93,10 @@ std::unique_ptr<HapticDevice> open_placed(const DeviceRequest& request, const ha
 /// Opens it in this process whatever its options say, for runs that are not live. Throws Error.
 std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
 
+/// s that the process of its own, if the options ask for one, adds to the delay of a device whose nodes have `period_s`.
+/// Throws Error on options that cannot be read.
+double added_latency_s(const DeviceRequest& request, double period_s);
+
 /// What the driver of hardware says of it without opening it. Throws Error on options that cannot be read.
 haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/message.hpp"
 
+#include "dsp/core/clock.hpp"
+
 #include <fmt/format.h>
 
 #include <poll.h>
@@ -56,12 +58,11 @@ void send(int socket, const Words& words) {
 }
 
 Received receive(int socket, std::optional<std::chrono::milliseconds> longest) {
-    using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + longest.value_or(std::chrono::milliseconds(0));
+    const std::int64_t until =
+        steady_ns() + std::chrono::nanoseconds(longest.value_or(std::chrono::milliseconds(0))).count();
     for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
         pollfd one{socket, POLLIN, 0};
-        const int ready = ::poll(&one, 1, longest ? static_cast<int>(std::max<std::int64_t>(left, 0)) : -1);
+        const int ready = ::poll(&one, 1, longest ? ms_until(until) : -1);
         if (ready < 0 && errno == EINTR) continue;
         if (ready <= 0) return {ready == 0 ? Received::nothing : Received::closed, {}};
         std::vector<char> bytes(longest_message);  // only now: a driver's thread asks each round

@@ -3,6 +3,7 @@
 
 #include "devices/driver/buttons.hpp"
 #include "devices/openhaptics/hd_api.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::int64_t longest_silence_ns = 500'000'000;
 constexpr unsigned short priority = 32767;  // the vendor's default
+constexpr double servo_delay_s = 1e-3;  // one tick of the servo loop
 
 // OpenHaptics has x to the right, y up, z towards the user.
 Vec3 from_hd(const Vec3& v) noexcept { return {v.x, -v.z, v.y}; }
@@ -88,7 +90,7 @@ unsigned call_servo(void* data) noexcept {
     Servo& servo = *static_cast<Servo*>(data);
     servo.is_inside.store(true);
     if (!servo.has_ended.load() && !servo.is_lost.load()) run_servo(servo);
-    servo.called_ns.store(hosted::steady_ns());
+    servo.called_ns.store(steady_ns());
     servo.is_inside.store(false);
     return servo.has_ended.load() ? 0 : callback_continue;
 }
@@ -109,6 +111,7 @@ public:
     driver::Outline outline() const override {
         driver::Outline outline;
         outline.info.name = "3D Systems Touch";
+        outline.info.delay = servo_delay_s;
         outline.info.senses_rotation = true;
         try {
             HdApi api(library_);
@@ -150,7 +153,7 @@ public:
     }
 
     bool round(driver::Exchange&) noexcept override {
-        const std::int64_t now = hosted::steady_ns();
+        const std::int64_t now = steady_ns();
         if (!runs_) {
             servo_->called_ns = now;
             handle_ = api_->schedule(call_servo, servo_, priority);
@@ -171,7 +174,7 @@ public:
         if (servo_) servo_->has_ended = true;
         if (runs_) {
             // A thread of the vendor that hangs still has the device; whoever ends the driver does not wait for it.
-            while (servo_->is_inside) hosted::sleep_until(hosted::steady_ns() + 1'000'000);
+            while (servo_->is_inside) sleep_for(1'000'000);
             api_->stop_scheduler();
             api_->unschedule(handle_);
         }
@@ -236,7 +239,7 @@ private:
         info.max_torque = info.actuates_torque ? torque * 1e-3 : 0.0;
         info.resolution = 55e-6;
         info.angular_resolution = 1e-3;
-        info.delay = 1e-3;
+        info.delay = servo_delay_s;
         info.senses_rotation = true;
         return opened;
     }

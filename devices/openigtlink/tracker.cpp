@@ -3,6 +3,7 @@
 
 #include "devices/driver/peer_socket.hpp"
 #include "devices/openigtlink/message.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/rotation.hpp"
 
 #include <fmt/format.h>
@@ -90,7 +91,7 @@ public:
         if (!read()) return false;
         driver::Reading reading;
         reading.has_twist = true;
-        reading.is_valid = motion_.at(hosted::boot_ns(), settings_.oldest_ns, reading.pose, reading.twist);
+        reading.is_valid = motion_.at(boot_ns(), settings_.oldest_ns, reading.pose, reading.twist);
         exchange.publish(reading);
         return true;
     }
@@ -112,7 +113,7 @@ private:
             reader_.take(std::span(bytes).first(*count));
             while (const std::optional<Message> message = reader_.next())
                 if (const std::optional<Pose> pose = pose_in(*message, settings_.transform))
-                    motion_.add(*pose, hosted::boot_ns());
+                    motion_.add(*pose, boot_ns());
         } catch (...) {  // no memory
             return false;
         }

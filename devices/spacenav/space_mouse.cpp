@@ -5,6 +5,7 @@
 #include "devices/driver/peer_socket.hpp"
 #include "devices/haptic/operated.hpp"
 #include "devices/spacenav/events.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/simulate/hand.hpp"
 
@@ -103,7 +104,7 @@ public:
         std::array<std::uint8_t, 1024> bytes;
         const std::optional<std::size_t> count = driver::read_now(file_, bytes);
         if (!count) return false;
-        const std::int64_t now = hosted::boot_ns(), elapsed_ns = last_ns_ == 0 ? 0 : now - last_ns_;
+        const std::int64_t now = boot_ns(), elapsed_ns = last_ns_ == 0 ? 0 : now - last_ns_;
         last_ns_ = now;
         reader_.pass(elapsed_ns);
         reader_.take(std::span(bytes).first(*count));
@@ -112,7 +113,7 @@ public:
         steered_.twist = {shift_of(cap) * settings_.speed, turn_of(cap) * settings_.turn_speed};
         const Wrench force = exchange.force();
         simulate::advance(hand_, steered_, force, std::clamp(elapsed, 0.0, longest_step_s));
-        exchange.pull.write({hand_.pose, steered_.wanted, force, hosted::steady_ns()});
+        exchange.pull.write({hand_.pose, steered_.wanted, force, steady_ns()});
         driver::Reading reading;
         reading.pose = hand_.pose;
         reading.twist = hand_.twist;

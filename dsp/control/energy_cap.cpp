@@ -15,20 +15,39 @@ namespace {
 /// Radius about a sample in which the truth lies: half the diagonal of a cell of the grid of encoder steps.
 double radius_of(double step) noexcept { return 0.5 * std::sqrt(3.0) * step; }
 
-/// What a share s of a force will give in a hold, J: s · along + s² · own.
+/// Energy of a force in the coming hold, J, as a function of the fraction s of it that is given: s · along + s² · own.
 struct Gift {
     double along = 0.0, own = 0.0;
+    double trusted = 0.0;  // J, not counted: a slow hand is trusted to hold against it
     double all() const noexcept { return std::max(0.0, along + own); }
 };
 
-/// `yield` s²/kg: how far a unit of force moves the lightest hand in the hold. A hand that moves fast against the force
-/// may turn round before the hold ends: `fast` of 1. A hand at rest is held by its owner: `fast` of 0.
-Gift gift(const Vec3& force, const Vec3& velocity, double hold_s, double yield, double fast) noexcept {
-    const double along = glm::dot(force, velocity) * hold_s, own = glm::dot(force, force) * yield;
-    return {along, along > 0.0 ? own : own * fast};
+/// The hand before the coming hold, by the lightest hand that there may be.
+struct Start {
+    Vec3 velocity{0.0};  // measured, the mean of the last hold
+    Vec3 gained{0.0};  // since, by the forces of that hold and those under way
+    double fast = 0.0;
+};
+
+/// `yield` in s/kg: hold over mass. A hand that moves along the force, or fast, may be free; one that is slow is held by its
+/// owner, except for what exceeds `trust` J.
+Gift gift(const Vec3& force, const Start& start, double hold_s, double yield, double trust) noexcept {
+    const double along = glm::dot(force, start.velocity) * hold_s,
+                 gained = std::max(0.0, glm::dot(force, start.gained) * hold_s),
+                 own = 0.5 * glm::dot(force, force) * yield * hold_s, light = gained + own;
+    const double trusted = along > 0.0 ? 0.0 : (1.0 - start.fast) * std::min(trust, light);
+    const double counted = light > 0.0 ? 1.0 - trusted / light : 1.0;
+    return {along + counted * gained, counted * own, trusted};
 }
 
 }  // namespace
+
+double EnergyCap::max_gain(const EnergyCapSettings& settings, double stiffness, double max_force) noexcept {
+    const double hold = settings.period_s, delay = settings.delay_s, mass = settings.least_mass;
+    const double force = std::min(max_force, std::sqrt(mass * stiffness) + stiffness * (hold + delay));
+    const double reach = force * force * (hold + delay) / mass;
+    return std::min(rest_J, reach * (hold + delay)) + force * settings.resolution + 0.2 * reach * delay;
+}
 
 void EnergyCap::prepare(const EnergyCapSettings& settings) noexcept {
     *this = EnergyCap{};
@@ -60,15 +79,12 @@ Wrench EnergyCap::acting() const noexcept {
     return held_[whole] * (1.0 - part) + held_[whole + 1] * part;
 }
 
-/// What the forces that are under way will give before the next one acts.
-double EnergyCap::pending(const Motion& moved, const Motion& turned) const noexcept {
+/// Impulse of the forces that are under way when the coming hold begins to act, N·s and N·m·s.
+Wrench EnergyCap::under_way() const noexcept {
     const double ticks = std::clamp(settings_.delay_s / settings_.period_s, 0.0, static_cast<double>(most_delay));
-    double sum = 0.0;
-    for (std::size_t i = 0; static_cast<double>(i) < ticks; ++i) {
-        const double hold = std::min(1.0, ticks - static_cast<double>(i)) * settings_.period_s;
-        sum += gift(held_[i].force, moved.velocity, hold, hold * hold / settings_.least_mass, moved.fast).all() +
-               gift(held_[i].torque, turned.velocity, hold, hold * hold / settings_.least_inertia, turned.fast).all();
-    }
+    Wrench sum;
+    for (std::size_t i = 0; static_cast<double>(i) < ticks; ++i)
+        sum = sum + held_[i] * (std::min(1.0, ticks - static_cast<double>(i)) * settings_.period_s);
     return sum;
 }
 
@@ -149,19 +165,31 @@ Wrench EnergyCap::tick(const Wrench& wanted, const Wrench& committed, const Pose
 }
 
 Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& turned, const Wrench& wanted) noexcept {
-    const double reach_s = hold_s_ + settings_.delay_s;
-    const auto ahead = [&](const Vec3& force, const Motion& motion, double least) {
-        Gift g = gift(force, motion.velocity + motion.lag / hold_s_, hold_s_, hold_s_ * reach_s / least, motion.fast);
+    const Wrench acted = acting(), coming = under_way();
+    double pending = 0.0;
+    const auto ahead = [&](const Vec3& force, const Vec3& last, const Vec3& impulse, const Motion& motion,
+                           double least) {
+        Start start{motion.velocity + motion.lag / hold_s_, last * (0.5 * hold_s_ / least), motion.fast};
+        // What is under way acts first, as one force of that impulse over the delay.
+        double trust = rest_J;
+        if (settings_.delay_s > 0.0) {
+            const Gift first =
+                gift(impulse / settings_.delay_s, start, settings_.delay_s, settings_.delay_s / least, trust);
+            pending += first.all();
+            trust -= first.trusted;
+        }
+        start.gained += impulse / least;
+        Gift g = gift(force, start, hold_s_, hold_s_ / least, trust);
         // The speed of a fast hand is known to a step in its window.
         if (g.all() > 0.0) g.along += glm::length(force) * motion.doubt;
         return g;
     };
-    const Gift by_force = ahead(felt.force, moved, settings_.least_mass),
-               by_torque = ahead(felt.torque, turned, settings_.least_inertia);
+    const Gift by_force = ahead(felt.force, acted.force, coming.force, moved, settings_.least_mass),
+               by_torque = ahead(felt.torque, acted.torque, coming.torque, turned, settings_.least_inertia);
     Gift both;
     for (const Gift& one : {by_force, by_torque})
-        if (one.all() > 0.0) both = {both.along + one.along, both.own + one.own};
-    const double available = std::max(0.0, stored_ + grant_ + damped_ - pending(moved, turned) - reserve());
+        if (one.all() > 0.0) both = {both.along + one.along, both.own + one.own, 0.0};
+    const double available = std::max(0.0, stored_ + grant_ + damped_ - pending - reserve());
     Wrench out = felt;
     if (both.all() > available) {
         // A hand that still moves against the force: the share s with s · along + s² · own = available. Otherwise less.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/control/adaptive_window.hpp"
+#include "dsp/control/stated_hand.hpp"
 #include "dsp/core/types.hpp"
 
 #include <array>
@@ -16,9 +17,9 @@ struct EnergyCapSettings {
     double resolution = 20e-6;          ///< m, step of the reported position
     double angular_resolution = 200e-6; ///< rad, step of the reported orientation
     double delay_s = 0.0;               ///< of the device: from a motion to its sample plus from a force to the hand
-    double damping = 2.0;               ///< N·s/m, that a hand and its device have at least
-    double least_mass = 0.1;            ///< kg, of the lightest hand with its device, for the motion ahead
-    double least_inertia = 1e-4;        ///< kg·m²
+    double damping = StatedHand::damping;       ///< N·s/m, that a hand and its device have at least
+    double least_mass = StatedHand::mass;       ///< kg, of the lightest hand with its device, for the motion ahead
+    double least_inertia = StatedHand::inertia; ///< kg·m²
 };
 
 struct EnergyCapStatistics {
@@ -40,6 +41,9 @@ struct EnergyCapStatistics {
 /// energy of the next hold: J.-P. Kim, J. Ryu, Int. J. Robotics Research 29 (2010), "energy bounding algorithm".
 ///
 /// - One store for force and torque: a contact on a lever takes energy in by translation and returns it by rotation.
+/// - The motion ahead is that of the lightest hand: its velocity now, what the force of the last hold and the forces under
+///   way add to it, and the force itself. A slow hand is trusted to hold against `rest_J` of that, not more: during a long
+///   hold a hand that is let go gains many times as much (at 60 Hz 10 N give 0.1 kg 139 mJ).
 /// - A sample is known to half a step only. While the hand is slow, its motion is the least that the samples allow, so
 ///   that noise of a step, and a hand that trembles, drain nothing; when it is fast, the samples are taken as they are.
 /// - The store empties when the contact ends.
@@ -50,6 +54,7 @@ public:
     static constexpr double slow_rad_s = 0.4;
     static constexpr double calm_m_s = 0.05;  ///< below: what the hand damps is refunded; above twice this: nothing
     static constexpr double calm_s = 0.01;  ///< in which a hand that stops becomes a slow one
+    static constexpr double rest_J = 1.5e-3;  ///< that a hold may give a slow hand which nobody holds
     static constexpr double end_force = 0.02;  ///< N and ...
     static constexpr double end_torque = 0.5e-3;  ///< N·m below which a contact is over
     static constexpr double grant_window_s = 0.02;
@@ -60,6 +65,16 @@ public:
     static constexpr double longest_delay_s(double period_s) noexcept {
         return static_cast<double>(most_delay) * period_s;
     }
+
+    /// Bound on the energy that a contact gives a hand of `damping` beyond 1.05 of what it took, J: with T the period, t_d the delay,
+    /// m the lightest mass, q the step of the samples and F the largest force,
+    ///
+    ///     min(rest_J, F²·(T + t_d)²/m) + F·q + 0.2·F²·t_d·(T + t_d)/m
+    ///
+    /// A slow hand may be free; a sample is known to a step; and a delay that is no multiple of T hides where in a hold the
+    /// force changed. `stiffness` N/m bounds F by what a hand of 1 m/s and that mass reaches, √(m·K) + K·(T + t_d) in N;
+    /// infinite: `max_force` alone. Holds for every rate, delay and stiffness: tests/dsp/control/energy_bound.cpp.
+    static double max_gain(const EnergyCapSettings& settings, double stiffness, double max_force) noexcept;
 
     /// `delay_s` is at most `longest_delay_s`.
     void prepare(const EnergyCapSettings& settings) noexcept;
@@ -97,7 +112,7 @@ private:
     void start_over() noexcept;
     Wrench acting() const noexcept;
     void account(double work, double elapsed_s, double granted_W, bool was_taken) noexcept;
-    double pending(const Motion& moved, const Motion& turned) const noexcept;
+    Wrench under_way() const noexcept;
     double reserve() const noexcept;
     Wrench bound(const Wrench& felt, const Motion& moved, const Motion& turned, const Wrench& wanted) noexcept;
 

@@ -103,13 +103,16 @@ double passive_stiffness(const SampledWall& wall) noexcept {
 bool oscillates(const SampledWall& wall) noexcept {
     constexpr double seconds = 2.0, window = 0.3;
     constexpr int steps = 8;
+    const double farthest = 1.0 + 3.0 * wall.press / wall.stiffness;  // m
     const double h = wall.period / steps;
     DelayedForce force(static_cast<int>(std::lround(wall.delay / h)));
     AdaptiveWindow speed;
     speed.prepare(wall.resolution);
-    double x = -0.1e-3, v = 0.1;  // x > 0 is inside
-    Swing before, last;
-    const auto ticks = static_cast<int>(seconds / wall.period);
+    double x = -0.1e-3, v = wall.approach;  // x > 0 is inside
+    const double quiet = std::max(2.5 * wall.resolution, 2e-6);
+    Swing before, last, now;
+    const auto ticks = static_cast<int>(seconds / wall.period),
+               ticks_in_window = std::max(1, static_cast<int>(window / wall.period));
     for (int n = 0; n < ticks; ++n) {
         const double seen = wall.resolution > 0.0 ? std::round(x / wall.resolution) * wall.resolution : x;
         const double velocity = speed({seen, 0.0, 0.0}, wall.period).x;
@@ -127,21 +130,37 @@ bool oscillates(const SampledWall& wall) noexcept {
         const double t = n * wall.period;
         if (t >= seconds - 1.0 - window && t < seconds - 1.0) before.add(x);
         if (t >= seconds - window) last.add(x);
-        if (!std::isfinite(x) || std::abs(x) > 1.0) return true;
+        if (!std::isfinite(x) || std::abs(x) > farthest) return true;
+        // A wall that is unstable leaves no hand in such a rest.
+        now.add(x);
+        if ((n + 1) % ticks_in_window == 0) {
+            if (now.extent() < 0.1 * quiet) return false;
+            now = {};
+        }
     }
-    const double quiet = std::max(2.5 * wall.resolution, 2e-6);
     return last.extent() > quiet && last.returns() && last.extent() > 0.7 * before.extent();
 }
 
-double simulated_stiffness(SampledWall wall, double most) noexcept {
+SimulatedLimit simulated_stiffness(SampledWall wall, double max) noexcept {
+    constexpr int presses = 6;
+    constexpr double lightest = 0.5, assumed_force = 10.0, softest = 50.0;
+    const double firmest = std::max(lightest, 0.8 * (wall.max_force < 1e6 ? wall.max_force : assumed_force));
     // The first stiffness that oscillates, in steps of a quarter and then of 4 %: there may be quiet islands beyond it.
     const auto first = [&](double from, double step, double end) {
         for (wall.stiffness = from; wall.stiffness < end; wall.stiffness *= step)
             if (oscillates(wall)) break;
         return std::min(wall.stiffness, end);
     };
-    const double rough = first(10.0, 1.25, most);
-    return rough < most ? first(rough / 1.25, 1.04, rough) : most;
+    SimulatedLimit worst{max, 0.0, 0.0};
+    for (int i = presses - 1; i >= 0; --i)
+        for (const double approach : {0.3, 0.1, 0.02}) {
+            wall.press = lightest * std::pow(firmest / lightest, i / (presses - 1.0));
+            wall.approach = approach;
+            const double rough = first(softest, 1.25, worst.stiffness);
+            if (rough >= worst.stiffness) continue;
+            worst = {first(rough / 1.25, 1.04, rough), wall.press, approach};
+        }
+    return worst;
 }
 
 }  // namespace tactus::control

@@ -16,6 +16,7 @@ struct SampledWall {
     double stiffness = 1000.0;  ///< N/m, of the wall
     double damping = 0.0;  ///< N·s/m, of the wall
     double press = 1.0;  ///< N, with which the hand leans on it
+    double approach = 0.1;  ///< m/s, with which the hand reaches it
     double max_force = 1e9;  ///< N, of the device
 };
 
@@ -36,10 +37,20 @@ double quiet_stiffness(const SampledWall& wall) noexcept;
 /// device and wall never give energy. N/m.
 double passive_stiffness(const SampledWall& wall) noexcept;
 
-/// A hand that hits the wall at 0.1 m/s and leans on it is still in motion after 2 s, by more than encoder steps explain.
+/// A hand that hits the wall with `approach` and leans on it with `press` is still in motion after 2 s, by more than encoder
+/// steps explain.
 bool oscillates(const SampledWall& wall) noexcept;
 
-/// The stiffness at which `oscillates` begins, up to `most` N/m.
-double simulated_stiffness(SampledWall wall, double most) noexcept;
+/// The lowest stiffness at which a hand oscillates, and the hand that does.
+struct SimulatedLimit {
+    double stiffness = 0.0;  ///< N/m; `max` where none oscillates
+    double press = 0.0;      ///< N
+    double approach = 0.0;   ///< m/s
+};
+
+/// The worst over presses from 0.5 N to 0.8 of the device's largest force, beyond which no wall holds a hand (of 10 N for a
+/// device that states none), and approaches up to 0.3 m/s. Friction that stops a light press may not stop a firm one, and
+/// the other way round: no single press stands for all. `wall.press` and `wall.approach` are ignored. Searches up to `max` N/m.
+SimulatedLimit simulated_stiffness(SampledWall wall, double max) noexcept;
 
 }  // namespace tactus::control

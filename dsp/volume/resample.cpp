@@ -63,12 +63,22 @@ Grid along(const Grid& in, int held, const Grid& whole, const Grid& layout, int 
         taps.push_back(taps_of(whole, layout, axis, row));
     const auto add = [&](std::size_t block, std::size_t row) {
         float* to = &out.values[(block * to_rows + row) * stride];
+        const bool is_copy = taps[row].index.size() == 1;
+        std::vector<float> low, high;
+        if (!is_copy) {
+            low.assign(stride, std::numeric_limits<float>::infinity());
+            high.assign(stride, -std::numeric_limits<float>::infinity());
+        }
         for (std::size_t n = 0; n < taps[row].index.size(); ++n) {
             const std::size_t at = taps[row].index[n] - static_cast<std::size_t>(held);
             const float* from = &in.values[(block * from_rows + at) * stride];
             const float weight = taps[row].weight[n];
             for (std::size_t s = 0; s < stride; ++s) to[s] += weight * from[s];
+            if (is_copy) return;
+            for (std::size_t s = 0; s < stride; ++s) low[s] = std::min(low[s], from[s]), high[s] = std::max(high[s], from[s]);
         }
+        // A cubic overshoots at edges; values that no sample has are artefacts.
+        for (std::size_t s = 0; s < stride; ++s) to[s] = std::clamp(to[s], low[s], high[s]);
     };
     if (outer == 1) run(wanted.count, [&](int row) { add(0, static_cast<std::size_t>(row)); });
     else

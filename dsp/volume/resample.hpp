@@ -7,7 +7,8 @@
 
 namespace tactus::volume {
 
-/// Values of `grid` at the samples of `layout`, axis by axis with Catmull–Rom cubics (border repeated). Along an axis
+/// Values of `grid` at the samples of `layout`, axis by axis with Catmull–Rom cubics (border repeated), within the range
+/// of the samples that they interpolate. Along an axis
 /// where `layout` is coarser the cubic is widened to it, against aliasing. Samples that both grids share along all axes
 /// keep their bits, and the memory when all of them do.
 Grid resampled(const Grid& grid, const Grid& layout);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/device_guard.hpp"
 
-#include "engine/run/clock.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -36,7 +36,7 @@ void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_
     }
     const Wrench given = clamp_to_device(wanted, device.info());
     device.commit(given);
-    if (run::steady_ns() - now_ns > guard_.limit_ns) is_overdue_.store(true, std::memory_order_release);
+    if (steady_ns() - now_ns > guard_.limit_ns) is_overdue_.store(true, std::memory_order_release);
     guard_.end(given, now_ns);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/device_watch.hpp"
 
-#include "engine/run/clock.hpp"
+#include "dsp/core/clock.hpp"
 #include "engine/run/made_thread.hpp"
 
 #include <pthread.h>
@@ -41,9 +41,9 @@ void DeviceWatch::run() noexcept {
     parameters.sched_priority = priority;
     // Refused for the groups as well then, which is told once.
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-    std::int64_t next = run::steady_ns(), give_up = 0;
+    std::int64_t next = steady_ns(), give_up = 0;
     for (;;) {
-        const std::int64_t time = run::steady_ns();
+        const std::int64_t time = steady_ns();
         const int ending = ending_.load(std::memory_order_acquire);
         if (ending == now) break;
         driver_.enter();
@@ -52,7 +52,7 @@ void DeviceWatch::run() noexcept {
         if (ending == soon && give_up == 0) give_up = time + longest_farewell_ns;
         if (ending == soon && (slot_.guard.is_at_rest() || time > give_up)) break;
         next = std::max(next + poll_every_ns, time);
-        run::sleep_until(next);
+        sleep_until(next);
     }
     is_over_.store(true, std::memory_order_release);
 }

@@ -158,6 +158,8 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     }
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
+    // A run opens it where the patch says; then the device states the whole delay by itself.
+    if (describes_hardware_) slot->port.info.delay += hosted::added_latency_s(request, seconds(period_));
     slot->port.sample = slot->device->acquire(0.0);
     opening.reset();
     if (driver_.is_forsaken()) throw Error(where, "the run has ended");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/clock_decisions.hpp"
 
-#include "engine/run/clock.hpp"
+#include "dsp/core/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "engine/run/link.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a rate group takes up before a call: parameters, a pause, another program.
+#include "dsp/core/clock.hpp"
 #include "dsp/core/realtime.hpp"
-#include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nodes of a rate group, one after the other.
+#include "dsp/core/clock.hpp"
 #include "engine/observe/observed_port.hpp"
-#include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "graph/node/node_memory.hpp"
 

@@ -2,8 +2,8 @@
 // The threads of the groups in a live run.
 #include "engine/run/live_run.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/realtime.hpp"
-#include "engine/run/clock.hpp"
 #include "engine/run/made_thread.hpp"
 
 #include <pthread.h>
@@ -23,13 +23,6 @@ constexpr std::int64_t poll_start_ns = 200'000;
 constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
 // A group that sleeps for longer looks now and then whether the run pauses or has ended.
 constexpr std::int64_t longest_sleep_ns = 10'000'000;
-
-void wait_until(std::int64_t when_ns, std::int64_t since_last_ns) noexcept {
-    const std::int64_t sleep_to = when_ns - std::clamp<std::int64_t>(since_last_ns / spun_part, 0, spin_ns);
-    if (steady_ns() < sleep_to) sleep_until(sleep_to);
-    while (steady_ns() < when_ns) {
-    }
-}
 
 /// The faster the group, the higher its priority. False when the system refuses.
 bool make_real_time(Flicks period) noexcept {
@@ -54,13 +47,13 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
     const std::int64_t before = line.steady_ns;
     const auto rest = [&group] {
         group.rest();
-        sleep_until(steady_ns() + rest_ns);
+        sleep_for(rest_ns);
     };
     while (pauses(group) && !is_over(group) && !group.is_forsaken()) rest();
     // The clock is set before the pause ends; a reader that was unlucky looks again.
     while (!is_over(group) && line.steady_ns == before) {
         line = parts_.time.clock.get(line);
-        if (line.steady_ns == before) sleep_until(steady_ns() + spin_ns);
+        if (line.steady_ns == before) sleep_for(spin_ns);
     }
     const auto release_ns = [&] {
         line = parts_.time.clock.get(line);
@@ -77,7 +70,7 @@ void LiveRun::work(GroupRuntime& group) {
     flush_denormals_to_zero();
     // Whoever sets the clock may have been interrupted by this very thread.
     control::TrimmedClock line;
-    while (!parts_.time.clock.try_get(line)) sleep_until(steady_ns() + poll_start_ns);
+    while (!parts_.time.clock.try_get(line)) sleep_for(poll_start_ns);
     const auto release_ns = [&](std::int64_t tick) {
         line = parts_.time.clock.get(line);
         return line.when(tick * group.plan->period);
@@ -97,7 +90,7 @@ void LiveRun::work(GroupRuntime& group) {
             sleep_until(std::min(due - spin_ns, steady_ns() + longest_sleep_ns));
             continue;
         }
-        wait_until(due, due - last_due);
+        wait_until(due, std::clamp<std::int64_t>((due - last_due) / spun_part, 0, spin_ns));
         last_due = due;
         if (is_over(group) || pauses(group)) continue;
         const std::int64_t begin = steady_ns();
@@ -139,7 +132,7 @@ void LiveRun::start_threads() {
         cancel_threads();
         throw;
     }
-    while (ready_.load() < groups.size()) sleep_until(steady_ns() + poll_start_ns);
+    while (ready_.load() < groups.size()) sleep_for(poll_start_ns);
     line_ = {0, steady_ns() + start_delay_ns, options_.dilate};
     parts_.time.clock.set(line_);
     release_threads();
@@ -154,7 +147,7 @@ void LiveRun::make_thread(GroupRuntime& group) {
         mine.thread = made_thread("for the group " + group.plan->name, [this, &mine] {
             if (!make_real_time(mine.group.plan->period)) is_refused_ = true;
             ++ready_;
-            while (mine.order == GroupThread::wait) sleep_until(steady_ns() + poll_start_ns);
+            while (mine.order == GroupThread::wait) sleep_for(poll_start_ns);
             if (mine.order == GroupThread::go) work(mine.group);
             if (!mine.group.is_forsaken()) mine.is_over = true;
         });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/live_edits.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/made_thread.hpp"
 #include "graph/patch/sub_patch.hpp"
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -160,16 +160,16 @@ bool LiveEdits::end() {
             building_->thread.detach();
             return false;
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        sleep_for(1'000'000);
     }
     building_->thread.join();
     building_.reset();
     return true;
 }
 
-Flicks LiveEdits::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
+LiveEdits::Setting LiveEdits::setting_of(const std::string& node, const std::string& param,
+                                         const std::string& text) const {
     const build::Generation& now = timeline_.now();
-    const auto [node, param] = patch::end_within(now.plan.patch, given_node, given_param);
     std::vector<std::string> names;
     for (const auto& live : now.nodes) names.push_back(live->name);
     const int at = now.find(node);
@@ -188,11 +188,22 @@ Flicks LiveEdits::set(const std::string& given_node, const std::string& given_pa
         if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
     // The group's thread may change the range of the live parameter when it takes the plan over.
-    const double value = compiled->parse(text);
+    return {&live, found->second, compiled->parse(text)};
+}
+
+Flicks LiveEdits::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
+    const build::Generation& now = timeline_.now();
+    const std::vector<patch::NamedEnd> ends = patch::ends_within(now.plan.patch, given_node, given_param);
+    std::vector<Setting> settings;  // all are checked before the first one is made
+    for (const patch::NamedEnd& end : ends) settings.push_back(setting_of(end.node, end.name, text));
     const Flicks when = present_.now() + set_lead;
-    const ParameterChange change{changes_++, when, found->second, value, now.ramp_of(found->second)};
-    if (take::TakeWriter* take = recorder_.take()) take->change(change.id, now.number, node, param, value);
-    if (!live.group->hand_over(change)) throw Error("too many changes are waiting already");
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const Setting& one = settings[i];
+        const ParameterChange change{changes_++, when, one.param, one.value, now.ramp_of(one.param)};
+        if (take::TakeWriter* take = recorder_.take())
+            take->change(change.id, now.number, ends[i].node, ends[i].name, one.value);
+        if (!one.node->group->hand_over(change)) throw Error("too many changes are waiting already");
+    }
     return when;
 }
 

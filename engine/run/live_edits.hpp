@@ -29,6 +29,7 @@ public:
 
     /// See Engine.
     void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
+    /// A parameter of a sub-patch sets all that it stands for, or none when one of them cannot be set.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
 
     /// The threads that a plan needs.
@@ -60,6 +61,14 @@ private:
         std::string assets;  // as the take describes them
         std::exception_ptr failure;
     };
+    /// A parameter of a node that runs, and its value from now on.
+    struct Setting {
+        build::LiveNode* node = nullptr;
+        Param* param = nullptr;
+        double value = 0.0;
+    };
+    /// Throws Error when the node has no such parameter or may not be set.
+    Setting setting_of(const std::string& node, const std::string& param, const std::string& text) const;
     void build();
     void work(Building& building, bool is_taken);
     void finish(const Threads& threads);

@@ -2,14 +2,13 @@
 // The control thread of a live run. The threads of the groups are in group_thread.cpp.
 #include "engine/run/live_run.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
-#include "engine/run/clock.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 
@@ -125,7 +124,7 @@ void LiveRun::run() {
     start_threads();
     std::exception_ptr failure;
     while (!all_over()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        sleep_for(20'000'000);
         try {
             if (!failure) service();
         } catch (...) {

@@ -2,7 +2,7 @@
 // Logical time of a live run, and when it stands still.
 #pragma once
 
-#include "engine/run/clock.hpp"
+#include "dsp/core/clock.hpp"
 #include "engine/run/pause_window.hpp"
 #include "engine/run/run_clock.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/offline_run.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/realtime.hpp"
 #include "engine/observe/observer.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -58,10 +58,10 @@ void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed
         int frames = group->max_frames;
         if (options_.random_blocks)
             frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
-        const auto before = std::chrono::steady_clock::now();
+        const std::int64_t before = steady_ns();
         if (!group->has_begun()) group->begin_call(frames);
         if (group->ready()) group->finish_call();
-        group->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());
+        group->telemetry.execution.add(steady_ns() - before);
         wake_others();
         recorder_.drain_full();
         if (options_.observer && options_.observer->wants_drain()) options_.observer->drain();
@@ -100,7 +100,7 @@ void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
             fail(std::current_exception());
             break;
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        sleep_for(20'000'000);
     }
     workers.clear();
     if (failure_) std::rethrow_exception(failure_);

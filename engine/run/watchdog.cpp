@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/watchdog.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
-#include "engine/run/clock.hpp"
 #include "engine/run/made_thread.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ void Watchdog::forget_beyond(std::size_t count) {
     if (count >= watched()) return;
     // Whoever lets go of all hands at this moment may look at these once more: their memory stays until the last moment.
     const std::size_t had = count_.exchange(count, std::memory_order_acq_rel);
-    sleep_until(steady_ns() + 2 * look_every_ns);
+    sleep_for(2 * look_every_ns);
     for (std::size_t i = count; i < had; ++i) watches_[i].reset();
 }
 
@@ -64,7 +64,7 @@ bool Watchdog::farewell() {
                 all = false;
                 break;
             }
-            sleep_until(steady_ns() + look_every_ns);
+            sleep_for(look_every_ns);
         }
     }
     return all;
@@ -76,7 +76,7 @@ void Watchdog::run() noexcept {
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
     while (!ending_.load(std::memory_order_acquire)) {
         look_();
-        sleep_until(steady_ns() + look_every_ns);
+        sleep_for(look_every_ns);
     }
 }
 

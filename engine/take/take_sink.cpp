@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take/take_sink.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <exception>
@@ -10,7 +11,7 @@ namespace tactus::take {
 
 namespace {
 
-constexpr auto update_every = std::chrono::milliseconds(500);
+constexpr std::int64_t update_every_ns = 500'000'000;
 
 }  // namespace
 
@@ -41,9 +42,9 @@ void TakeSink::write(std::int64_t first, const std::byte* frames, std::size_t co
         // A file without any frame is not listed.
         if (is_first) told_.opened(files_[i], first);
     }
-    const auto now = std::chrono::steady_clock::now();
-    if (now - updated_ < update_every) return;
-    updated_ = now;
+    const std::int64_t now = steady_ns();
+    if (now < update_ns_) return;
+    update_ns_ = now + update_every_ns;
     for (const auto& writer : writers_) writer->update();
 }
 

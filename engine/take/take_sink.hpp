@@ -5,7 +5,6 @@
 #include "engine/io/streams.hpp"
 #include "engine/take/take_stream.hpp"
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -43,7 +42,7 @@ private:
     const std::vector<TakeFile> files_;
     const Told told_;
     std::vector<std::unique_ptr<TakeStreamWriter>> writers_;  // of the files that are open
-    std::chrono::steady_clock::time_point updated_;  // long ago: a run that is killed soon has its first values
+    std::int64_t update_ns_ = 0;  // of the next update; a run that is killed soon has its first values
 };
 
 }  // namespace tactus::take

@@ -4,6 +4,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "engine/take/take_sink.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto flush_every = std::chrono::milliseconds(500);
+constexpr std::int64_t flush_every_ns = 500'000'000;
 
 Json assets_json(const patch::Patch& patch) {
     Json assets = Json::array();
@@ -263,9 +264,9 @@ void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& n
 }
 
 void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    if (is_lost_ || now - flushed_ < flush_every) return;
-    flushed_ = now;
+    const std::int64_t now = steady_ns();
+    if (is_lost_ || now < flush_ns_) return;
+    flush_ns_ = now + flush_every_ns;
     for (const Progress& group : progress) {
         TimingRecord record;
         record.kind = TimingKind::progress;

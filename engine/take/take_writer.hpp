@@ -19,7 +19,6 @@
 #include "graph/patch/patch.hpp"
 
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -109,7 +108,7 @@ private:
     std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
     std::unordered_set<std::string> files_;
-    std::chrono::steady_clock::time_point flushed_;
+    std::int64_t flush_ns_ = 0;  // of the next flush
 };
 
 /// Hash of a file's bytes; for a text that names other files, their bytes too. Throws Error.

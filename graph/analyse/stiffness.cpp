@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/analyse/stiffness.hpp"
 
+#include "dsp/control/stated_hand.hpp"
 #include "dsp/core/units.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/slopes.hpp"
@@ -104,16 +105,20 @@ private:
 Verdict ForceLoop::verdict() const {
     if (!declared) return Verdict::stable;
     const double stiffness = declared->newton_per_metre;
-    if ((limit > 0.0 && stiffness >= limit) || (max_stiffness > 0.0 && stiffness > max_stiffness))
-        return Verdict::too_stiff;
-    return limit > 0.0 ? Verdict::stable : Verdict::unknown;
+    if (max_stiffness > 0.0 && stiffness > max_stiffness) return Verdict::too_stiff;
+    if (stiffness < limit) return Verdict::stable;
+    return is_damping_stated ? Verdict::too_stiff : Verdict::unknown;
+}
+
+double damping_with_hand(const DeviceInfo& device) {
+    return device.damping > 0.0 ? device.damping : control::StatedHand::damping;
 }
 
 std::span<const DeviceClass> device_classes() {
     static constexpr DeviceClass classes[] = {
-        {"light stylus arm (Touch)", 0.5, 1000.0},       {"light stylus arm (Touch X, Premium)", 0.8, 1500.0},
-        {"small parallel device (Falcon)", 2.0, 3000.0}, {"stiff parallel device (omega, delta)", 4.0, 14500.0},
-        {"large arm (Virtuose)", 8.0, 2500.0},
+        {"light stylus arm (Touch)", 0.1, 1e-3, 1000.0},       {"light stylus arm (Touch X, Premium)", 0.2, 1e-3, 1500.0},
+        {"small parallel device (Falcon)", 1.0, 1e-3, 3000.0}, {"stiff parallel device (omega, delta)", 0.5, 0.5e-3, 14500.0},
+        {"large arm (Virtuose)", 6.0, 1e-3, 2500.0},
     };
     return classes;
 }
@@ -172,8 +177,8 @@ std::vector<std::string> unstated_laws(const compile::Plan& plan) {
     return names;
 }
 
-std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
-                                   const std::function<double(const std::string&)>& max_stiffness) {
+std::vector<ForceLoop> force_loops(const compile::Plan& plan,
+                                   const std::function<DeviceInfo(const std::string&)>& device_of) {
     const DrivenParams driven = driven_params(plan);
     std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;
     std::vector<std::pair<std::size_t, std::vector<Flicks>>> sinks;  // with the way from each node to it
@@ -199,15 +204,19 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::functio
             const std::vector<Flicks>& to_sink = at_sink.second;
             if (from.age[sink] == unreached) continue;
             const double period = seconds(plan.groups[static_cast<std::size_t>(plan.nodes[sink].group)].period);
-            const std::string device = setting_of(plan, sink, "device");
-            const double b = damping(device), most = max_stiffness ? max_stiffness(device) : 0.0;
+            const DeviceInfo pushed = device_of(setting_of(plan, sink, "device"));
+            const double source_delay = device_of(setting_of(plan, source, "device")).delay,
+                         b = damping_with_hand(pushed), most = pushed.max_stiffness;
             const auto loop_of = [&](Flicks latency, std::optional<DeclaredStiffness> declared) {
+                const double delay = loop_delay(seconds(latency), source_delay, pushed.delay);
                 return ForceLoop{plan.nodes[source].name,
                                  plan.nodes[sink].name,
                                  seconds(latency),
+                                 delay,
                                  period,
                                  b,
-                                 stiffness_limit(b, period, seconds(latency)),
+                                 pushed.damping > 0.0,
+                                 stiffness_limit(b, period, delay),
                                  most,
                                  std::move(declared)};
             };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "graph/compile/plan.hpp"
+#include "graph/node/device.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -24,16 +25,18 @@ struct DeclaredStiffness {
 enum class Verdict : std::uint8_t {
     stable,
     too_stiff,  ///< beyond what the damping of the device permits, or beyond what its maker states
-    unknown,  ///< a stiffness is declared, but the device states no damping
+    unknown,  ///< the declared stiffness exceeds what a hand alone damps, and the device states no damping
 };
 
 /// A loop through a hand: device in, nodes, device out.
 struct ForceLoop {
     std::string from, to;      ///< names of nodes
-    double latency_s = 0.0;  ///< from a sample to the force it leads to, by the way that leaves the least stiffness
+    double graph_s = 0.0;  ///< from a sample to the force it leads to, by the way that leaves the least stiffness
+    double latency_s = 0.0;  ///< `loop_delay` of that way
     double period_s = 0.0;  ///< for which a force is held
-    double damping = 0.0;  ///< of the device that is pushed, N·s/m
-    double limit = 0.0;  ///< largest stable stiffness, N/m; 0 when the device states no damping
+    double damping = 0.0;  ///< of the device that is pushed with a hand on it, N·s/m
+    bool is_damping_stated = false;  ///< false: the device states none, and `damping` is that of a hand alone
+    double limit = 0.0;  ///< largest stable stiffness, N/m
     double max_stiffness = 0.0;  ///< of the device, N/m, as its maker states it; 0: not stated
     std::optional<DeclaredStiffness> declared;  ///< the stiffest on that way, if there is any
 
@@ -69,18 +72,27 @@ constexpr double stiffness_limit(double damping, double period_s, double delay_s
     return damping / (0.5 * period_s + delay_s);
 }
 
-/// All paths from a device_input to a device_output, one line for each pair, in order of names. `damping` returns the
-/// damping of a device by its name in the patch ("": the only one). A workspace on the path multiplies the stiffness by the
-/// square of its scale. `max_stiffness` is called in the same way; a stiffness that a wire drives stays below it,
-/// since the run limits it (engine/build/stiffness_limits.cpp).
-std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
-                                   const std::function<double(const std::string&)>& max_stiffness = {});
+/// s from a motion of the hand to the force that answers it: the latency of the graph, and at each end of the loop half of
+/// the delay of its device, which includes its driver and its process (DeviceInfo::delay).
+constexpr double loop_delay(double graph_s, double source_delay_s, double sink_delay_s) {
+    return graph_s + 0.5 * (source_delay_s + sink_delay_s);
+}
 
-/// A class of devices, to compare a patch on other devices. Makers state no damping: these are assumptions for the
-/// mechanism with a light grip. Stiffness as makers state it for the weakest axis, N/m.
+/// N·s/m, of a device with a hand on it. One that states none has that of `control::StatedHand` at least.
+double damping_with_hand(const DeviceInfo& device);
+
+/// All paths from a device_input to a device_output, one line for each pair, in order of names. `device_of` returns the
+/// figures of a device by its name in the patch ("": the only one). A workspace on the path multiplies the stiffness by the
+/// square of its scale. A stiffness that a wire drives stays below `max_stiffness` of the device, since the run limits it
+/// (engine/build/stiffness_limits.cpp).
+std::vector<ForceLoop> force_loops(const compile::Plan& plan,
+                                   const std::function<DeviceInfo(const std::string&)>& device_of);
+
+/// A class of devices, to compare a patch on other devices. Makers state no damping: it is assumed, of the mechanism
+/// alone, as in dsp/simulate/device_model.cpp; so is the delay, s. Stiffness as makers state it for the weakest axis, N/m.
 struct DeviceClass {
     const char* name;
-    double damping, max_stiffness;
+    double damping, delay, max_stiffness;
 };
 std::span<const DeviceClass> device_classes();
 

@@ -57,12 +57,14 @@ SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_v
     const SourceLocation where{fmt::format("{} {}", option, text), 0, 0};
     const std::size_t dot = text.find('.');
     if (dot == std::string::npos || dot == 0 || dot + 1 == text.size()) throw Error(where, "write NODE.PORT");
-    std::string several;
-    for (const PatchEnd& end : patch.offered)
-        if (end.name == text) several += fmt::format("{}{}.{}", several.empty() ? "" : ", ", end.node, end.port);
-    if (several.find(',') != std::string::npos)
+    const std::vector<NamedEnd> ends = ends_within(patch, text.substr(0, dot), text.substr(dot + 1));
+    if (ends.size() > 1) {
+        std::string several;
+        for (const NamedEnd& end : ends)
+            several += fmt::format("{}{}.{}", several.empty() ? "" : ", ", end.node, end.name);
         throw Error(where, fmt::format("'{}' leads to several ports; name one of them: {}", text, several));
-    const auto [name, port] = end_within(patch, text.substr(0, dot), text.substr(dot + 1));
+    }
+    const auto& [name, port] = ends.front();
     const auto node = std::ranges::find(patch.nodes, name, &PatchNode::name);
     if (node == patch.nodes.end()) {
         std::vector<std::string> names;

@@ -164,14 +164,10 @@ private:
             patch.offered.push_back(std::move(end));
         }
         for (const auto* ends : {&within.inputs, &within.outputs, &within.parameters})
-            for (const PatchEnd& end : *ends) {
-                const auto inner = resolved(part, end);
-                patch.offered.push_back({node.name + '.' + end.name, prefix + inner.node, inner.name, end.where});
-            }
+            for (const PatchEnd& end : *ends)
+                for (const NamedEnd& inner : all_within(part, end))
+                    patch.offered.push_back({node.name + '.' + end.name, prefix + inner.node, inner.name, end.where});
     }
-
-    /// Follows an end that a sub-patch offers from one of its own sub-patches.
-    static NamedEnd resolved(const FlatPart& part, const PatchEnd& end) { return all_within(part, end).front(); }
 
     /// Sets the parameters inside that a parameter of a sub-patch stands for. Its nodes begin at `first` in `patch`.
     void set(Patch& patch, std::size_t first, const FlatPart& part, const OptionText& given) {
@@ -196,7 +192,7 @@ private:
         return did_you_mean(name, names);
     }
 
-    /// The end itself, or all ends that it stands for when its node is a sub-patch.
+    /// The end itself, or all ends that it means when its node is a sub-patch; `ends_within` by the index of the part.
     static std::vector<NamedEnd> all_within(const FlatPart& part, const PatchEnd& end) {
         std::vector<NamedEnd> all;
         for (const PatchEnd* deeper : FlatPart::find(part.offered, end.node + '.' + end.port))
@@ -224,7 +220,7 @@ private:
                                                   hint(wire.from_port, {&part.patch.outputs})));
             return false;
         }
-        const NamedEnd inner = resolved(part, *ends.front());
+        const NamedEnd inner = all_within(part, *ends.front()).front();  // an output is one port
         wire.from_node = node.name + within_node + inner.node;
         wire.from_port = inner.name;
         return true;
@@ -300,11 +296,13 @@ std::string bundle_text(const Patch& patch) {
     return text;
 }
 
-NamedEnd end_within(const Patch& patch, std::string_view node, std::string_view name) {
+std::vector<NamedEnd> ends_within(const Patch& patch, std::string_view node, std::string_view name) {
     const std::string wanted = fmt::format("{}.{}", node, name);
-    const auto found = std::ranges::find(patch.offered, wanted, &PatchEnd::name);
-    if (found != patch.offered.end()) return {found->node, found->port};
-    return {std::string(node), std::string(name)};
+    std::vector<NamedEnd> all;
+    for (const PatchEnd& end : patch.offered)
+        if (end.name == wanted) all.push_back({end.node, end.port});
+    if (all.empty()) all.push_back({std::string(node), std::string(name)});
+    return all;
 }
 
 }  // namespace tactus::patch

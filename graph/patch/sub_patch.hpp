@@ -60,7 +60,8 @@ std::string bundle_text(const Patch& patch);
 struct NamedEnd {
     std::string node, name;
 };
-/// The end that `node`.`name` means in a flattened patch. A name that no sub-patch offered is returned as it is.
-NamedEnd end_within(const Patch& patch, std::string_view node, std::string_view name);
+/// All ends that `node`.`name` means in a flattened patch, at any depth, in the order of the files: an input or a parameter of
+/// a sub-patch may set several. A name that no sub-patch offered is returned as it is. Never empty.
+std::vector<NamedEnd> ends_within(const Patch& patch, std::string_view node, std::string_view name);
 
 }  // namespace tactus::patch

@@ -3,6 +3,7 @@
 #include "dsp/control/force_limiter.hpp"
 #include "dsp/core/error.hpp"
 #include "graph/node/node.hpp"
+#include "nodes/device/cap_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -54,11 +55,7 @@ struct DeviceOutput {
         limits.torque_slew = torque_slew;
         limits.engage_ramp_s = engage_time;
         limiter_.prepare(limits, seconds(setup.period));
-        control::EnergyCapSettings cap;
-        cap.period_s = seconds(setup.period);
-        if (port_->info.resolution > 0.0) cap.resolution = port_->info.resolution;
-        if (port_->info.angular_resolution > 0.0) cap.angular_resolution = port_->info.angular_resolution;
-        cap.delay_s = port_->info.delay;
+        const control::EnergyCapSettings cap = cap_settings(port_->info, seconds(setup.period));
         if (energy_cap && cap.delay_s > control::EnergyCap::longest_delay_s(cap.period_s))
             throw Error(
                 device.where,
@@ -66,8 +63,6 @@ struct DeviceOutput {
                             "which energy_cap bounds the energy; lower the rate of '{}'",
                             port_->info.name, cap.delay_s * 1e3, control::EnergyCap::most_delay, 1.0 / cap.period_s,
                             setup.name));
-        // A device states its damping with a hand on it. More than this would blur what a bounce returns.
-        cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
         cap_.prepare(cap);
         is_new_ = true;
     }

@@ -86,7 +86,7 @@ double time_per_node(std::string (*patch_of)(int), int nodes) {
     {
         compile::Plan plan = compiled(text);
         analyse::path_latencies(plan);
-        analyse::force_loops(plan, [](const std::string&) { return 1.0; });
+        analyse::force_loops(plan, [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; });
         REQUIRE_FALSE(analyse::draw_svg(plan).empty());
         run::EngineOptions options;
         options.seconds = 0.02;

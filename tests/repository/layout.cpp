@@ -186,6 +186,17 @@ TEST_CASE("below the nodes nobody knows a node type, a patch or a display file b
         }
 }
 
+TEST_CASE("below the tools one header reads clocks and sleeps") {
+    static const std::regex clock("steady_clock|clock_gettime|nanosleep|usleep|this_thread::sleep");
+    for (const std::string_view room : {"dsp", "assets", "graph", "devices", "nodes", "engine"})
+        for (const fs::path& file : files_under(room, {".cpp", ".hpp"})) {
+            const fs::path name = file.lexically_relative(root);
+            if (name == "dsp/core/clock.hpp" || name == "dsp/core/processor_time.hpp") continue;
+            CAPTURE(name.string());
+            CHECK_FALSE(std::regex_search(std::regex_replace(read(file), std::regex("//[^\n]*"), ""), clock));
+        }
+}
+
 TEST_CASE("every source file says its licence first") {
     std::vector<fs::path> files{root / "CMakeLists.txt", root / "dev", root / ".ci/run"};
     for (const auto folder :
@@ -232,6 +243,18 @@ TEST_CASE("two files alone include the JSON library, which takes seconds to comp
                 found.push_back(fs::relative(file, root).string());
     std::ranges::sort(found);
     CHECK(found == std::vector<std::string>{"assets/file/json.cpp", "engine/take/take_reader.cpp"});
+}
+
+TEST_CASE("only the module of bone files and benchmarks include OpenVDB, which is slow to load") {
+    for (const auto room : rooms)
+        for (const fs::path& file : files_under(room, {".cpp"})) {
+            const std::string path = fs::relative(file, root).string();
+            if (path.starts_with("assets/bone/openvdb/") || path.starts_with("tools/bench/")) continue;
+            for (const std::string& name : includes_of(file)) {
+                CAPTURE(path, name);
+                CHECK_FALSE(name.starts_with("openvdb/"));
+            }
+        }
 }
 
 TEST_CASE("rooms of tools include only what stands left of them") {

@@ -3,10 +3,9 @@
 
 #include "dsp/core/hash.hpp"
 
-#include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
+#include <dlfcn.h>
 
-#include <sstream>
+#include <stdexcept>
 
 namespace tactus::test {
 
@@ -18,17 +17,13 @@ std::string sealed(std::string bytes) {
 }
 
 std::string repacked(const std::string& bytes, std::uint32_t packing) {
-    openvdb::initialize();
-    std::istringstream in(bytes, std::ios::binary);
-    openvdb::io::Stream from(in, /*delayLoad=*/false);
-    const auto grids = from.getGrids();
-    // Zip is left out where a grid says that it is a level set.
-    for (const auto& grid : *grids) grid->setGridClass(openvdb::GRID_UNKNOWN);
-    std::ostringstream out(std::ios::binary);
-    openvdb::io::Stream to(out);
-    to.setCompression(packing);
-    to.write(*grids, *from.getMetadata());
-    return out.str();
+    using Repack = void(const std::string&, std::uint32_t, std::string&);
+    void* const module = ::dlopen(TACTUS_REPACKED_BONE, RTLD_NOW | RTLD_LOCAL);
+    auto* const repack = module ? reinterpret_cast<Repack*>(::dlsym(module, "tactus_test_repack")) : nullptr;
+    if (!repack) throw std::runtime_error(::dlerror());
+    std::string into;
+    repack(bytes, packing, into);
+    return into;
 }
 
 }  // namespace tactus::test

@@ -2,6 +2,7 @@
 // A device host with one driver more, "watched": it writes down each force that it is given, and fails as it is told.
 #include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/device_host.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/support/force_log.hpp"
 
 #include <unistd.h>
@@ -52,7 +53,7 @@ public:
         sample.counter = count_;
         sample.valid = true;
         // Presses 5 mm deep and comes back, once a second, so that forces can engage at any time.
-        const double t = static_cast<double>(hosted::boot_ns() - begin_ns_) * 1e-9;
+        const double t = static_cast<double>(boot_ns() - begin_ns_) * 1e-9;
         sample.pose.position.z = -2.5e-3 * (1.0 - std::cos(2.0 * std::numbers::pi * t));
         if (is("no pose", behaviour_.at)) sample.pose.position.x = std::nan("");
         return sample;
@@ -68,7 +69,7 @@ private:
     Behaviour behaviour_;
     test::ForceLog log_;
     DeviceInfo info_;
-    std::int64_t begin_ns_ = hosted::boot_ns();
+    std::int64_t begin_ns_ = boot_ns();
     int count_ = 0;
 };
 

@@ -2,7 +2,7 @@
 // What a watched device was given, with the device's own clock: a file that outlives every process that writes it.
 #pragma once
 
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -39,11 +39,11 @@ public:
     void add(double force) noexcept {
         const std::uint64_t at = memory_->count.load();
         if (at == most) return;
-        memory_->entries[at] = {hosted::boot_ns(), force};
+        memory_->entries[at] = {boot_ns(), force};
         memory_->count.store(at + 1);
     }
     void note_open() noexcept { memory_->process.store(::getpid()); }
-    void note_closed() noexcept { memory_->closed_ns.store(hosted::boot_ns()); }
+    void note_closed() noexcept { memory_->closed_ns.store(boot_ns()); }
 
     // The test.
     std::vector<Entry> entries() const { return {memory_->entries, memory_->entries + memory_->count.load()}; }

@@ -88,6 +88,8 @@ void skip(const std::string& why) {
 }  // namespace tactus::test
 
 int main(int argc, char** argv) {
+    // The program that reads DICOM files lies beside the command, not beside the tests.
+    ::setenv("TACTUS_SCAN_DECODER", TACTUS_SCAN_DECODER, 0);
     Catch::Session session;
     if (session.applyCommandLine(argc, argv) != 0) return 1;
 #if !__has_include(<catch2/catch_all.hpp>)

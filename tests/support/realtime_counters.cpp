@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The executable's own malloc, mutex and sleep functions come before those of libc, also for calls from shared
-// libraries. They count inside a real-time scope and pass the call on.
+// libraries. They count inside a real-time scope and pass the call on, or act in virtual time (virtual_clock.hpp).
 #include "tests/support/realtime_counters.hpp"
 
-#include <dlfcn.h>
+#include "tests/support/next_definition.hpp"
+#include "tests/support/virtual_calls.hpp"
+
 #include <pthread.h>
 #include <semaphore.h>
 #include <unistd.h>
@@ -79,6 +81,8 @@ bool interposes_locks() {
 
 }  // namespace tactus
 
+namespace virtual_time = tactus::test::virtual_time;
+
 extern "C" {
 
 #if !defined(TACTUS_UNDER_ASAN) && !defined(TACTUS_UNDER_TSAN)
@@ -127,43 +131,58 @@ void free(void* memory) noexcept {
 
 #if !defined(TACTUS_UNDER_TSAN)
 
-// The next definition after ours, looked up once. pthread_cond_* exist in two versions; the old one is incompatible.
-#define TACTUS_PASS_ON(function, counter, ...)                                 \
-    static std::atomic<void*> next{nullptr};                                   \
-    void* found = next.load(std::memory_order_relaxed);                        \
-    if (found == nullptr) found = dlvsym(RTLD_NEXT, #function, "GLIBC_2.3.2"); \
-    if (found == nullptr) found = dlsym(RTLD_NEXT, #function);                 \
-    next.store(found, std::memory_order_relaxed);                              \
-    tactus::count(tactus::counters.counter);                                   \
-    return reinterpret_cast<decltype(&function)>(found)(__VA_ARGS__)
+#define TACTUS_PASS_ON(function, counter, ...) \
+    tactus::count(tactus::counters.counter);   \
+    return TACTUS_NEXT(function)(__VA_ARGS__)
 
-int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept { TACTUS_PASS_ON(pthread_mutex_lock, locks, mutex); }
+// In virtual time it is `instead`.
+#define TACTUS_PASS_ON_UNLESS_VIRTUAL(instead, function, counter, ...) \
+    if (virtual_time::applies()) {                                     \
+        tactus::count(tactus::counters.counter);                       \
+        return virtual_time::instead;                                  \
+    }                                                                  \
+    TACTUS_PASS_ON(function, counter, __VA_ARGS__)
+
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(lock(mutex), pthread_mutex_lock, locks, mutex);
+}
 
 int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
-    TACTUS_PASS_ON(pthread_cond_wait, waits, condition, mutex);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(wait(condition, mutex, CLOCK_MONOTONIC, nullptr), pthread_cond_wait, waits, condition,
+                                  mutex);
 }
 
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
-    TACTUS_PASS_ON(pthread_cond_timedwait, waits, condition, mutex, until);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(wait(condition, mutex, CLOCK_REALTIME, until), pthread_cond_timedwait, waits, condition,
+                                  mutex, until);
 }
 
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
-    TACTUS_PASS_ON(pthread_cond_clockwait, waits, condition, mutex, clock, until);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(wait(condition, mutex, clock, until), pthread_cond_clockwait, waits, condition, mutex,
+                                  clock, until);
 }
 
-int nanosleep(const timespec* duration, timespec* left) { TACTUS_PASS_ON(nanosleep, waits, duration, left); }
+int nanosleep(const timespec* duration, timespec* left) {
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(sleep_for(*duration), nanosleep, waits, duration, left);
+}
 
 int clock_nanosleep(clockid_t clock, int flags, const timespec* duration, timespec* left) {
-    TACTUS_PASS_ON(clock_nanosleep, waits, clock, flags, duration, left);
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(sleep(clock, flags, *duration), clock_nanosleep, waits, clock, flags, duration, left);
 }
 
-int usleep(useconds_t duration) { TACTUS_PASS_ON(usleep, waits, duration); }
+int usleep(useconds_t duration) {
+    TACTUS_PASS_ON_UNLESS_VIRTUAL(sleep_for({duration / 1'000'000, duration % 1'000'000 * 1'000L}), usleep, waits, duration);
+}
 
 int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept { TACTUS_PASS_ON(pthread_mutex_trylock, locks, mutex); }
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept { TACTUS_PASS_ON(pthread_rwlock_rdlock, locks, lock); }
 int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept { TACTUS_PASS_ON(pthread_rwlock_wrlock, locks, lock); }
-int pthread_cond_signal(pthread_cond_t* condition) noexcept { TACTUS_PASS_ON(pthread_cond_signal, waits, condition); }
+int pthread_cond_signal(pthread_cond_t* condition) noexcept {
+    if (virtual_time::wake(condition, false)) return 0;
+    TACTUS_PASS_ON(pthread_cond_signal, waits, condition);
+}
 int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
+    virtual_time::wake(condition, true);
     TACTUS_PASS_ON(pthread_cond_broadcast, waits, condition);
 }
 int sem_wait(sem_t* semaphore) { TACTUS_PASS_ON(sem_wait, waits, semaphore); }

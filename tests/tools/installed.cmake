@@ -28,12 +28,16 @@ foreach(part bin/tactus-bench libexec/tactus/tactus-device-host share/doc/tactus
   endif()
 endforeach()
 
-# The system's loader finds all libraries: the program names no folder of the machine that built it.
+# The system's loader finds all libraries: the program names no folder of the machine that built it. Libraries that are
+# slow to load are those of modules.
 find_program(READELF readelf)
 if(READELF)
   execute_process(COMMAND ${READELF} -d ${SCRATCH}/moved/bin/tactus OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
   if(dynamic MATCHES "RPATH|RUNPATH")
     message(FATAL_ERROR "the installed command has an rpath:\n${dynamic}")
+  endif()
+  if(dynamic MATCHES "openvdb")
+    message(FATAL_ERROR "the command loads OpenVDB at its start:\n${dynamic}")
   endif()
 endif()
 file(REMOVE_RECURSE ${SCRATCH})

@@ -2,8 +2,8 @@
 // What a process of its own costs a device: from a commit of the engine to the first sample that knows its force, beside
 // the same driver inside the engine.
 #include "assets/file/json.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/hosted_device.hpp"
+#include "dsp/core/clock.hpp"
 #include "tools/bench/bench.hpp"
 
 #include <fmt/format.h>
@@ -53,11 +53,11 @@ std::unique_ptr<HapticDevice> open(const DeviceBenchChoice& choice, bool own_pro
 template <class One>
 void ticks(const DeviceBenchChoice& choice, One&& one) {
     const auto count = static_cast<std::int64_t>(choice.seconds * choice.rate);
-    std::int64_t next = hosted::steady_ns();
+    std::int64_t next = steady_ns();
     for (std::int64_t n = 0; n < count; ++n) {
         one();
-        next = std::max<std::int64_t>(next + std::llround(1e9 / choice.rate), hosted::steady_ns());
-        hosted::sleep_until(next);
+        next = std::max<std::int64_t>(next + std::llround(1e9 / choice.rate), steady_ns());
+        sleep_until(next);
     }
 }
 
@@ -65,10 +65,10 @@ void ticks(const DeviceBenchChoice& choice, One&& one) {
 Json measure_calls(const DeviceBenchChoice& choice, HapticDevice& device) {
     std::vector<std::int64_t> calls;
     ticks(choice, [&] {
-        const std::int64_t begin = hosted::steady_ns();
+        const std::int64_t begin = steady_ns();
         device.acquire(1.0 / choice.rate);
         device.commit({});
-        calls.push_back(hosted::steady_ns() - begin);
+        calls.push_back(steady_ns() - begin);
     });
     return quantiles_us(std::move(calls));
 }
@@ -90,15 +90,15 @@ int bench_device(const DeviceBenchChoice& choice) {
     ticks(choice, [&] {
         // Both keep one clock, so that a run has one phase between them; here all are met alike (golden ratio).
         phase = std::fmod(phase + 0.6180339887, 1.0);
-        const std::int64_t from = hosted::steady_ns() + std::llround(0.25e9 * phase / choice.rate);
-        while (hosted::steady_ns() < from) {
+        const std::int64_t from = steady_ns() + std::llround(0.25e9 * phase / choice.rate);
+        while (steady_ns() < from) {
         }
-        const std::int64_t begin = hosted::boot_ns();
+        const std::int64_t begin = boot_ns();
         device.commit({});
         std::int64_t now = begin;
         while (device.answered_ns() < begin && now - begin < longest_ns) {
             device.acquire(0.0);
-            now = hosted::boot_ns();
+            now = boot_ns();
         }
         if (device.answered_ns() < begin) ++lost;
         else round_trips.push_back(now - begin);

@@ -150,7 +150,7 @@ void bench_scaling(int rounds, Json& rows) {
             checked[k] = std::min(checked[k], seconds_of([&] {
                                       const run::Engine engine(compile_chain(read_chain(text)), run::EngineOptions{});
                                       analyse::path_latencies(engine.plan());
-                                      analyse::force_loops(engine.plan(), [](const std::string&) { return 0.0; });
+                                      analyse::force_loops(engine.plan(), [](const std::string&) { return DeviceInfo{}; });
                                   }));
             rendered[k] = std::min(rendered[k], seconds_of([&] {
                                        run::EngineOptions options;

@@ -4,8 +4,8 @@
 #include "devices/board/board_frames.hpp"
 #include "devices/gripper/frame.hpp"
 #include "devices/haply/handshake.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/openigtlink/message.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <arpa/inet.h>
@@ -70,7 +70,7 @@ struct HostilePeer::Speaker {
         is_greeted = line != Line::web_socket;
     }
     std::string message() {
-        const double x = 0.01 * std::sin(1e-9 * static_cast<double>(hosted::steady_ns()));
+        const double x = 0.01 * std::sin(1e-9 * static_cast<double>(steady_ns()));
         if (line == Line::web_socket) return text_frame(state_of_service(x));
         if (line == Line::openigtlink) return text_of(openigtlink::transform_message("Tool", {{x, 0.0, 0.0}, {}}, 0.0));
         board::JointsFrame joints;
@@ -164,9 +164,9 @@ void HostilePeer::answer(int file, const std::string& heard) {
                  haply::accept_for(key) + "\r\n\r\n" + speaker.message());
         speaker.is_greeted = true;
     } else {
-        if (told_ns_ != 0) replies_ns_.push_back(hosted::steady_ns() - told_ns_);
+        if (told_ns_ != 0) replies_ns_.push_back(steady_ns() - told_ns_);
         if (send(file, speaker.message())) ++answers_;
-        told_ns_ = hosted::steady_ns();
+        told_ns_ = steady_ns();
     }
     speaker.held.clear();
 }
@@ -207,11 +207,11 @@ bool HostilePeer::attack(int file) {
 void HostilePeer::serve(int client) {
     speaker_->begin();
     told_ns_ = 0;
-    const std::int64_t begin = hosted::steady_ns();
+    const std::int64_t begin = steady_ns();
     std::int64_t told = begin;
     std::array<char, 4096> bytes;
     while (!ends_) {
-        if (attack_ != Attack::none && hosted::steady_ns() - begin > behaves_ns && speaker_->is_greeted) {
+        if (attack_ != Attack::none && steady_ns() - begin > behaves_ns && speaker_->is_greeted) {
             if (!attack(client)) return;
             while (::read(client, bytes.data(), bytes.size()) > 0) {
             }
@@ -219,12 +219,12 @@ void HostilePeer::serve(int client) {
         }
         pollfd one{client, POLLIN, 0};
         ::poll(&one, 1, 5);
-        ran_ns_ = hosted::steady_ns();
+        ran_ns_ = steady_ns();
         const ssize_t count = ::read(client, bytes.data(), bytes.size());
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR && errno != EIO)) return;
         if (count > 0) answer(client, {bytes.data(), static_cast<std::size_t>(count)});
-        if (line_ == Line::openigtlink && hosted::steady_ns() - told > 15 * ms) {
-            told = hosted::steady_ns();
+        if (line_ == Line::openigtlink && steady_ns() - told > 15 * ms) {
+            told = steady_ns();
             if (!send(client, speaker_->message())) return;
         }
     }

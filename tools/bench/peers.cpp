@@ -2,8 +2,8 @@
 // Whether a peer that behaves badly delays the ticks: their lateness in live runs with hostile peers, between runs with
 // ones that behave.
 #include "assets/file/json.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/hosted_device.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/compile/compile.hpp"
@@ -148,20 +148,20 @@ Exchanged exchange(const PeersChoice& choice) {
     sched_param parameters{};
     parameters.sched_priority = 60;
     ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
-    std::int64_t next = hosted::steady_ns();
+    std::int64_t next = steady_ns();
     for (const std::int64_t latest = next + 10'000 * ms; !device->acquire(1e-3).valid;) {
         if (next > latest) throw Error("the driver gave no valid sample within 10 s");
-        hosted::sleep_until(next += ms);
+        sleep_until(next += ms);
     }
     Exchanged found;
     std::int64_t counter = device->acquire(1e-3).counter;
     const std::int64_t counter_before = counter, answers_before = peer.answers();
     for (const std::int64_t end = next + std::llround(1e9 * choice.exchange); next < end; ++found.ticks) {
         const DeviceSample sample = device->acquire(1e-3);
-        if (!sample.valid) found.gaps.count(hosted::steady_ns(), next, peer.ran_ns());
+        if (!sample.valid) found.gaps.count(steady_ns(), next, peer.ran_ns());
         found.stale += sample.counter == std::exchange(counter, sample.counter);
         device->commit({{0.1, 0.0, 0.0}, {}});
-        hosted::sleep_until(next += ms);
+        sleep_until(next += ms);
     }
     // One state may be on its way at each end.
     found.unread = std::max<std::int64_t>(peer.answers() - answers_before - (counter - counter_before) - 2, 0);

@@ -2,9 +2,9 @@
 // Success rate of snap-to-fit on simulated fractures, compared with common variants of ICP.
 #include "assets/file/json.hpp"
 #include "assets/library/mandible.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/fit.hpp"
-#include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/snap_cases.hpp"
 #include "tools/bench/snap_live.hpp"
@@ -59,11 +59,11 @@ void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& star
     for (const IcpKind kind : peers)
         for (const IcpSchedule schedule : schedules) {
             if (!is_chosen(choice, name_of(kind))) continue;
-            const std::int64_t begin = run::thread_ns();
+            const std::int64_t begin = thread_ns();
             const Pose pose = run_icp(pair.moving, target, centres, kind, schedule);
             tallies[fmt::format("{} {}", name_of(kind), name_of(schedule))].add(
                 pair, fit::between_bodies(pair.moving, pair.fixed, pose),
-                1e-9 * static_cast<double>(run::thread_ns() - begin));
+                1e-9 * static_cast<double>(thread_ns() - begin));
         }
 }
 

@@ -2,12 +2,12 @@
 #include "tools/bench/snap_live.hpp"
 
 #include "assets/library/fragments.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/held_fit.hpp"
-#include "engine/run/clock.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,10 +76,10 @@ std::vector<LiveTicks> bench_snap_live() {
         double evaluations = 0.0;
         for (int n = 0; n < all_ticks; ++n) {
             const Pose hand = wandering_hand(arm, n * 1e-3);
-            const std::int64_t begin = run::thread_ns();
+            const std::int64_t begin = thread_ns();
             fit.look(coupling.state().proxy, grip, {}, 1.0);
             evaluations += coupling.update(hand, fit).evaluations;
-            seconds.push_back(1e-9 * static_cast<double>(run::thread_ns() - begin));
+            seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
         }
         std::ranges::sort(seconds);
         const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (all_ticks - 1))] * 1e3; };

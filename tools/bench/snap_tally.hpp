@@ -2,10 +2,10 @@
 // How often a method brought two fragments together, how well, and how long it took.
 #pragma once
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/fit.hpp"
-#include "engine/run/clock.hpp"
 #include "tools/bench/snap_cases.hpp"
 
 #include <glm/geometric.hpp>
@@ -58,9 +58,9 @@ struct TimedFit {
     double seconds = 0.0;
 
     TimedFit(const FracturePair& pair, const Pose& start, fit::FitMode mode) {
-        const std::int64_t begin = run::thread_ns();
+        const std::int64_t begin = thread_ns();
         fit = fit::find_fit(pair.moving, pair.fixed, start, mode);
-        seconds = 1e-9 * static_cast<double>(run::thread_ns() - begin);
+        seconds = 1e-9 * static_cast<double>(thread_ns() - begin);
     }
 };
 

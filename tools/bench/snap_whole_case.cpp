@@ -2,9 +2,9 @@
 #include "tools/bench/snap_whole_case.hpp"
 
 #include "assets/library/broken_mandible.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
-#include "engine/run/clock.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -39,9 +39,9 @@ void put_together_once(const library::BrokenMandible& broken, WholeCaseResult& r
         result.islands += island.size() > 1;
     }
     const auto look = [&](std::size_t n) {
-        const std::int64_t begin = run::thread_ns();
+        const std::int64_t begin = thread_ns();
         last[n] = matcher.near(static_cast<int>(n), poses, stands);
-        result.seconds.push_back(1e-9 * static_cast<double>(run::thread_ns() - begin));
+        result.seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
         if (last[n].verdict != fit::FitVerdict::fit) return;
         poses[n] = last[n].pose;
         stands[n] = 1;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -103,8 +104,8 @@ std::string LiveControl::set(const std::string& setting) {
     const std::string node = setting.substr(0, dot), param = setting.substr(dot + 1, equals - dot - 1),
                       text = setting.substr(equals + 1);
     const Flicks when = engine_.set(node, param, text);
-    const auto end = patch::end_within(engine_.plan().patch, node, param);
-    if (end.name == press) presses_[end.node] = std::strtod(text.c_str(), nullptr);
+    for (const auto& end : patch::ends_within(engine_.plan().patch, node, param))
+        if (end.name == press) presses_[end.node] = std::strtod(text.c_str(), nullptr);
     return fmt::format("{} from {:.3f} s", setting, seconds(when));
 }
 
@@ -113,24 +114,27 @@ std::string LiveControl::trigger(const std::string& given) {
 }
 
 Flicks LiveControl::press_button(const std::string& given) {
-    const std::string node = patch::end_within(engine_.plan().patch, given, press).node;
+    const auto ends = patch::ends_within(engine_.plan().patch, given, press);
     std::vector<std::string> buttons;
-    const Param* param = nullptr;
+    std::size_t found_buttons = 0;
+    double newest = 0.0;  // of several buttons that are pressed as one
     for (const auto& live : engine_.nodes()) {
         const auto found = live->params.find(press);
         if (found == live->params.end()) continue;
         buttons.push_back(live->name);
-        if (live->name == node) param = found->second;
+        if (std::ranges::find(ends, live->name, &patch::NamedEnd::node) == ends.end()) continue;
+        ++found_buttons;
+        // Once set, the ticking thread writes the parameter, so it is read before the first press only.
+        const auto told = presses_.find(live->name);
+        newest = std::max(newest, told == presses_.end() ? found->second->value : told->second);
     }
-    if (!param)
+    if (found_buttons < ends.size())
         throw Error(buttons.empty() ? fmt::format("'{}' is not a button; this patch has none", given)
                                     : fmt::format("'{}' is not a button; this patch has {}{}", given,
                                                   fmt::join(buttons, ", "), did_you_mean(given, buttons)));
-    // Once set, the ticking thread writes the parameter, so it is read before the first press only.
-    const auto told = presses_.find(node);
-    const double next = std::floor(told == presses_.end() ? param->value : told->second) + 1.0;
+    const double next = std::floor(newest) + 1.0;
     const Flicks when = engine_.set(given, press, fmt::format("{:.0f}", next));
-    presses_[node] = next;
+    for (const auto& end : ends) presses_[end.node] = next;
     return when;
 }
 

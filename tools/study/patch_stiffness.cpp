@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/patch_stiffness.hpp"
 
+#include "dsp/control/stated_hand.hpp"
+
 #include <algorithm>
 
 namespace tactus::study {
@@ -30,8 +32,10 @@ std::vector<ClassVerdict> class_verdicts(const std::vector<analyse::ForceLoop>& 
         if (!loop.declared) continue;
         for (const analyse::DeviceClass& kind : analyse::device_classes()) {
             analyse::ForceLoop with = loop;
-            with.damping = kind.damping;
-            with.limit = analyse::stiffness_limit(kind.damping, loop.period_s, loop.latency_s);
+            with.damping = kind.damping + control::StatedHand::damping;
+            with.is_damping_stated = true;
+            with.latency_s = analyse::loop_delay(loop.graph_s, kind.delay, kind.delay);
+            with.limit = analyse::stiffness_limit(with.damping, loop.period_s, with.latency_s);
             with.max_stiffness = kind.max_stiffness;
             verdicts.push_back({loop.from, loop.to, kind, std::min(with.limit, with.max_stiffness), with.ok()});
         }

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
 
 namespace tactus::signal {
 
@@ -28,6 +30,87 @@ std::vector<double> spread_equal_times(std::span<const double> times) {
         i = end;
     }
     return spread;
+}
+
+/// The step of the clock itself: the largest length of which all steps are whole multiples. 0 if there is none above a
+/// thousandth of the mean step, or if nothing shows it.
+double clock_step(std::span<const double> times) {
+    const double least = 1e-3 * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    // Times are rounded to the digits of a double.
+    const double error = std::max(1e-4 * least, 8e-16 * std::max(std::abs(times.front()), std::abs(times.back())));
+    double common = 0.0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        double a = common, b = times[i] - times[i - 1];
+        while (b > 2.0 * error) {
+            if (a == 0.0) {
+                a = b;
+                break;
+            }
+            const double rest = std::abs(a - b * std::round(a / b));
+            a = b, b = rest;
+            if (a < least) return 0.0;
+        }
+        common = a;
+    }
+    return common;
+}
+
+/// Times of an even sampling that a coarse clock rounded to its own steps: a line explains them within one step. Returns
+/// the times on that line, piece by piece between gaps; none if the steps themselves are uneven, or if the clock is so
+/// fine that its rounding does not matter.
+std::optional<std::vector<double>> without_rounding(std::span<const double> times) {
+    const double step = clock_step(times);
+    const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    if (step < 0.01 * mean) return std::nullopt;
+    std::vector<double> steps;
+    std::map<long, std::size_t> counts;  // steps by their length in steps of the clock
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double length = times[i] - times[i - 1];
+        ++counts[std::lround(std::min(length / step, 1e6))];
+        if (length > 0.0) steps.push_back(length);
+    }
+    // Even times in which a few samples are missing: the other steps are multiples of the usual one. Rounding makes steps
+    // that differ by one.
+    const auto usual = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    std::size_t multiples = 0;
+    for (const auto& [length, count] : counts)
+        if (usual->first > 0 && length > usual->first && length % usual->first == 0) multiples += count;
+    if (20 * usual->second > 19 * (times.size() - 1) && usual->second + multiples == times.size() - 1)
+        return std::nullopt;
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    const double gap = 5.0 * steps[steps.size() / 2];
+    std::vector<double> even(times.begin(), times.end());
+    bool is_changed = false;
+    for (std::size_t first = 0; first < times.size();) {
+        std::size_t end = first + 1;
+        while (end < times.size() && times[end] - times[end - 1] <= gap) ++end;
+        if (end - first < 8) {
+            first = end;
+            continue;
+        }
+        const auto count = static_cast<double>(end - first);
+        double sum = 0.0, moment = 0.0;
+        const double middle = 0.5 * (count - 1.0);
+        for (std::size_t i = first; i < end; ++i) {
+            const double time = times[i] - times[first], place = static_cast<double>(i - first) - middle;
+            sum += time, moment += place * time;
+        }
+        const double slope = moment / (count * (count * count - 1.0) / 12.0), mean_time = sum / count;
+        double low = 0.0, high = 0.0;
+        for (std::size_t i = first; i < end; ++i) {
+            const double line = mean_time + slope * (static_cast<double>(i - first) - middle);
+            const double off = times[i] - times[first] - line;
+            low = std::min(low, off), high = std::max(high, off);
+        }
+        // Rounding, up, down or to the nearest, moves a time by less than one step; the fitted line lies within it.
+        if (high - low > 1.2 * step) return std::nullopt;
+        is_changed = true;
+        for (std::size_t i = first; i < end; ++i)
+            even[i] = times[first] + mean_time + slope * (static_cast<double>(i - first) - middle);
+        first = end;
+    }
+    if (!is_changed) return std::nullopt;
+    return even;
 }
 
 /// Band-limited interpolation between even values: sinc with a Kaiser window of 16 zero crossings to each side.
@@ -112,7 +195,8 @@ EvenRecord regularise(std::span<const double> times, std::span<const std::vector
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!(times[i] >= times[i - 1])) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
     if (!(times.back() > times.front())) throw Error("time stands still: every sample has the same time");
-    const std::vector<double> spread = spread_equal_times(times);
+    const std::optional<std::vector<double>> unrounded = without_rounding(times);
+    const std::vector<double> spread = unrounded ? *unrounded : spread_equal_times(times);
     std::vector<double> steps;
     for (std::size_t i = 1; i < spread.size(); ++i) steps.push_back(spread[i] - spread[i - 1]);
     std::vector<double> sorted = steps;
@@ -120,6 +204,7 @@ EvenRecord regularise(std::span<const double> times, std::span<const std::vector
     const double gap = 5.0 * sorted[sorted.size() / 2];
 
     EvenRecord even;
+    if (unrounded) even.clock_step = clock_step(times);
     double present = 0.0;
     for (const double step : steps) {
         if (step > gap) {

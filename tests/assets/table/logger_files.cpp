@@ -5,6 +5,8 @@
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <fmt/format.h>
+
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
 
@@ -97,7 +99,7 @@ TEST_CASE("times of day are read and go on at midnight") {
 }
 
 TEST_CASE("a clock that is set in the middle of a log is one clear error") {
-    CHECK_THROWS_WITH(read_logger("t,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
+    CHECK_THROWS_WITH(read_logger("t_s,a\n0,1\n0.01,2\n1700000000,3\n1700000000.01,4\n"),
                       ContainsSubstring("l.csv:4:1") && ContainsSubstring("more than a day"));
 }
 
@@ -221,4 +223,67 @@ TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors 
     log = read_logger("x-axis,1\nsecond,Volt\n0,0.5\n1e-5,0.25\n");
     CHECK(log.units[0]->is_voltage());
     CHECK(log.times[1] == 1e-5);
+}
+
+TEST_CASE("a rate that stands above the rows is used without times, and decides their unit") {
+    using namespace std::string_literals;
+    for (const std::string& line : {"# sample rate: 1.6 kHz"s, "Sampling frequency [Hz]: 1600"s, "% fs ; samplerate = 1600"s,
+                                   "# Sample Interval: 0.625 ms"s, "# Abtastrate 1600 Hz"s}) {
+        CAPTURE(line);
+        const table::SampleLog log = read_logger(line + "\nax\n1.5\n2.5\n3.5\n");
+        CHECK(log.times[1] == Approx(1.0 / 1600.0));
+        CHECK_THAT(table::describe(log.form), ContainsSubstring("1600 Hz, as line 1 states"));
+    }
+    CHECK(read_logger("# sample rate: 50000 Hz\nt,ax\n0.02,1\n0.04,2\n0.06,3\n").times[0] == Approx(2e-5));
+    CHECK(read_logger("# sample rate: 50 Hz\nt,ax\n0.02,1\n0.04,2\n0.06,3\n").times[0] == Approx(0.02));
+}
+
+TEST_CASE("a table of several sensors is refused with their names, or read for one of them") {
+    std::string text = "time_ms,SENSOR,ax\n", blocks = text, words = "time_ms,kind of,ax\n";
+    for (int i = 0; i < 40; ++i) text += std::to_string(i) + (i % 2 == 0 ? ",1," : ",2,") + std::to_string(i) + "\n";
+    for (int i = 0; i < 40; ++i)
+        blocks += std::to_string(i % 20) + (i < 20 ? ",left," : ",right,") + std::to_string(i) + "\n";
+    for (int i = 0; i < 40; ++i) words += std::to_string(i) + (i % 2 == 0 ? ",acc," : ",gyr,") + std::to_string(i) + "\n";
+    CHECK_THROWS_WITH(read_logger(text), ContainsSubstring("l.csv:1:2") && ContainsSubstring("2 sensors") &&
+                                             ContainsSubstring("1 (20 rows), 2 (20 rows)") &&
+                                             ContainsSubstring("--where \"SENSOR=1\""));
+    CHECK_THROWS_WITH(read_logger(blocks), ContainsSubstring("left") && ContainsSubstring("--where"));
+    CHECK_THROWS_WITH(read_logger(words), ContainsSubstring("--where \"kind of=acc\""));
+    table::LogSelection selection;
+    selection.where = "SENSOR=2";
+    const table::SampleLog log = read_logger(text, selection);
+    CHECK(log.times.size() == 20);
+    CHECK(log.columns[0][1] == 3.0);
+    CHECK(log.times[1] - log.times[0] == Approx(2e-3));
+    selection.where = "SENSOR=right";
+    CHECK(read_logger(blocks, selection).columns[0].front() == 20.0);
+    selection.where = "SENSOR";
+    CHECK_THROWS_WITH(read_logger(text, selection), ContainsSubstring("COLUMN=VALUE"));
+    selection.where = "SENSR=2";
+    CHECK_THROWS_WITH(read_logger(text, selection), ContainsSubstring("did you mean 'SENSOR'"));
+    // A status that changes now and then is no sensor.
+    std::string status = "t_ms,status,ax\n";
+    for (int i = 0; i < 40; ++i) status += std::to_string(i) + (i < 30 ? ",ok," : ",warm,") + std::to_string(i) + "\n";
+    CHECK(read_logger(status).times.size() == 40);
+}
+
+TEST_CASE("columns follow the clock to their left, clocks of different rates are refused together") {
+    std::string text = "t1_ms,acc [g],t2_ms,vel [mm/s]\n", same = text;
+    for (int i = 0; i < 40; ++i) {
+        text += fmt::format("{},{},{},{}\n", i, i, 2.5 * i, 2 * i);
+        same += fmt::format("{},{},{},{}\n", i, i, i + 0.25, 2 * i);
+    }
+    table::LogSelection selection;
+    selection.columns = {"acc", "vel"};
+    CHECK_THROWS_WITH(read_logger(text, selection), ContainsSubstring("different rates: t1_ms, t2_ms") &&
+                                                        ContainsSubstring("--time-column"));
+    CHECK(read_logger(same, selection).times[1] == Approx(1e-3));
+    selection.columns = {"vel"};
+    CHECK(read_logger(text, selection).times[1] == Approx(2.5e-3));
+    selection.columns = {"acc"};
+    CHECK(read_logger(text, selection).times[1] == Approx(1e-3));
+    CHECK(read_logger(text).names == std::vector<std::string>{"acc"});
+    selection.time_column = "t1_ms";
+    selection.columns = {"acc", "vel"};
+    CHECK(read_logger(text, selection).times[1] == Approx(1e-3));
 }

@@ -32,7 +32,7 @@ TEST_CASE(
     "commas and tabs are read") {
     table::LogSelection selection;
     selection.columns = {"temp", "2"};
-    const table::SampleLog log = read("t;a;temp\r\n0,5;1;20,25\r\n1,0;2;20,5\r\n", selection);
+    const table::SampleLog log = read("t_s;a;temp\r\n0,5;1;20,25\r\n1,0;2;20,5\r\n", selection);
     CHECK(log.times == std::vector{0.5, 1.0});
     CHECK(log.columns == std::vector<std::vector<double>>{{20.25, 20.5}, {1.0, 2.0}});
     CHECK(read("0\t5\n1\t6\n").columns[0] == std::vector{5.0, 6.0});
@@ -56,7 +56,7 @@ TEST_CASE("a number that may have a thousands separator is refused, one that can
 }
 
 TEST_CASE("rows without a number are counted as lost, a half last line too") {
-    const table::SampleLog log = read("t,a\n0,1\n1,\n2,nan\n3,4\n4");
+    const table::SampleLog log = read("t_s,a\n0,1\n1,\n2,nan\n3,4\n4");
     CHECK(log.times == std::vector{0.0, 3.0});
     CHECK(log.lost_rows == 3);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boards on a line that loses, delays and adds bytes.
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/board_peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -9,7 +10,6 @@
 
 using namespace tactus;
 using namespace tactus::test;
-using hosted::steady_ns;
 
 namespace {
 
@@ -45,7 +45,7 @@ TEST_CASE("a line that cuts, drops, delays and adds bytes costs samples of a boa
                 ++valid;
                 off = std::max(off, glm::length(sample.pose.position - place));
             }
-            hosted::sleep_until(steady_ns() + ms);
+            sleep_until(steady_ns() + ms);
         }
         CHECK(off < 1e-6);
         CHECK(valid > 50);  // how many is a matter of the machine, too
@@ -69,12 +69,12 @@ TEST_CASE("a board is understood again within 20 ms after noise on its line", "[
             faults_of(*board).burst = 64;
             const std::int64_t begin = steady_ns();
             while (faults_of(*board).burst != 0 && steady_ns() - begin < 500 * ms)
-                hosted::sleep_until(steady_ns() + ms / 8);
+                sleep_until(steady_ns() + ms / 8);
             // The first answer may have been on its way before the noise.
             const std::int64_t heard = device->published();
             while (device->published() < heard + 3 && steady_ns() - begin < 500 * ms) {
                 device->commit({});
-                hosted::sleep_until(steady_ns() + ms / 8);
+                sleep_until(steady_ns() + ms / 8);
             }
             took.push_back(steady_ns() - begin);
         }
@@ -106,7 +106,7 @@ TEST_CASE("torques do not wait in a slow line: a board at 115200 baud gives a ne
                 device->commit({{0.0, wanted, 0.0}, {}});
                 device->acquire(1e-3);
                 if (given == 0 && board->given().force.y * wanted > 0.02) given = steady_ns() - begin;
-                hosted::sleep_until(steady_ns() + ms);
+                sleep_until(steady_ns() + ms);
             }
             took.push_back(given == 0 ? 600 * ms : given);
         }

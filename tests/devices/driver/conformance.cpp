@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every driver of a device that pushes promises, with a stand-in at the other side.
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -11,7 +12,6 @@
 
 using namespace tactus;
 using namespace tactus::test;
-using hosted::steady_ns;
 
 namespace {
 
@@ -23,7 +23,7 @@ bool tick_until(HapticDevice& device, const Wrench& force, const std::function<b
         if (until(sample)) return true;
         // As an engine: no force on a hand that nobody sees, also after a test that was late itself.
         device.commit(i < 10 || !sample.valid ? Wrench{} : force);
-        hosted::sleep_until(next += ms);
+        sleep_until(next += ms);
     }
     return false;
 }
@@ -105,7 +105,7 @@ TEST_CASE("no driver gives more than its device's limit, or a force that is no n
         for (int i = 0; i < 20; ++i) {
             device->commit({{std::numeric_limits<double>::infinity(), 0.0, 0.0}, {}});
             CHECK(glm::length(peer->given().force) == 0.0);
-            hosted::sleep_until(steady_ns() + ms);
+            sleep_until(steady_ns() + ms);
         }
     }
 }
@@ -152,7 +152,7 @@ TEST_CASE("a driver whose vendor hangs is invalid within 20 ms, delays no tick a
         device.reset();
         CHECK(steady_ns() - begin < 600 * ms);
         peer->hang(false);
-        hosted::sleep_until(steady_ns() + 50 * ms);  // what came back takes itself down
+        sleep_until(steady_ns() + 50 * ms);  // what came back takes itself down
     }
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("a lost device is invalid, comes back by itself, and pushes only after
         REQUIRE(tick_until(*device, push, [&](const DeviceSample&) { return peer->given().force.x > 0.7; }));
         peer->unplug(true);
         CHECK(tick_until(*device, {}, [](const DeviceSample& sample) { return !sample.valid; }));
-        hosted::sleep_until(steady_ns() + 50 * ms);
+        sleep_until(steady_ns() + 50 * ms);
         CHECK_FALSE(device->acquire(1e-3).valid);
         peer->unplug(false);
         // Who goes on to want a large force gets none, and is told to let go.
@@ -175,7 +175,7 @@ TEST_CASE("a lost device is invalid, comes back by itself, and pushes only after
             device->commit(push);
             was_valid = was_valid || device->acquire(1e-3).valid;
             has_pushed = has_pushed || glm::length(peer->given().force) > 0.0;
-            hosted::sleep_until(steady_ns() + ms);
+            sleep_until(steady_ns() + ms);
         }
         CHECK_FALSE(has_pushed);
         CHECK(tick_until(*device, push,
@@ -210,7 +210,7 @@ TEST_CASE("an engine that falls silent leaves no force on any device", "[live]")
         REQUIRE(tick_until(*device, push, [&](const DeviceSample&) { return peer->given().force.x > 0.7; }));
         const std::int64_t silent = steady_ns();
         while (glm::length(peer->given().force) > 0.0 && steady_ns() - silent < 1000 * ms)
-            hosted::sleep_until(steady_ns() + ms / 4);
+            sleep_until(steady_ns() + ms / 4);
         CHECK(steady_ns() - silent < 30 * ms);  // 10 ms, a round, the line, and a loaded machine
         REQUIRE(tick_until(*device, push, [&](const DeviceSample&) { return peer->given().force.x > 0.7; }));
         device.reset();

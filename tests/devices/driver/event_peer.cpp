@@ -2,6 +2,7 @@
 #include "tests/devices/driver/event_peer.hpp"
 
 #include "devices/evdev/wheel.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fcntl.h>
 
@@ -161,7 +162,7 @@ bool FakeEvents::write(int file, const input_event& event) noexcept {
     else if (event.code == FF_AUTOCENTER) autocenter = event.value;
     else if (const auto effect = found->effects.find(event.code); effect != found->effects.end())
         effect->second.until_ns =
-            event.value == 0 ? 0 : hosted::steady_ns() + effect->second.effect.replay.length * 1'000'000LL;
+            event.value == 0 ? 0 : steady_ns() + effect->second.effect.replay.length * 1'000'000LL;
     return true;
 }
 
@@ -198,7 +199,7 @@ void FakeEvents::drop(std::uint16_t type, std::uint16_t code, int value) { tell(
 std::vector<ff_effect> FakeEvents::playing() {
     const std::lock_guard lock(mutex_);
     std::vector<ff_effect> found;
-    const std::int64_t now = hosted::steady_ns();
+    const std::int64_t now = steady_ns();
     for (const auto& [number, file] : files_)
         for (const auto& [id, one] : file.effects)
             if (!file.is_lost && now < one.until_ns) found.push_back(one.effect);

@@ -6,6 +6,7 @@
 #include "devices/haply/inverse_messages.hpp"
 #include "devices/haply/web_socket.hpp"
 #include "devices/haptic/catalogue.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/service_peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -71,9 +72,9 @@ TEST_CASE("a server that answers another greeting, or never to the end, is no se
     CHECK_THROWS_WITH(open(impostor), ContainsSubstring("answers another greeting"));
     HaplyService slow;
     slow.slow_greeting = true;
-    const std::int64_t begin = hosted::steady_ns();
+    const std::int64_t begin = steady_ns();
     CHECK_THROWS_WITH(open(slow), ContainsSubstring("no service at"));
-    CHECK(hosted::steady_ns() - begin < 4000 * ms);
+    CHECK(steady_ns() - begin < 4000 * ms);
 }
 
 TEST_CASE("who finds no service, no board or nothing to probe is told what to do") {
@@ -201,11 +202,11 @@ TEST_CASE("a service that lies, floods or hangs up is invalid for less than a se
         service.trouble = trouble;
         std::int64_t longest = 0;
         for (int i = 0; i < 300; ++i) {
-            const std::int64_t begin = hosted::steady_ns();
+            const std::int64_t begin = steady_ns();
             device->commit({});
             device->acquire(1e-3);
-            longest = std::max(longest, hosted::steady_ns() - begin);
-            hosted::sleep_until(hosted::steady_ns() + ms / 4);
+            longest = std::max(longest, steady_ns() - begin);
+            sleep_until(steady_ns() + ms / 4);
         }
         CHECK(longest < 20 * ms);
         CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
@@ -226,9 +227,9 @@ TEST_CASE("a service that stays silent, cut, far too long or no JSON is invalid,
         service.trouble = trouble;
         service.is_silent = trouble == Trouble::none;
         const LatenessControl control;
-        const std::int64_t begin = hosted::steady_ns();
+        const std::int64_t begin = steady_ns();
         REQUIRE(wait_until([&] { return !device.acquire(1e-3).valid; }, 1000));
-        const std::int64_t took = hosted::steady_ns() - begin;
+        const std::int64_t took = steady_ns() - begin;
         // 20 ms, one answer on the way, and each of the three threads may be as late as one that only sleeps.
         INFO("a sleeping thread was " << control.longest_ns() * 1e-6 << " ms late at most");
         CHECK(took < 40 * ms + 3 * control.longest_ns());
@@ -236,7 +237,7 @@ TEST_CASE("a service that stays silent, cut, far too long or no JSON is invalid,
         for (int i = 0; i < 600; ++i) {
             device.commit({});
             valid += device.acquire(1e-3).valid;
-            hosted::sleep_until(hosted::steady_ns() + ms);
+            sleep_until(steady_ns() + ms);
         }
         CHECK(valid == 0);
         service.lasts = service.is_silent = false;

@@ -3,6 +3,7 @@
 
 #include "devices/haply/handshake.hpp"
 #include "devices/haply/inverse3.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +91,7 @@ void HaplyService::accept(const std::string& text) {
     }
     ++texts;
     if (text.find("\"profile\"") != std::string::npos) ++greetings;
-    heard_ns_ = hosted::steady_ns();
+    heard_ns_ = steady_ns();
 }
 
 void HaplyService::serve(int client) {
@@ -102,7 +103,7 @@ void HaplyService::serve(int client) {
     while (!ends_ && !is_away) {
         {
             const std::lock_guard lock(mutex_);
-            if (hosted::steady_ns() - heard_ns_ > 10'000'000) force_ = Vec3(0.0);
+            if (steady_ns() - heard_ns_ > 10'000'000) force_ = Vec3(0.0);
         }
         pollfd one{client, POLLIN, 0};
         if (::poll(&one, 1, 1) <= 0) continue;

@@ -3,6 +3,7 @@
 #include "devices/spacenav/space_mouse.hpp"
 
 #include "devices/spacenav/events.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/peer.hpp"
 #include "tests/devices/driver/space_daemon.hpp"
 #include "tests/devices/hosted/with_host.hpp"
@@ -40,7 +41,7 @@ DeviceSample ticks(HapticDevice& device, int count, const Vec3& force = Vec3(0.0
     for (int i = 0; i < count; ++i) {
         device.commit({force, {}});
         sample = device.acquire(1e-3);
-        hosted::sleep_until(hosted::steady_ns() + ms);
+        sleep_until(steady_ns() + ms);
     }
     return sample;
 }

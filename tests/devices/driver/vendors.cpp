@@ -5,6 +5,7 @@
 #include "devices/forcedimension/dhd_device.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "devices/openhaptics/hd_device.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/library_peers.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -59,7 +60,7 @@ double most_given(HapticDevice& device, Peer& peer, double newton) {
         device.commit({{i < 20 ? 0.0 : newton, 0.0, 0.0}, {}});
         device.acquire(1e-3);
         most = std::max(most, glm::length(peer.given().force));
-        hosted::sleep_until(hosted::steady_ns() + ms);
+        sleep_until(steady_ns() + ms);
     }
     return most;
 }
@@ -226,7 +227,7 @@ TEST_CASE("a vendor's library reads its numbers with points, whatever language t
         for (int i = 0; i < 100; ++i) {
             device->commit({});
             stayed = stayed && device->acquire(1e-3).valid;
-            hosted::sleep_until(hosted::steady_ns() + ms);
+            sleep_until(steady_ns() + ms);
         }
         CHECK(stayed);
     }
@@ -243,5 +244,5 @@ TEST_CASE("a device that does not open in time names its step", "[live]") {
     });
     CHECK(said == "the driver did not answer within 0.1 s (step 'open the device')");
     peer->hang(false);
-    hosted::sleep_until(hosted::steady_ns() + 50 * ms);
+    sleep_until(steady_ns() + 50 * ms);
 }

@@ -2,6 +2,7 @@
 // What a wheel does beyond what every driver promises (conformance.cpp).
 #include "devices/evdev/wheel.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/rotation.hpp"
 #include "tests/devices/driver/event_peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
@@ -154,10 +155,10 @@ TEST_CASE("a wheel whose driver hangs gives no force after a tenth of a second, 
     for (int i = 0; i < 150; ++i) {
         REQUIRE(rig.push({1.0, 0.0, 0.0}));
         CHECK(rig.level() != 0.0);
-        hosted::sleep_until(hosted::steady_ns() + 2 * ms);
+        sleep_until(steady_ns() + 2 * ms);
     }
     CHECK(rig.events.uploads <= 3);  // its line is told changes only
-    hosted::sleep_until(hosted::steady_ns() + 101 * ms);
+    sleep_until(steady_ns() + 101 * ms);
     CHECK(rig.events.playing().empty());
     REQUIRE(rig.push({1.0, 0.0, 0.0}));
     REQUIRE(rig.push({0.0, 0.0, 0.0}));
@@ -221,11 +222,11 @@ TEST_CASE("a wheel that refuses forces is lost, one that refuses once is not") {
     REQUIRE(rig.push({1.0, 0.0, 0.0}));
     CHECK(rig.level() != 0.0);
     rig.events.refuses = true;
-    const std::int64_t begin = hosted::steady_ns();
+    const std::int64_t begin = steady_ns();
     double wanted = 0.5;
-    while (rig.push({wanted = 1.5 - wanted, 0.0, 0.0}) && hosted::steady_ns() - begin < 2000 * ms)
-        hosted::sleep_until(hosted::steady_ns() + 2 * ms);
-    CHECK(hosted::steady_ns() - begin < 1000 * ms);
+    while (rig.push({wanted = 1.5 - wanted, 0.0, 0.0}) && steady_ns() - begin < 2000 * ms)
+        sleep_until(steady_ns() + 2 * ms);
+    CHECK(steady_ns() - begin < 1000 * ms);
 }
 
 TEST_CASE("what is no wheel is refused by name, and by what it lacks") {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A gamepad whose events come through a pipe.
 #include "devices/haptic/gamepad.hpp"
+#include "dsp/core/clock.hpp"
 
 #include "devices/haptic/pulled_hand.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "tests/devices/driver/event_peer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
@@ -164,7 +164,7 @@ TEST_CASE("a gamepad tells where its sticks want the hand and what it feels unti
     CHECK(told.force.force == force.force);
     // A spring of 2 N/mm.
     CHECK(told.wanted.position.x - told.pose.position.x == Approx(0.005).margin(0.0005));
-    CHECK(told.at_ns <= hosted::steady_ns());
+    CHECK(told.at_ns <= steady_ns());
     const RealtimeViolations seen = watch([&] {
         for (int n = 0; n < 100; ++n) {
             rig.device->acquire(1e-3);

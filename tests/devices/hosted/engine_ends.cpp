@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An engine that ends without a word, seen from the device: what was on the hand, by the clock of the device's process.
+#include "dsp/core/clock.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
 
@@ -47,7 +48,7 @@ TEST_CASE("an engine that is killed leaves no force after 20 ms, and the device 
     const WatchedHost host;
     Engine engine(host);
     REQUIRE(wait_until([&] { return host.log->last() == 4.0; }));
-    const std::int64_t killed = hosted::boot_ns();
+    const std::int64_t killed = boot_ns();
     engine.end(SIGKILL);
     CHECK(exit_code_of(host.log->process()) == 0);
     CHECK(host.log->is_closed());
@@ -60,7 +61,7 @@ TEST_CASE("an engine that is stopped leaves no force after 20 ms, and the device
     const WatchedHost host;
     Engine engine(host);
     REQUIRE(wait_until([&] { return host.log->last() == 4.0; }));
-    const std::int64_t stopped = hosted::boot_ns();
+    const std::int64_t stopped = boot_ns();
     engine.signal(SIGSTOP);
     CHECK(wait_until([&] { return host.log->last() == 0.0; }));
     CHECK(host.log->last_force_ns() - stopped <= 20 * ms);
@@ -78,7 +79,7 @@ TEST_CASE("an engine that was stopped for a moment gives no force without small 
     REQUIRE(wait_until([&] { return host.log->last() == 4.0; }));
     engine.signal(SIGSTOP);
     REQUIRE(wait_until([&] { return host.log->last() == 0.0; }));
-    const std::int64_t gone = hosted::boot_ns();
+    const std::int64_t gone = boot_ns();
     const std::uint64_t count = host.log->count();
     engine.signal(SIGCONT);
     CHECK(wait_until([&] { return host.log->count() > count + 400; }));

@@ -2,6 +2,7 @@
 // A driver in a process of its own that fails in every way, seen from the engine.
 #include "devices/hosted/hosted_device.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -15,7 +16,6 @@
 
 using namespace tactus;
 using namespace tactus::test;
-using hosted::steady_ns;
 
 namespace {
 
@@ -105,9 +105,9 @@ TEST_CASE("a sample that is no pose is not valid, and a force that is no number 
     CHECK(tick(*device, 4.0, [&](const DeviceSample& sample) { return !sample.valid; }));
     std::int64_t from = 0;
     for (int i = 0; i < 50; ++i) {
-        if (i == 10) from = hosted::boot_ns();
+        if (i == 10) from = boot_ns();
         device->commit({{std::nan(""), 0.0, 0.0}, {}});
-        hosted::sleep_until(steady_ns() + ms);
+        sleep_until(steady_ns() + ms);
     }
     CHECK(host.log->most_after(from) == 0.0);
     for (const ForceLog::Entry& entry : host.log->entries()) REQUIRE(std::isfinite(entry.force));

@@ -2,8 +2,8 @@
 // Devices in processes of their own, as tests open them, and what may not be left behind.
 #pragma once
 
-#include "devices/hosted/clocks.hpp"
 #include "devices/hosted/hosted_device.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/support/force_log.hpp"
 #include "tests/support/places.hpp"
 
@@ -27,10 +27,10 @@ inline constexpr std::int64_t ms = 1'000'000;
 
 /// Until the condition holds, at most `longest_ms`.
 inline bool wait_until(const std::function<bool()>& condition, std::int64_t longest_ms = 10'000) {
-    const std::int64_t until = hosted::steady_ns() + longest_ms * ms;
-    while (hosted::steady_ns() < until) {
+    const std::int64_t until = steady_ns() + longest_ms * ms;
+    while (steady_ns() < until) {
         if (condition()) return true;
-        hosted::sleep_until(hosted::steady_ns() + ms);
+        sleep_until(steady_ns() + ms);
     }
     return condition();
 }
@@ -94,12 +94,12 @@ private:
 /// A tick a millisecond, of an engine that wants `force` N after it began small. Until the condition holds; true when it
 /// did within 10 s.
 inline bool tick(hosted::HostedDevice& device, double force, const std::function<bool(const DeviceSample&)>& until) {
-    std::int64_t next = hosted::steady_ns();
+    std::int64_t next = steady_ns();
     for (int i = 0; i < 10'000; ++i) {
         if (until(device.acquire(1e-3))) return true;
         device.commit({{i < 20 ? 0.0 : force, 0.0, 0.0}, {}});
         if (i % 20 == 0) device.service();
-        hosted::sleep_until(next += ms);
+        sleep_until(next += ms);
     }
     return false;
 }

@@ -2,6 +2,7 @@
 // The driver with a tracker's server that a test plays.
 #include "devices/openigtlink/tracker.hpp"
 #include "devices/openigtlink/message.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/devices/driver/peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
@@ -131,7 +132,7 @@ TEST_CASE("a tool of a tracker is a hand: valid while it is seen, lost and found
             const DeviceSample sample = device->acquire(1e-3);
             if (sample.valid == valid) return true;
             device->commit({});
-            hosted::sleep_until(hosted::steady_ns() + one_ms);
+            sleep_until(steady_ns() + one_ms);
         }
         return false;
     };

@@ -2,6 +2,7 @@
 #include "dsp/control/sampled_wall.hpp"
 
 #include "dsp/core/random.hpp"
+#include "dsp/simulate/device_model.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
@@ -59,8 +60,38 @@ TEST_CASE("a wall far beyond the damping of an ideal device hums") {
         wall.delay = delay;
         wall.stiffness = 1.5 * control::colgate_stiffness(wall);
         CHECK(control::oscillates(wall));
-        const double border = control::simulated_stiffness(wall, 1e5);
+        const double border = control::simulated_stiffness(wall, 1e5).stiffness;
         CHECK(border > 0.9 * control::colgate_stiffness(wall));
         CHECK(border < 1.3 * control::colgate_stiffness(wall));
+    }
+}
+
+TEST_CASE("the simulated stiffness of a device holds for every press and approach, and names a hand that it fails") {
+    const Random random{7};
+    for (const simulate::DeviceModel& model : simulate::device_models()) {
+        SampledWall wall;
+        wall.delay = model.delay;
+        wall.mass = model.mass + 0.1;
+        wall.viscous = model.viscous + 1.0;
+        wall.friction = model.friction;
+        wall.resolution = model.resolution;
+        wall.max_force = model.max_force;
+        const control::SimulatedLimit limit = control::simulated_stiffness(wall, 500e3);
+        INFO(model.name << ": " << limit.stiffness << " N/m at " << limit.press << " N and " << limit.approach << " m/s");
+        wall.stiffness = limit.stiffness;
+        wall.press = limit.press;
+        wall.approach = limit.approach;
+        CHECK(control::oscillates(wall));
+        // A press of 1 N alone would permit more.
+        wall.press = 1.0;
+        wall.approach = 0.1;
+        CHECK_FALSE(control::oscillates(wall));
+        wall.stiffness = 0.8 * limit.stiffness;
+        for (std::uint64_t i = 0; i < 20; ++i) {
+            wall.press = 0.5 * std::pow(0.8 * model.max_force / 0.5, random.uniform(2 * i));
+            wall.approach = 0.3 * random.uniform(2 * i + 1);
+            INFO(wall.press << " N, " << wall.approach << " m/s");
+            CHECK_FALSE(control::oscillates(wall));
+        }
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/clock.hpp"
 #include "engine/io/device_guard.hpp"
 
-#include "engine/run/clock.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>
@@ -62,7 +62,7 @@ TEST_CASE("a device that no node drives for a while is no late one when it is dr
         io::DeviceGuard guard;
         guard.set_limit(3 * ms);
         Still device;
-        const std::int64_t begin = run::steady_ns();
+        const std::int64_t begin = steady_ns();
         std::int64_t now = begin;
         guard.commit(device, {Vec3(1.0, 0.0, 0.0), {}}, now);
         CHECK(device.last.force.x == 1.0);
@@ -78,7 +78,7 @@ TEST_CASE("a device that no node drives for a while is no late one when it is dr
             if (is_told) CHECK_FALSE(guard.was_taken());
         }
         guard.was_taken();
-        guard.commit(device, {Vec3(2.0, 0.0, 0.0), {}}, run::steady_ns());
+        guard.commit(device, {Vec3(2.0, 0.0, 0.0), {}}, steady_ns());
         CHECK_FALSE(guard.was_taken());
         CHECK(device.last.force.x == 2.0);
     }

@@ -2,7 +2,7 @@
 #include "tests/engine/recovery/shaken_hand.hpp"
 
 #include "dsp/control/energy_cap.hpp"
-#include "engine/run/clock.hpp"
+#include "dsp/core/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -64,7 +64,7 @@ void ShakenCounts::add(const ShakenCounts& other) {
 ShakenHand::ShakenHand(std::uint64_t seed) : seed_(seed) {
     device_.own = {.name = "shaken", .max_force = device_force, .damping = refunded, .resolution = resolution};
     // Ahead of the clock, so that no commit seems to have taken long.
-    began_ns_ = run::steady_ns() + 1'000'000 * 1'000 * ns_per_ms;
+    began_ns_ = steady_ns() + 1'000'000 * 1'000 * ns_per_ms;
     make_node();
 }
 

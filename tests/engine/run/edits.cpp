@@ -220,6 +220,63 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("setting a parameter of a nested sub-patch sets all that it stands for", "[live]") {
+    const std::string parts = R"(
+[[parts]]
+path = "two.toml"
+text = '''
+wires = [ "x.out -> y.in" ]
+[inputs]
+in = "x.in"
+[outputs]
+out = "y.out"
+[parameters]
+g = ["x.factor", "y.factor"]
+[nodes]
+x = { type = "gain", rate = "1 kHz" }
+y = { type = "gain", rate = "1 kHz" }
+'''
+[[parts]]
+path = "outer.toml"
+text = '''
+[inputs]
+in = "b.in"
+[outputs]
+out = "b.out"
+[parameters]
+g = "b.g"
+[nodes]
+b = { type = "patch:two.toml" }
+'''
+)";
+    run::EngineOptions options;
+    options.seconds = 0.3;
+    options.live = true;
+    run::Engine engine(compile_text(R"(wires = [ "one.value -> n.in", "n.out -> p.in" ]
+[nodes]
+one = { type = "constant", rate = "1 kHz", number = 1 }
+n = { type = "patch:outer.toml", g = 5 }
+p = { type = "probe", rate = "1 kHz" }
+)" + parts),
+                       options);
+    const auto factors = [&] {
+        std::vector<double> all;
+        for (const auto& node : engine.nodes())
+            if (const auto found = node->params.find("factor"); found != node->params.end())
+                all.push_back(found->second->value);
+        return all;
+    };
+    CHECK(factors() == std::vector{5.0, 5.0});
+    bool is_set = false;
+    run::LiveOptions live;
+    live.watch = [&] {
+        if (!is_set) engine.set("n", "g", "9");
+        is_set = true;
+    };
+    engine.run_live(live);
+    CHECK(factors() == std::vector{9.0, 9.0});
+}
+
 TEST_CASE("an edit that cannot be made leaves the old plan running", "[live]") {
     run::EngineOptions options;
     options.seconds = 0.4;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A system that refuses threads: the run or the edit says so.
-#include "tests/engine/refused_threads.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/live_case.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refused_threads.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <optional>
 #include <string>
@@ -12,7 +13,8 @@
 using namespace tactus;
 using namespace tactus::test;
 
-TEST_CASE("a run whose threads are refused says so and does not hang", "[live]") {
+TEST_CASE("a run whose threads are refused says so and does not hang", "[virtual]") {
+    const VirtualClock clock;
     watched_hand("left");
     PatchText patch;
     add_hand(patch, "left");
@@ -36,7 +38,8 @@ TEST_CASE("a run whose threads are refused says so and does not hang", "[live]")
     }
 }
 
-TEST_CASE("an edit whose threads are refused is not made, and the patch runs on as it was", "[live]") {
+TEST_CASE("an edit whose threads are refused is not made, and the patch runs on as it was", "[virtual]") {
+    const VirtualClock clock;
     WatchedHand& hand = watched_hand("left");
     watched_hand("right");
     PatchText plain, more;

@@ -12,7 +12,7 @@ std::vector<analyse::ForceLoop> loops_of(const std::string& text, double damping
     const Compiled c = compiled(text);
     INFO(c.said);
     REQUIRE(c.plan);
-    return analyse::force_loops(*c.plan, [damping](const std::string&) { return damping; });
+    return analyse::force_loops(*c.plan, [damping](const std::string&) { return DeviceInfo{.name = {}, .damping = damping}; });
 }
 
 const std::string hand = a_node("in", "device_input") + a_node("out", "device_output");
@@ -72,34 +72,57 @@ TEST_CASE("a driven stiffness counts with the end of its range") {
     CHECK_FALSE(loops[0].ok());
 }
 
-TEST_CASE("a way without a spring has a limit and nothing to compare, and an unknown damping promises nothing") {
+TEST_CASE("a path without a spring has a limit and nothing to compare, and on an unknown device the hand alone damps") {
     const auto plain = loops_of("wires = [\"in.out -> out.in\"]\n" + hand);
     REQUIRE(plain.size() == 1);
     CHECK_FALSE(plain[0].declared);
     CHECK(plain[0].limit == Approx(4000.0));
     CHECK(plain[0].ok());
-    CHECK(loops_of("wires = [\"in.out -> out.in\"]\n" + hand, 0.0)[0].limit == 0.0);
+    CHECK(loops_of("wires = [\"in.out -> out.in\"]\n" + hand, 0.0)[0].limit == Approx(4000.0));
 }
 
-TEST_CASE("a stiffness on a device that states no damping is unknown, not stable") {
-    const std::string text = "wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
-                             a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n");
-    CHECK(loops_of(text, 2.0)[0].verdict() == analyse::Verdict::stable);
-    CHECK(loops_of(text, 1.0)[0].verdict() == analyse::Verdict::too_stiff);
-    CHECK(loops_of(text, 0.0)[0].verdict() == analyse::Verdict::unknown);
-    CHECK_FALSE(loops_of(text, 0.0)[0].ok());
+TEST_CASE("a stiffness beyond what a hand alone damps is unknown on a device that states no damping") {
+    const auto wall = [](const std::string& stiffness) {
+        return "wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
+               a_node("wall", "stiff", "1 kHz", "stiffness = \"" + stiffness + "\"\n");
+    };
+    CHECK(loops_of(wall("3.9 N/mm"), 2.0)[0].verdict() == analyse::Verdict::stable);
+    CHECK(loops_of(wall("3.9 N/mm"), 1.0)[0].verdict() == analyse::Verdict::too_stiff);
+    CHECK(loops_of(wall("3.9 N/mm"), 0.0)[0].verdict() == analyse::Verdict::stable);
+    CHECK(loops_of(wall("4.1 N/mm"), 0.0)[0].verdict() == analyse::Verdict::unknown);
+    CHECK_FALSE(loops_of(wall("4.1 N/mm"), 0.0)[0].ok());
+}
+
+TEST_CASE("the delay of the device counts in the loop, half of it at each end") {
+    const Compiled c =
+        compiled("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" +
+                 a_node("in", "device_input", "1 kHz", "device = \"left\"\n") +
+                 a_node("out", "device_output", "1 kHz", "device = \"right\"\n") + a_node("wall", "stiff"));
+    INFO(c.said);
+    REQUIRE(c.plan);
+    const auto loops = analyse::force_loops(*c.plan, [](const std::string& name) {
+        return DeviceInfo{.name = name, .damping = 3.5, .delay = name == "left" ? 0.5e-3 : 1.5e-3};
+    });
+    REQUIRE(loops.size() == 1);
+    CHECK(loops[0].latency_s == Approx(1e-3));
+    CHECK(loops[0].limit == Approx(3.5 / 1.5e-3));
+    // A Touch with its tick of the servo loop: 0.07 N/mm without a hand on it.
+    CHECK(analyse::stiffness_limit(0.1, 1e-3, 1e-3) == Approx(66.7).epsilon(0.01));
+    CHECK(analyse::damping_with_hand(DeviceInfo{}) == 2.0);
 }
 
 TEST_CASE("a stiffness beyond what the device states is too stiff, whatever its damping") {
     const Compiled c = compiled("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
                                 a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n"));
     REQUIRE(c.plan);
-    const auto states = [](double number) { return [number](const std::string&) { return number; }; };
     for (const double damping : {0.0, 100.0}) {
-        CHECK(analyse::force_loops(*c.plan, states(damping), states(3800.0))[0].verdict() ==
-              analyse::Verdict::too_stiff);
-        CHECK(analyse::force_loops(*c.plan, states(damping), states(3900.0))[0].verdict() !=
-              analyse::Verdict::too_stiff);
+        const auto verdict = [&](double stated) {
+            return analyse::force_loops(*c.plan, [&](const std::string&) {
+                       return DeviceInfo{.name = {}, .damping = damping, .max_stiffness = stated};
+                   })[0].verdict();
+        };
+        CHECK(verdict(3800.0) == analyse::Verdict::too_stiff);
+        CHECK(verdict(3900.0) != analyse::Verdict::too_stiff);
     }
     const auto felt = analyse::felt_springs(*c.plan);
     REQUIRE(felt.size() == 1);

@@ -62,8 +62,8 @@ TEST_CASE("parameters of a patch within reach all that they stand for, and repla
     CHECK(factor(last, "pair:second") == 7.0);
     const Compiled own = compiled(using_pair() + part("pair.toml", pair_text));
     CHECK(factor(own, "pair:second") == 3.0);
-    CHECK(patch::end_within(own.plan->patch, "pair", "last").node == "pair:second");
-    CHECK(patch::end_within(own.plan->patch, "end", "stiffness").node == "end");
+    CHECK(patch::ends_within(own.plan->patch, "pair", "last").front().node == "pair:second");
+    CHECK(patch::ends_within(own.plan->patch, "end", "stiffness").front().node == "end");
 }
 
 TEST_CASE("patches nest, with groups, rates and offers led through") {
@@ -93,8 +93,33 @@ group = "inner"
     CHECK(order_of(*c.plan, 1) == "quad:b:first quad:b:second");
     for (const compile::PlanNode& node : c.plan->nodes)
         if (node.name.starts_with("quad:")) CHECK(node.params.at("stiffness")->value == 2.0);
-    CHECK(patch::end_within(c.plan->patch, "quad", "out").node == "quad:b:second");
-    CHECK(patch::end_within(c.plan->patch, "quad:a", "in").node == "quad:a:first");
+    CHECK(patch::ends_within(c.plan->patch, "quad", "out").front().node == "quad:b:second");
+    CHECK(patch::ends_within(c.plan->patch, "quad:a", "in").front().node == "quad:a:first");
+}
+
+//  top ► p8 ► … ► p1 ► pair: every level offers the parameter of the level below
+TEST_CASE("a parameter with several targets reaches all of them from any depth") {
+    std::string parts = part("pair.toml", pair_text);
+    for (int depth = 1; depth <= 8; ++depth) {
+        const std::string below = depth == 1 ? "pair.toml" : fmt::format("p{}.toml", depth - 1);
+        parts += part(fmt::format("p{}.toml", depth),
+                      "[inputs]\nin = \"n.in\"\n[outputs]\nout = \"n.out\"\n[parameters]\nboth = \"n.both\"\n"
+                      "[nodes.n]\ntype = \"patch:" + below + "\"\nrate = \"outer\"\n");
+        const Compiled c = compiled(
+            "wires = [ \"s.value -> top.in\", \"top.out -> end.in\" ]\n" + a_node("s", "source") +
+            fmt::format("[nodes.top]\ntype = \"patch:p{}.toml\"\nrate = \"1 kHz\"\nboth = \"9 N/m\"\n", depth) +
+            a_node("end", "stiff") + parts);
+        INFO(depth << ": " << c.said);
+        REQUIRE(c.plan);
+        int set = 0;
+        for (const compile::PlanNode& node : c.plan->nodes)
+            if (node.name.starts_with("top:")) set += node.params.at("stiffness")->value == 9.0;
+        CHECK(set == 2);
+        const auto ends = patch::ends_within(c.plan->patch, "top", "both");
+        REQUIRE(ends.size() == 2);
+        CHECK(ends[0].node.ends_with(":first"));
+        CHECK(ends[1].node.ends_with(":second"));
+    }
 }
 
 TEST_CASE("what is wrong with a patch within is said where it is written") {

@@ -57,7 +57,7 @@ compile::Plan felt(const std::string& law, const std::string& more_wires = "") {
 }
 
 std::vector<analyse::ForceLoop> loops_of(const compile::Plan& plan) {
-    return analyse::force_loops(plan, [](const std::string&) { return 1.0; });
+    return analyse::force_loops(plan, [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; });
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drivers under the attacks of `tactus bench peers`: what comes out is a pose or none, and no call waits.
+#include "dsp/core/clock.hpp"
 #include "tools/bench/hostile_peer.hpp"
 
 #include "devices/haptic/catalogue.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
 
@@ -43,7 +43,7 @@ TEST_CASE("no attack on a driver's socket or line makes a call wait, or a pose t
             HostilePeer peer(line, attack);
             auto device = open(line, peer);
             int valid = 0, broken = 0;
-            std::int64_t next = hosted::steady_ns(), violations = 0;
+            std::int64_t next = steady_ns(), violations = 0;
             for (int tick = 0; tick < 400; ++tick) {
                 DeviceSample sample;
                 const RealtimeViolations seen = watch([&] {
@@ -54,15 +54,15 @@ TEST_CASE("no attack on a driver's socket or line makes a call wait, or a pose t
                 valid += sample.valid;
                 broken += sample.valid && (!is_valid(sample.pose) || !is_finite(sample.twist.linear) ||
                                            glm::length(sample.pose.position) > 1.0);
-                hosted::sleep_until(next += ms);
+                sleep_until(next += ms);
             }
             CHECK(violations == 0);
             CHECK(broken == 0);
             CHECK(valid > 0);  // before the attack
             CHECK(peer.bytes() > 0);
-            const std::int64_t begin = hosted::steady_ns();
+            const std::int64_t begin = steady_ns();
             device.reset();
-            CHECK(hosted::steady_ns() - begin < 1000 * ms);
+            CHECK(steady_ns() - begin < 1000 * ms);
         }
     ::unsetenv("XDG_CONFIG_HOME");
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command with a device that has a process of its own, and the ways in which one of the two may end.
+#include "dsp/core/clock.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/force_log.hpp"
 #include "tests/tools/background_run.hpp"
@@ -126,7 +127,7 @@ TEST_CASE("a run that is killed or stopped leaves no force on the hand after 20 
         {
             Run run(watched.folder, watched.arguments());
             REQUIRE(watched.presses());
-            const std::int64_t ended = hosted::boot_ns();
+            const std::int64_t ended = boot_ns();
             if (signal == SIGKILL) run.stop(SIGKILL);
             else run.signal(SIGSTOP);
             CHECK(wait_for([&] { return watched.log->is_closed(); }));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which thresholds tell true fits from false ones: trials with known truth, one half to set them, the other to judge.
 #include "assets/file/json.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
-#include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/fits/fit_pairs.hpp"
 #include "tools/bench/fits/result_lines.hpp"

@@ -2,10 +2,10 @@
 // The vessel tracker on phantoms with known truth, in noise and on real scans, beside a plain ridge tracker.
 #include "assets/file/json.hpp"
 #include "assets/volume/scan_volume.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/simulate/vessel_cases.hpp"
 #include "dsp/vessel/tracker.hpp"
-#include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/vessels/narrowing_search.hpp"
 #include "tools/bench/vessels/ridge_tracker.hpp"
@@ -34,9 +34,9 @@ struct VesselBenchChoice {
 };
 
 double seconds_of(const std::function<void()>& work) {
-    const std::int64_t begin = run::thread_ns();
+    const std::int64_t begin = thread_ns();
     work();
-    return 1e-9 * static_cast<double>(run::thread_ns() - begin);
+    return 1e-9 * static_cast<double>(thread_ns() - begin);
 }
 
 /// A ridge as a track of one branch, to be compared in the same way.

@@ -57,6 +57,7 @@ file::Json json_of(const bone::ImportSummary& s) {
             {"bone_volume_mm3", s.bone_volume_mm3},
             {"surface_area_mm2", s.surface_area_mm2},
             {"density", {{"min", s.density.min}, {"max", s.density.max}, {"mean", s.density.mean}}},
+            {"metal_mm3", s.metal_mm3},
             {"components", s.components},
             {"threshold", threshold_json(s)},
             {"narrowest_kerf_mm", study::narrowest_kerf_mm(s.voxel_mm)},
@@ -143,6 +144,7 @@ Action declare_import(VerbOptions& verb) {
             "resample to this grid spacing, mm")
         .unit("mm");
     verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it");
+    verb.flag("--fill-gaps", choice->fill_gaps, "DICOM: interpolate where slices are missing (default: refuse)");
     add_rescale(verb, [choice](const Rescale& rescale) { choice->rescale = rescale; });
     verb.call<double>(
             "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },

@@ -4,7 +4,7 @@
 #include "assets/file/json.hpp"
 #include "devices/driver/confirmation.hpp"
 #include "devices/haptic/catalogue.hpp"
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/exit_code.hpp"
 
@@ -53,17 +53,17 @@ file::Json json_of(const Vec3& v, double unit) { return file::Json::array({v.x *
 /// A tick a millisecond for a while. Returns the newest sample that was valid.
 DeviceSample hold(ThreadedDevice& device, const Wrench& force, std::int64_t for_ns) {
     DeviceSample good;
-    std::int64_t next = hosted::steady_ns();
+    std::int64_t next = steady_ns();
     for (const std::int64_t end = next + for_ns; next < end;) {
         device.commit(force);
         if (const DeviceSample sample = device.acquire(1e-3); sample.valid) good = sample;
-        hosted::sleep_until(next += ms);
+        sleep_until(next += ms);
     }
     return good;
 }
 
 bool wait_for_pose(ThreadedDevice& device) {
-    for (const std::int64_t end = hosted::steady_ns() + longest_wait_ns; hosted::steady_ns() < end;)
+    for (const std::int64_t end = steady_ns() + longest_wait_ns; steady_ns() < end;)
         if (hold(device, {}, 10 * ms).valid) return true;
     return false;
 }
@@ -158,10 +158,10 @@ int probe_device(const DeviceLook& look) {
         return leave(nullptr, say_failure(look, error.what(), error.steps));
     }
     wait_for_pose(*device);
-    const std::int64_t before = device->published(), begin = hosted::steady_ns();
+    const std::int64_t before = device->published(), begin = steady_ns();
     const DeviceSample sample = hold(*device, {}, looking_ns);
     const double rate =
-        static_cast<double>(device->published() - before) * 1e9 / static_cast<double>(hosted::steady_ns() - begin);
+        static_cast<double>(device->published() - before) * 1e9 / static_cast<double>(steady_ns() - begin);
     print(look, *device, sample, rate);
     return leave(std::move(device), sample.valid ? done : answer_is_no);
 }

@@ -3,7 +3,6 @@
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
-#include "tools/command/run/check_process.hpp"
 #include "tools/command/run/check_rows.hpp"
 #include "tools/command/run/check_text.hpp"
 #include "tools/exit_code.hpp"
@@ -35,12 +34,12 @@ struct CheckChoice {
     std::string z_width_figure;
 };
 
-/// What a device, by its name in the patch, states; "" is the only one; 0: nothing.
-std::function<double(const std::string&)> stated_by(const io::EngineHost& host, double DeviceInfo::* number) {
-    return [&host, number](const std::string& name) {
+/// The figures of a device by its name in the patch; "" is the only one.
+std::function<DeviceInfo(const std::string&)> devices_of(const io::EngineHost& host) {
+    return [&host](const std::string& name) {
         for (const auto& slot : host.devices)
-            if (name.empty() || slot->name == name) return slot->port.info.*number;
-        return 0.0;
+            if (name.empty() || slot->name == name) return slot->port.info;
+        return DeviceInfo{};
     };
 }
 
@@ -76,9 +75,7 @@ int check(const CheckChoice& choice) {
             run::EngineOptions options;
             options.only_checked = true;
             const run::Engine engine(std::move(*plan), options);
-            auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
-                                              stated_by(engine.host(), &DeviceInfo::max_stiffness));
-            add_process_delay(loops, engine.plan());
+            const auto loops = analyse::force_loops(engine.plan(), devices_of(engine.host()));
             json["paths"] = paths_json(engine.plan(), loops);
             json["contact"] = contact_json(study::contact_laws(engine));
             json["device_classes"] = classes_json(study::class_verdicts(loops));
@@ -89,7 +86,7 @@ int check(const CheckChoice& choice) {
                     "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel",
                     node));
             if (const Json sound = sound_json(engine.plan()); !sound.is_null()) json["sound"] = sound;
-            json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
+            json["outputs"] = outputs_json(engine.nodes(), loops, json["warnings"]);
             if (choice.z_width || !choice.z_width_figure.empty()) {
                 const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());
                 json["z_width"] = z_width_json(curves);

@@ -60,18 +60,4 @@ std::vector<DeviceProcess> device_processes(const compile::Plan& plan) {
     return all;
 }
 
-void add_process_delay(std::vector<analyse::ForceLoop>& loops, const compile::Plan& plan) {
-    for (analyse::ForceLoop& loop : loops) {
-        double added = 0.0;
-        for (std::size_t node = 0; node < plan.nodes.size(); ++node)
-            for (const std::string* end : {&loop.from, &loop.to})
-                if (plan.nodes[node].name == *end)
-                    if (const auto process = process_of(plan, node)) added += 0.5 * process->added_s;
-        if (added == 0.0) continue;
-        loop.latency_s += added;
-        // limit = damping / (period / 2 + latency)
-        if (loop.limit > 0.0) loop.limit = loop.damping / (loop.damping / loop.limit + added);
-    }
-}
-
 }  // namespace tactus::command

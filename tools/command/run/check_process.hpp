@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process of its own costs a device: later forces, hence less stiffness.
+// Which devices of a patch have a process of their own.
 #pragma once
 
-#include "graph/analyse/stiffness.hpp"
 #include "graph/compile/plan.hpp"
 
 #include <string>
@@ -19,9 +18,5 @@ struct DeviceProcess {
 
 /// Those that nodes of the plan use. Throws Error on options that cannot be read.
 std::vector<DeviceProcess> device_processes(const compile::Plan& plan);
-
-/// Adds the delay to the loops through such devices, live runs have it: half of it where a loop begins, half where it
-/// ends.
-void add_process_delay(std::vector<analyse::ForceLoop>& loops, const compile::Plan& plan);
 
 }  // namespace tactus::command

@@ -6,12 +6,14 @@
 #include "engine/io/host.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/compile/sounds.hpp"
+#include "nodes/device/cap_settings.hpp"
 #include "tools/command/run/check_process.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -23,7 +25,7 @@ using file::Json;
 
 namespace {
 
-/// What a loop through a hand says; "ok" is null when the device states no damping.
+/// Figures of a loop through a hand; "ok" is null when the verdict is unknown.
 void add_stiffness(Json& row, const analyse::ForceLoop& loop) {
     const analyse::Verdict verdict = loop.verdict();
     row["latency_ms"] = loop.latency_s * 1e3;
@@ -120,14 +122,30 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     return loops;
 }
 
-Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, Json& warnings) {
+/// What the energy cap of a device_output bounds, J: its largest force at the stiffness that its loops declare.
+static double energy_bound(const build::LiveNode& node, const std::vector<analyse::ForceLoop>& loops) {
+    double stiffness = 0.0;
+    for (const analyse::ForceLoop& loop : loops)
+        if (loop.to == node.name)
+            stiffness = std::max(stiffness, loop.declared ? loop.declared->newton_per_metre
+                                                          : std::numeric_limits<double>::infinity());
+    const build::DeviceSlot& slot = *node.uses.devices.front().first;
+    const double stated = slot.port.info.max_force, given = node.params.at("max_force")->value;
+    return control::EnergyCap::max_gain(nodes::cap_settings(slot.port.info, seconds(slot.period)), stiffness,
+                                        stated > 0.0 ? std::min(stated, given) : given);
+}
+
+Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes,
+                  const std::vector<analyse::ForceLoop>& loops, Json& warnings) {
     Json outputs = Json::array();
     for (const auto& node : nodes) {
         if (node->type->name != "device_output") continue;
         Report report;
         node->type->report(node->instance.get(), report);
         const bool is_on = std::get<std::string>(report.sections.at("force").at("energy_cap")) == "on";
-        outputs.push_back({{"node", node->name}, {"energy_cap", is_on}});
+        outputs.push_back({{"node", node->name},
+                           {"energy_cap", is_on},
+                           {"energy_bound_mJ", is_on ? Json(1e3 * energy_bound(*node, loops)) : Json()}});
         if (!is_on)
             warnings.push_back(fmt::format(
                 "{}: the energy cap is off; contacts may return more energy than the hand has put in", node->name));
@@ -147,7 +165,9 @@ Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
                             {"bound_N_per_mm", n_mm(point.bound)},
                             {"passive_N_per_mm", n_mm(point.passive)},
                             {"friction_N_per_mm", n_mm(point.friction)},
-                            {"simulated_N_per_mm", n_mm(point.simulated)}});
+                            {"simulated_N_per_mm", n_mm(point.simulated.stiffness)},
+                            {"simulated_press_N", point.simulated.press},
+                            {"simulated_approach_m_per_s", point.simulated.approach}});
     return rows;
 }
 
@@ -171,6 +191,7 @@ Json classes_json(const std::vector<study::ClassVerdict>& verdicts) {
                         {"to", v.to},
                         {"class", v.device.name},
                         {"assumed_damping_N_s_per_m", v.device.damping},
+                        {"assumed_delay_ms", v.device.delay * 1e3},
                         {"may_feel_N_per_mm", v.may_feel * 1e-3},
                         {"ok", v.ok}});
     return rows;

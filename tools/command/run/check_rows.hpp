@@ -26,8 +26,10 @@ file::Json sound_json(const compile::Plan& plan);
 /// The position loops of admittance controllers: gain and stability limit.
 file::Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
 
-/// The outputs to a hand. Those that may return more energy than the hand has put in are among the `warnings`.
-file::Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, file::Json& warnings);
+/// The outputs to a hand, with the energy that a contact may give beyond what it took, at the declared stiffness of
+/// `loops`. Those without an energy cap are among the `warnings`.
+file::Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes,
+                        const std::vector<analyse::ForceLoop>& loops, file::Json& warnings);
 
 /// By which law each node's bodies touch.
 file::Json contact_json(const std::vector<study::NodeContactLaw>& laws);

@@ -23,21 +23,22 @@ void print_processes(const Json& processes) {
 }
 
 void print_z_width(const Json& rows) {
-    fmt::print("\n{:<24} {:>7} {:>9} {:>12} {:>10} {:>10} {:>10} {:>12}\n", "wall: device", "rate", "delay", "damping",
-               "bound", "passive", "friction", "simulated");
+    fmt::print("\n{:<24} {:>7} {:>9} {:>12} {:>10} {:>10} {:>10} {:>12} {:>10}\n", "wall: device", "rate", "delay",
+               "damping", "bound", "passive", "friction", "simulated", "at press");
     for (const Json& row : rows) {
         const auto cell = [&](const char* key) {
             return row[key].is_null() ? std::string("-") : fmt::format("{:.3g}", row[key].get<double>());
         };
-        fmt::print("{:<24} {:>4g} Hz {:>6.3g} ms {:>6g} N s/m {:>10} {:>10} {:>10} {:>12}\n",
+        fmt::print("{:<24} {:>4g} Hz {:>6.3g} ms {:>6g} N s/m {:>10} {:>10} {:>10} {:>12} {:>8.2g} N\n",
                    row["device"].get<std::string>(), row["rate_hz"].get<double>(), row["delay_ms"].get<double>(),
                    row["damping_N_s_per_m"].get<double>(), cell("bound_N_per_mm"), cell("passive_N_per_mm"),
-                   cell("friction_N_per_mm"), cell("simulated_N_per_mm"));
+                   cell("friction_N_per_mm"), cell("simulated_N_per_mm"), row["simulated_press_N"].get<double>());
     }
     fmt::print(
         "Stiffness in N/mm. bound: (b - |B|) / (T / 2 + delay), Colgate and Schenkel; passive: the same by motion; "
-        "friction: up to which Coulomb friction takes what encoder steps give; simulated: the device, leaned on "
-        "with 1 N, begins to oscillate.\n");
+        "friction: up to which Coulomb friction takes what encoder steps give; simulated: the device begins to "
+        "oscillate, at the worst press from 0.5 N to 0.8 of its force and approach up to 0.3 m/s. b includes a hand of "
+        "2 N s/m where the device states no damping.\n");
 }
 
 void print_contact(const Json& laws) {
@@ -66,21 +67,21 @@ void print_classes(const Json& classes) {
                    row["from"].get<std::string>() + " -> " + row["to"].get<std::string>(),
                    row["assumed_damping_N_s_per_m"].get<double>(), row["may_feel_N_per_mm"].get<double>(),
                    row["ok"].get<bool>() ? "" : "  would be too stiff");
-    fmt::print("Makers state no damping: it is assumed, with a light grip. Stiffness as makers state it.\n");
+    fmt::print("Makers state no damping: it is assumed, and a hand adds 2 N s/m. Stiffness as makers state it.\n");
 }
 
 /// The part of a path's line after its latency.
 std::string stiffness_text(const Json& row) {
     if (!row.contains("ok")) return {};
     const double limit = row["stiffness_limit_N_per_mm"].get<double>();
-    std::string text = limit > 0.0 ? fmt::format(" {:>7.3g} N/mm", limit) : fmt::format(" {:>12}", "unknown");
+    std::string text = fmt::format(" {:>7.3g} N/mm", limit);
     if (row["declared_by"].is_null()) return text;
     const double declared = row["declared_N_per_mm"].get<double>();
     text += fmt::format(" {:>7.3g} N/mm  {}", declared, row["declared_by"].get<std::string>());
     const Json& most = row["max_stiffness_N_per_mm"];
     if (!most.is_null() && declared > most.get<double>())
         text += fmt::format("  TOO STIFF: the device states {:.3g} N/mm", most.get<double>());
-    else if (row["ok"].is_null()) text += "  UNKNOWN: the device states no damping";
+    else if (row["ok"].is_null()) text += "  UNKNOWN: the device states no damping, and a hand alone damps less";
     else if (!row["ok"].get<bool>()) text += "  TOO STIFF";
     return text;
 }
@@ -127,7 +128,13 @@ void print_plan(const Json& json) {
         fmt::print("{}\n", line);
     }
     if (json.contains("sound")) print_sound(json["sound"]);
-    fmt::print("Limit of stable stiffness: damping of the device / (period / 2 + latency).\n");
+    fmt::print("Limit of stable stiffness: damping of the device with a hand on it / (period / 2 + latency, that of the "
+               "device included).\n");
+    if (json.contains("outputs"))
+        for (const Json& output : json["outputs"])
+            if (output["energy_cap"].get<bool>())
+                fmt::print("{}: a contact returns at most {:.3g} mJ beyond 1.05 of what it took, and what a hand damps.\n",
+                           output["node"].get<std::string>(), output["energy_bound_mJ"].get<double>());
     if (json.contains("contact")) print_contact(json["contact"]);
     if (json.contains("device_classes")) print_classes(json["device_classes"]);
 }

@@ -34,6 +34,7 @@ struct CompareChoice {
     fs::path report, table;                          // .html, .csv
     std::string touch = "displacement", axes = "strongest";
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
+    std::string where;                               // rows of CSV logs
     std::string time_unit, band;                     // band: LOW:HIGH in Hz, of figures
     StretchChoice stretch;
     std::optional<int> skip_rows;
@@ -51,6 +52,7 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
     selection.time_column = pick(choice.time_columns);
     if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
     selection.time_unit = choice.time_unit;
+    selection.where = choice.where;
     selection.skip_rows = choice.skip_rows;
     selection.rate = choice.rate;
     return selection;
@@ -192,6 +194,8 @@ Action declare_compare(VerbOptions& verb) {
         .one_each();
     verb.add("--time-unit", choice->time_unit, "unit of time in CSV logs: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    verb.add("--where", choice->where,
+             "of CSV logs only the rows with this value, such as SENSOR=2, for tables with several sensors");
     verb.add("--skip-rows", choice->skip_rows, "lines before the header of CSV logs (default: found)")
         .range(0, 1 << 30);
     verb.add("--sample-rate,--rate", choice->rate, "rate of CSV logs without times, such as \"3.2 kHz\"")

@@ -21,6 +21,7 @@ Json log_json(const sound::LogFacts& log, double rate) {
             {"step_s", {log.shortest_step, log.longest_step}},
             {"step_deviation_s", log.step_deviation},
             {"even", log.is_even()},
+            {"clock_step_s", log.clock_step > 0.0 ? Json(log.clock_step) : Json()},
             {"nyquist_hz", 0.5 * rate},
             {"usable_hz", log.usable},
             {"form",

@@ -23,6 +23,8 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
         .one_each();
     verb.add("--time-unit", choice.record.log.time_unit, "unit of time in a CSV log: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
+    verb.add("--where", choice.record.log.where,
+             "of a CSV log only the rows with this value, such as SENSOR=2, for tables with several sensors");
     verb.add("--skip-rows", choice.record.log.skip_rows, "lines before the header of a CSV log (default: found)")
         .range(0, 1 << 30);
     verb.add(rate, choice.record.log.rate, "rate of a CSV log without times, such as \"3.2 kHz\"")

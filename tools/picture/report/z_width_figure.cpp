@@ -58,7 +58,7 @@ void draw_curve(display::Figure& figure, const Panel& panel, const study::ZWidth
     std::vector<display::FigurePoint> bound, simulated;
     for (const study::ZWidthPoint& point : curve.points) {
         bound.push_back(panel.at(point.damping, point.bound));
-        simulated.push_back(panel.at(point.damping, point.simulated));
+        simulated.push_back(panel.at(point.damping, point.simulated.stiffness));
         const display::FigurePoint at = panel.at(point.damping, point.passive);
         figure.rectangle(at.x - 2.0, at.y - 2.0, 4.0, 4.0, colour);
     }
@@ -78,7 +78,7 @@ display::Figure draw_z_width(const std::vector<study::ZWidthCurve>& curves) {
         if (std::ranges::find(rates, curve.rate) == rates.end()) rates.push_back(curve.rate);
         for (const study::ZWidthPoint& point : curve.points) {
             most_damping = std::max(most_damping, point.damping);
-            most_stiffness = std::max({most_stiffness, point.bound * 1e-3, point.simulated * 1e-3});
+            most_stiffness = std::max({most_stiffness, point.bound * 1e-3, point.simulated.stiffness * 1e-3});
         }
     }
     most_stiffness = std::pow(10.0, std::ceil(std::log10(most_stiffness)));
@@ -106,7 +106,7 @@ display::Figure draw_z_width(const std::vector<study::ZWidthCurve>& curves) {
                     display::TextAnchor::start, true);
     figure.text({gap, top + height + 70.0},
                 "thin: bound of Colgate and Schenkel; squares: passivity border by motion; thick: the simulated device "
-                "begins to oscillate; dashed: a period of delay more; dotted: friction takes what encoder steps give",
+                "begins to oscillate at the worst press; dashed: a period of delay more; dotted: friction takes what encoder steps give",
                 10.0, soft);
     return figure;
 }

@@ -126,7 +126,7 @@ void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
 }
 
 Inspection inspect_volume(const std::filesystem::path& path, const InspectionOptions& options) {
-    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {options.series, options.unit});
+    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {options.series, options.unit, options.fill_gaps});
     volume::ReorientedVolume layers(*reader, on_threads());
     layers.set_line(options.rescale);
     if (layers.is_turned()) layers.settle();

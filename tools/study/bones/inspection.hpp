@@ -55,6 +55,7 @@ struct InspectionOptions {
     std::string series;
     std::optional<std::string> unit;
     std::optional<std::pair<double, double>> rescale;
+    bool fill_gaps = false;
 };
 
 /// Reads and measures a volume, mesh or bone file. Throws Error when it cannot be read.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/passivity/z_width.hpp"
 
+#include "dsp/control/stated_hand.hpp"
 #include "dsp/simulate/device_model.hpp"
+#include "graph/analyse/stiffness.hpp"
 #include "tools/study/workers.hpp"
 
 #include <cstddef>
@@ -12,7 +14,7 @@ namespace tactus::study {
 ZWidthDevice ideal_device(const std::string& name, const DeviceInfo& info) {
     control::SampledWall wall;
     wall.mass = 0.2;
-    wall.viscous = info.damping;
+    wall.viscous = analyse::damping_with_hand(info);
     wall.resolution = 0.0;
     wall.delay = info.delay;
     if (info.max_force > 0.0) wall.max_force = info.max_force;
@@ -23,8 +25,8 @@ std::vector<ZWidthDevice> modelled_devices() {
     std::vector<ZWidthDevice> all;
     for (const simulate::DeviceModel& model : simulate::device_models()) {
         control::SampledWall wall;
-        wall.mass = model.mass + 0.1;
-        wall.viscous = model.viscous;
+        wall.mass = model.mass + control::StatedHand::mass;
+        wall.viscous = model.viscous + control::StatedHand::damping;
         wall.friction = model.friction;
         wall.resolution = model.resolution;
         wall.delay = model.delay;
@@ -43,7 +45,7 @@ std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const
             for (const double late : grid.periods_late) {
                 control::SampledWall wall = device.wall;
                 wall.period = 1.0 / rate;
-                wall.delay += late * wall.period;
+                wall.delay = analyse::loop_delay(late * wall.period, wall.delay, wall.delay);
                 curves.push_back({device.name, rate, wall.delay, std::vector<ZWidthPoint>(grid.dampings.size())});
                 walls.push_back(wall);
             }

@@ -23,7 +23,7 @@ struct ZWidthPoint {
     double bound = 0.0;      ///< N/m, Colgate and Schenkel with the delay
     double passive = 0.0;    ///< N/m, the same by motion
     double friction = 0.0;  ///< N/m up to which Coulomb friction takes what encoder steps give; infinite without steps
-    double simulated = 0.0;  ///< N/m at which the simulated device begins to oscillate
+    control::SimulatedLimit simulated;  ///< at which the simulated device begins to oscillate, at the worst press
 };
 
 struct ZWidthCurve {
@@ -42,7 +42,7 @@ struct ZWidthGrid {
 
 /// A device of a patch as an ideal one of its damping.
 ZWidthDevice ideal_device(const std::string& name, const DeviceInfo& info);
-/// The simulated devices, each with a hand of 0.1 kg.
+/// The simulated devices, each with the hand of `control::StatedHand`.
 std::vector<ZWidthDevice> modelled_devices();
 
 /// One curve per device, rate and delay, computed on all cores. `tell` hears how many points are done, of how many, from

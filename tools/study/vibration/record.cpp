@@ -32,6 +32,9 @@ std::vector<std::string> understood(const sound::Calibration& calibration, const
                                  "resampled",
                                  log->rows, readable(log->shortest_step, "s"), readable(log->longest_step, "s"),
                                  readable(log->step_deviation, "s", 2));
+        if (log->clock_step > 0.0)
+            lines.push_back(fmt::format("the clock counts in steps of {}: its rounded times were taken as even",
+                                        readable(log->clock_step, "s")));
         lines.push_back(fmt::format("{}; limited to {}, reliable to about {}; faster vibration is aliased", steps,
                                     readable(0.5 * rate, "Hz", 4), readable(log->usable, "Hz")));
     }

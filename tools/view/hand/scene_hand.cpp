@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/hand/scene_hand.hpp"
 
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 #include "tools/view/frame/tooltip.hpp"
 #include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/spots.hpp"
@@ -37,13 +37,13 @@ constexpr std::array<HandButton, 4> hand_buttons{
 
 }  // namespace
 
-SceneHand::SceneHand() : pulse_(haptic::window_hand(), hosted::steady_ns) {}
+SceneHand::SceneHand() : pulse_(haptic::window_hand(), steady_ns) {}
 
 void SceneHand::begin_picture() {
     pulse_.begin_picture();
     // No key was looked at in the picture before: it may have been let go of since, and must be pressed anew.
     if (!std::exchange(is_steered_, false)) drop_keys();
-    const std::int64_t now = hosted::steady_ns();
+    const std::int64_t now = steady_ns();
     interval_ns_ = picture_ns_ > 0 ? now - picture_ns_ : 0;
     picture_ns_ = now;
     // Only ticks count: between the device and the first of them the window may still read the scene.
@@ -74,7 +74,7 @@ void SceneHand::drop_keys() {
 }
 
 void SceneHand::beat() {
-    const std::int64_t now = hosted::steady_ns();
+    const std::int64_t now = steady_ns();
     const bool was_silent = spoke_ns_ > 0 && now - spoke_ns_ > longest_hold_ns;
     spoke_ns_ = now;
     std::uint64_t number = 0;

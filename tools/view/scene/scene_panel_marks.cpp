@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlays of the scene: measured points and the legend.
-#include "devices/hosted/clocks.hpp"
+#include "dsp/core/clock.hpp"
 #include "tools/view/hand/hand_of_patch.hpp"
 #include "tools/view/scene/label_places.hpp"
 #include "tools/view/scene/scene_panel.hpp"
@@ -153,7 +153,7 @@ void ScenePanel::draw_measured(const picture::Measurement& measured, ImU32 ink, 
 
 /// Over the first view of the first screen.
 void ScenePanel::draw_hand(const Painter& paint, Point corner, Point size, double pixel) {
-    pulled_.look(*bench_.status(), hosted::steady_ns());
+    pulled_.look(*bench_.status(), steady_ns());
     std::vector<HandSight> sights = pulled_.sights();
     const double limit = bench_.plan() ? largest_force(*bench_.plan()) : most_of_device_N;
     if (auto own = hand_.sight(limit)) sights.insert(sights.begin(), std::move(*own));

@@ -86,3 +86,46 @@ TEST_CASE("times that run backwards or stand still are refused") {
                       Catch::Matchers::ContainsSubstring("stands still"));
     CHECK_THROWS_AS(signal::regularise(std::vector{0.0}, Channels{values}), Error);
 }
+
+TEST_CASE("times that a coarse clock rounded are even, in every ratio of rate and clock") {
+    for (const double rate : {130.0, 333.0, 700.0, 1600.0, 3200.0, 12345.0})
+        for (const int rounding : {0, 1}) {
+            CAPTURE(rate, rounding);
+            const double clock = 1e-3, tone = 0.075 * rate;
+            std::vector<double> times, values;
+            for (int i = 0; i < 4000; ++i) {
+                const double t = i / rate;
+                times.push_back(clock * (rounding == 0 ? std::floor(t / clock + 1e-9) : std::round(t / clock)));
+                values.push_back(std::sin(2.0 * std::numbers::pi * tone * t));
+            }
+            const signal::EvenRecord even = signal::regularise(times, Channels{values});
+            CHECK(even.clock_step == Approx(clock));
+            CHECK(even.rate == Approx(rate).epsilon(1e-3));
+            REQUIRE(even.pieces.size() == 1);
+            // Whatever is not the tone itself would be a line that the clock made.
+            const std::vector<double>& out = even.pieces[0][0];
+            double worst = 0.0;
+            const double cosine = 2.0 * std::cos(2.0 * std::numbers::pi * tone / rate);
+            for (std::size_t i = 20; i + 20 < out.size(); ++i)
+                worst = std::max(worst, std::abs(out[i + 1] + out[i - 1] - cosine * out[i]));
+            CHECK(worst < 0.02);
+        }
+}
+
+TEST_CASE("even times with lost samples, and uneven ones, are not taken for rounded") {
+    std::vector<double> times, values;
+    for (int i = 0; i < 1000; ++i)
+        if (i != 300 && i != 301 && i != 700) times.push_back(1e-3 * i), values.push_back(wave(1e-3 * i));
+    const signal::EvenRecord lost = signal::regularise(times, Channels{values});
+    CHECK(lost.clock_step == 0.0);
+    for (std::size_t i = 10; i + 10 < lost.pieces[0][0].size(); ++i)
+        CHECK(std::abs(lost.pieces[0][0][i] - wave(static_cast<double>(i) / lost.rate)) < 2e-3);
+    const Random random{3};
+    times.clear(), values.clear();
+    double time = 0.0;
+    for (std::size_t i = 0; i < 1000; ++i) {
+        time += 1e-3 * (1.0 + std::floor(4.0 * random.uniform(i)));
+        times.push_back(time), values.push_back(wave(time));
+    }
+    CHECK(signal::regularise(times, Channels{values}).clock_step == 0.0);
+}

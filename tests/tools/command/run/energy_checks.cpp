@@ -16,9 +16,12 @@ TEST_CASE("check warns when the energy cap of an output is off") {
     const Folder folder;
     const json on = json::parse(folder.tactus("check touch-sphere --json").out);
     CHECK(on["outputs"][0]["energy_cap"] == true);
+    CHECK(on["outputs"][0]["energy_bound_mJ"].get<double>() > 0.0);
+    CHECK(on["outputs"][0]["energy_bound_mJ"].get<double>() < 2.0);
     CHECK(on["warnings"].empty());
     const json off = json::parse(folder.tactus("check touch-sphere --json --set hand_out.energy_cap=false").out);
     CHECK(off["outputs"][0]["energy_cap"] == false);
+    CHECK(off["outputs"][0]["energy_bound_mJ"].is_null());
     REQUIRE(off["warnings"].size() == 1);
     CHECK(off["warnings"][0].get<std::string>().find("energy cap is off") != std::string::npos);
 }

@@ -82,9 +82,9 @@ double most_in(const std::string& csv, std::size_t column) {
 }  // namespace
 
 TEST_CASE(
-    "check says that stiffness is unknown where the device states no damping, and what other devices could feel") {
+    "check says that stiffness is unknown beyond what a hand damps on a device that states no damping, and what other devices could feel") {
     const Folder folder;
-    const std::string patch = folder.write("touch.toml", touch_patch("stiffness = \"2 N/mm\"", "0 N s/m")).string();
+    const std::string patch = folder.write("touch.toml", touch_patch("stiffness = \"4.5 N/mm\"", "0 N s/m")).string();
     const Outcome asked = folder.tactus("check --json " + patch);
     CAPTURE(asked.out, asked.err);
     const json checked = json::parse(asked.out);
@@ -95,9 +95,11 @@ TEST_CASE(
     CHECK_THAT(said.out, ContainsSubstring("is unknown: its device states no damping"));
     CHECK_THAT(said.out, ContainsSubstring("Touch"));
     CHECK(said.code == 0);
-    // A light arm hums at 2 N/mm, a stiff device does not.
-    CHECK(std::ranges::any_of(checked["device_classes"], [](const json& row) { return row["ok"] == false; }));
-    CHECK(std::ranges::any_of(checked["device_classes"], [](const json& row) { return row["ok"] == true; }));
+    // A light arm hums at 2.2 N/mm, a stiff device does not.
+    const std::string soft = folder.write("soft.toml", touch_patch("stiffness = \"2.2 N/mm\"", "0 N s/m")).string();
+    const json classes = json::parse(folder.tactus("check --json " + soft).out)["device_classes"];
+    CHECK(std::ranges::any_of(classes, [](const json& row) { return row["ok"] == false; }));
+    CHECK(std::ranges::any_of(classes, [](const json& row) { return row["ok"] == true; }));
 }
 
 TEST_CASE("a stiffness beyond what the device states is refused with the place, and check calls it too stiff") {
@@ -161,5 +163,25 @@ TEST_CASE("check names the law of contact: per area unless the patch gives a sti
             CHECK_THAT(text, ContainsSubstring(by_point ? "per point: 7 N/mm for each" : "per area: 40 N/mm for each"));
             CHECK_THAT(text, ContainsSubstring(is_felt ? "3 N/mm, its spring" : "nothing: no device gets its force"));
         }
+    }
+}
+
+TEST_CASE("check counts the delay of the device: an omega with a hand of 3 N s/m is stable up to 3.5 N/mm") {
+    const Folder folder;
+    const auto checked = [&](const std::string& stiffness) {
+        std::string text = touch_patch("stiffness = \"" + stiffness + "\"", "3 N s/m");
+        const std::string stated = "max_stiffness = \"5 N/mm\"";
+        text.replace(text.find(stated), stated.size(), "model = \"omega\"");
+        return folder.tactus("check --json " + folder.write("touch.toml", text).string());
+    };
+    for (const char* stiffness : {"3.4 N/mm", "3.6 N/mm", "6.9 N/mm"}) {
+        const Outcome outcome = checked(stiffness);
+        CAPTURE(outcome.out, outcome.err);
+        const json found = json::parse(outcome.out);
+        const json* const row = row_of(found, "hand", "out");
+        REQUIRE(row);
+        CHECK(row->at("latency_ms").get<double>() == Approx(0.5));
+        CHECK(row->at("stiffness_limit_N_per_mm").get<double>() == Approx(3.5));
+        CHECK(outcome.code == (std::string(stiffness) == "3.4 N/mm" ? 0 : 1));
     }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // When the window begins to move the hand of a run.
+#include "dsp/core/clock.hpp"
 #include "tools/view/hand/scene_hand.hpp"
 
 #include "devices/haptic/window_hand.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "tests/support/catch.hpp"
 
 #include <imgui.h>
@@ -40,10 +40,10 @@ TEST_CASE("a window whose pictures take long moves the hand after the first of t
           "[slow]") {
     view::SceneHand hand;
     // Read anew in each picture, but without ticks.
-    const std::int64_t opened = hosted::steady_ns();
+    const std::int64_t opened = steady_ns();
     for (int n = 0; n < 8; ++n) draw(hand, opened, std::chrono::milliseconds(20));
     CHECK_FALSE(has_spoken());
-    for (int n = 0; n < 5; ++n) draw(hand, hosted::steady_ns(), std::chrono::milliseconds(800));
+    for (int n = 0; n < 5; ++n) draw(hand, steady_ns(), std::chrono::milliseconds(800));
     CHECK(has_spoken());
     haptic::window_hand().felt.write({});
 }
@@ -78,7 +78,7 @@ struct Rig {
     Rig& operator=(const Rig&) = delete;
 
     void picture(std::int64_t silent_ns = 0) {
-        felt.at_ns = hosted::steady_ns() - silent_ns;
+        felt.at_ns = steady_ns() - silent_ns;
         haptic::window_hand().felt.write(felt);
         hand.begin_picture();
         ImGui::NewFrame();
@@ -167,7 +167,7 @@ TEST_CASE("a hand holds what it holds through a pause of any length and goes on 
     rig.hand.go_to({0.1, 0.0, 0.0});
     rig.picture(3 * one_second_ns);
     CHECK((rig.wanted().buttons & button_trigger) != 0);
-    CHECK(hosted::steady_ns() - rig.wanted().at_ns < one_second_ns);
+    CHECK(steady_ns() - rig.wanted().at_ns < one_second_ns);
     CHECK(rig.wanted().pose.position == rig.felt.pose.position);
     // Without a pause it is gone.
     rig.hand.stand(false);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/clock.hpp"
 #include "tools/view/plan/plan_alternatives.hpp"
 
 #include "assets/cases/plan_file.hpp"
 #include "devices/haptic/window_hand.hpp"
-#include "devices/hosted/clocks.hpp"
 #include "tests/tools/view/plan/plan_rig.hpp"
 
 using namespace tactus;
@@ -72,7 +72,7 @@ TEST_CASE("who holds a fragment gives no other name before it is let go and wher
         haptic::FeltHand felt;
         std::uint64_t number = 0;
         haptic::window_hand().felt.read(felt, number);
-        haptic::window_hand().wanted.write({{}, buttons, hosted::steady_ns(), 16'000'000, felt.run});
+        haptic::window_hand().wanted.write({{}, buttons, steady_ns(), 16'000'000, felt.run});
     };
     REQUIRE(rig.comes([&] { return rig.run.is_holding(); }, 1000));
     const std::size_t before = rig.run.steps().size();

@@ -15,4 +15,7 @@ struct RefusedThreads {
     int asked() const;
 };
 
+/// For the program's own pthread_create (virtual_clock.cpp): whether this thread is refused.
+bool refuses_thread() noexcept;
+
 }  // namespace tactus::test
