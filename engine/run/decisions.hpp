@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 namespace tactus::run {
@@ -26,6 +27,9 @@ struct ParameterChange {
     double value = 0.0;  ///< SI
     ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
 };
+
+/// Changes of a run that is repeated, by their number in the log.
+using ReplayedChanges = std::unordered_map<std::int64_t, ParameterChange>;
 
 /// The changes of one group on their way to it.
 struct ChangeQueue {

@@ -28,8 +28,8 @@ void GroupRuntime::decide_live(const PauseWindow& pause) {
     decisions_ = std::make_unique<LiveDecisions>(log, plan->period, changes_, pause);
 }
 
-void GroupRuntime::replay(const std::vector<take::TimingRecord>& records, const std::vector<ParameterChange>& changes) {
-    decisions_ = std::make_unique<ReplayedDecisions>(log, records, changes);
+void GroupRuntime::replay(take::GroupRecords records, const ReplayedChanges& changes) {
+    decisions_ = std::make_unique<ReplayedDecisions>(log, std::move(records), changes);
 }
 
 int GroupRuntime::cut(int frames) const noexcept {

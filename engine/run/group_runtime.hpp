@@ -60,6 +60,11 @@ public:
         ++changes_.given;
         return true;
     }
+    /// Counts for an older group that ended, too; this one has ended.
+    void take_over_counts(const GroupRuntime& older) {
+        telemetry.merge(older.telemetry);
+        description_.name = "ended groups";
+    }
     /// How many changes it was given by now.
     std::int64_t changes_given() const { return changes_.given; }
     /// How many of them it does not refer to any more. Any thread.
@@ -71,7 +76,7 @@ public:
     /// The clock decides in real time. `pause` must outlive the group's thread.
     void decide_live(const PauseWindow& pause);
     /// A log decides; see ReplayedDecisions.
-    void replay(const std::vector<take::TimingRecord>& records, const std::vector<ParameterChange>& changes);
+    void replay(take::GroupRecords records, const ReplayedChanges& changes);
     void start_at(std::int64_t tick) {
         next_ = tick;
         done_.store(tick);

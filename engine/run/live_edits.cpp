@@ -150,6 +150,9 @@ void LiveEdits::close_ended(const Threads& threads) {
     for (const auto& group : timeline_.groups())
         if (group->is_over()) threads.end(*group);
     recorder_.finish_ended(timeline_);
+    // Every reference to groups that are no more is gone: threads, rings of the journal, the plan before.
+    given_before_.clear();
+    timeline_.forget_ended();
 }
 
 bool LiveEdits::end() {

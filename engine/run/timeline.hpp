@@ -39,7 +39,13 @@ public:
     /// The plan that runs, or ran last.
     const build::Generation& now() const { return *now_; }
     build::Generation& now() { return *now_; }
-    /// Every group that ever ran, the first plan's first.
+    /// Live, after `retire` and the end of the threads of groups that are over: forgets those groups but for what they counted.
+    /// Those of one name and period count as one; of other names that are no more, the last `max_ended` have a row of their
+    /// own. A run may be edited for days.
+    void forget_ended();
+    static constexpr std::size_t max_ended = 32;
+
+    /// Every group that ever ran, the first plan's first; see `forget_ended`.
     const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
     /// Logical time that every group has reached, s.
     double progress_seconds() const;
@@ -59,7 +65,7 @@ private:
     std::unique_ptr<build::Generation> now_, before_;
     std::vector<std::unique_ptr<build::Generation>> scheduled_;  // offline: all that come before `now_`
     PortHashes ended_hashes_;
-    std::vector<ParameterChange> replayed_changes_;
+    ReplayedChanges replayed_changes_;
 };
 
 }  // namespace tactus::run

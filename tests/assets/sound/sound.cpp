@@ -2,6 +2,7 @@
 #include "assets/sound/sound.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
@@ -161,4 +162,38 @@ TEST_CASE("a header with a rate, or a number of samples, that cannot be is refus
     file.close();
     CHECK_THROWS_WITH(sound::load_sound(folder / "a.flac"),
                       Catch::Matchers::ContainsSubstring("more than a file of its size can hold"));
+}
+
+TEST_CASE("a WAV of the length from which on it is RF64 comes back bit for bit, and a shorter one stays a WAV") {
+    const TemporaryFolder folder;
+    const std::vector<float> samples = ramp_samples(9600);
+    const auto name_of = [](const std::filesystem::path& path) { return file::read_whole_file(path).substr(0, 4); };
+    for (const std::uint64_t from : {std::uint64_t{1000}, std::uint64_t{38'000}, std::uint64_t{39'000}}) {
+        sound::SoundWriter writer(folder / "a.wav", 2, 3000, sound::SoundFormat::float_wav, "in N", from);
+        writer.write(samples.data(), 4800);
+        writer.finish();
+        INFO(from);
+        const bool is_long = std::filesystem::file_size(folder / "a.wav") >= from;
+        CHECK(name_of(folder / "a.wav") == (is_long ? "RF64" : "RIFF"));
+        const sound::Sound sound = sound::load_sound(folder / "a.wav");
+        CHECK(sound.rate == 3000);
+        CHECK(sound.channels == 2);
+        CHECK(sound.samples == samples);
+        if (from == 39'000) CHECK_FALSE(is_long);
+    }
+}
+
+TEST_CASE("sounds of 2 and of 5 GiB are RF64 and read back whole", "[.large]") {
+    const TemporaryFolder folder;
+    const std::vector<float> silence(1 << 22, 0.25f);
+    for (const std::int64_t pieces : {129, 320}) {
+        sound::SoundWriter writer(folder / "a.wav", 1, 48000);
+        for (std::int64_t i = 0; i < pieces; ++i) writer.write(silence.data(), silence.size());
+        writer.finish();
+        std::string name(4, ' ');
+        std::ifstream(folder / "a.wav", std::ios::binary).read(name.data(), 4);
+        CHECK(name == "RF64");
+        sound::SoundReader reader(folder / "a.wav");
+        CHECK(static_cast<std::int64_t>(reader.frames()) == pieces * static_cast<std::int64_t>(silence.size()));
+    }
 }

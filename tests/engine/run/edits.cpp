@@ -6,7 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <malloc.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <map>
 
@@ -275,6 +278,53 @@ p = { type = "probe", rate = "1 kHz" }
     };
     engine.run_live(live);
     CHECK(factors() == std::vector{9.0, 9.0});
+}
+
+TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay", "[live][slow]") {
+    const std::string plain = four_rates();
+    // A group of another rate in each edit, which the next one drops.
+    const auto with_group = [&](int edit) {
+        return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n", 200 + 10 * (edit % 5));
+    };
+    const auto in_use = [] {
+        const auto info = ::mallinfo2();
+        return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
+    };
+    constexpr int early = 20, late = 60;
+    run::EngineOptions options;
+    options.seconds = 60.0;
+    options.live = true;
+    run::Engine engine(compile_text(plain), options);
+    std::atomic<bool> stop{false};
+    run::LiveOptions live;
+    live.stop = &stop;
+    int made = 0;
+    bool is_waiting = false;
+    std::int64_t early_bytes = 0, late_bytes = 0;
+    live.watch = [&] {
+        if (is_waiting || !engine.is_settled()) return;
+        if (made == early) early_bytes = in_use();
+        if (made == late) {
+            late_bytes = in_use();
+            stop = true;
+            return;
+        }
+        is_waiting = true;
+        engine.edit([&, edit = made] { return compile_text(with_group(edit)); },
+                    [&](const run::EditOutcome& outcome) {
+                        CHECK_FALSE(outcome.error);
+                        ++made;
+                        is_waiting = false;
+                    });
+    };
+    engine.run_live(live);
+    CHECK(made == late);
+    CHECK(late_bytes - early_bytes < 150'000);  // 48 kB an edit would be 1.9 MB
+    std::int64_t ticks = 0;
+    for (const auto& group : engine.groups())
+        if (group->is_over() && group->plan->name.find("Hz") != std::string::npos) ticks += group->telemetry.ticks;
+    CHECK(ticks > 0);
+    CHECK(engine.groups().size() < 15);
 }
 
 TEST_CASE("an edit that cannot be made leaves the old plan running", "[live]") {

@@ -83,7 +83,8 @@ TEST_CASE("a log in which plans took over before an activation was left out is f
                                                   record(take::TimingKind::plan, 4, 2, 0),
                                                   record(take::TimingKind::skipped, 4, 0, 3)};
     run::DecisionLog log(0);
-    run::ReplayedDecisions decisions(log, records, {});
+    const run::ReplayedChanges none;
+    run::ReplayedDecisions decisions(log, take::GroupRecords(records), none);
     build::GroupProgram first, second;
     first.plan_number = 1;
     second.plan_number = 2;
