@@ -152,6 +152,7 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         source_->calibration = stated_calibration(source_->sound->comment()).value_or(Calibration());
         source_->factors.assign(source_->names.size(), 1.0);
         calibrate(calibration, sensitivity);
+        source_->calibration.file_note = source_->sound->note();
     } else {
         table::SampleLog log = table::load_sample_log(path, selection);
         source_->stretch = cut(log, stretch, path);

@@ -21,7 +21,7 @@ struct Sound {
 };
 
 /// Reads every format of libsndfile (WAV, FLAC, AIFF, Ogg and others). Throws Error when the file is missing, not a
-/// sound, cut short or empty, contains NaN or infinity, or has more than 2^28 samples.
+/// sound, cut short (a wave is read up to its end) or empty, contains NaN or infinity, or has more than 2^28 samples.
 Sound load_sound(const std::filesystem::path& path);
 
 /// The mean of all channels.
