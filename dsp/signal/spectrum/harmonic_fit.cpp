@@ -69,7 +69,7 @@ private:
 };
 
 /// Σ x e^{−iωt} and Σ t x e^{−iωt} over centred times.
-void correlate(std::span<const double> samples, double omega, Complex& zero, Complex& first) {
+void correlate_at(std::span<const double> samples, double omega, Complex& zero, Complex& first) {
     constexpr std::size_t block = 256;  // the phasor is exact at the start of each
     const double middle = 0.5 * (static_cast<double>(samples.size()) - 1.0);
     const Complex step = std::polar(1.0, -omega);
@@ -106,10 +106,10 @@ HarmonicFit fit_harmonics(std::span<const double> samples, double rate, double f
         // Columns: the constant, then a pair of conjugates per line; `order` is 0 for those that do not move.
         std::vector<double> omega{0.0}, order{0.0};
         std::vector<Complex> zero(1), first(1);
-        correlate(samples, 0.0, zero[0], first[0]);
+        correlate_at(samples, 0.0, zero[0], first[0]);
         const auto add = [&](double f, double k) {
             Complex y, z;
-            correlate(samples, f * to_angle, y, z);
+            correlate_at(samples, f * to_angle, y, z);
             omega.insert(omega.end(), {f * to_angle, -f * to_angle});
             order.insert(order.end(), {k, -k});
             zero.insert(zero.end(), {y, std::conj(y)});

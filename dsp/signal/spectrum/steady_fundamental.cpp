@@ -20,21 +20,21 @@ constexpr std::size_t most_kept = 1 << 19;
 constexpr std::size_t most_levels = 6;
 constexpr double shortest_segment = 0.04;  // s
 constexpr std::size_t most_tested = 40;    // lines
-constexpr std::size_t seeds = 12;          // lines that candidates are made of
+constexpr std::size_t seed_lines = 12;          // lines that candidates are made of
 constexpr int most_divisions = 24;
 constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Hann window is four wide
 
 constexpr std::size_t floor_block = 32;  // bins
 
-struct Line {
+struct NarrowLine {
     double frequency, deviation;  // Hz
     double power, floor;          // per bin
     double weight;                // log-likelihood ratio to noise
     bool is_hum;
 };
 
-struct Lines {
-    std::vector<Line> found;  // heaviest first
+struct NarrowLines {
+    std::vector<NarrowLine> found;  // heaviest first
     double df = 0.0, all = 0.0;  // `all`: power above the noise, narrow or not
     double threshold = 0.0;      // power over the noise
     double segments = 1.0;
@@ -63,8 +63,8 @@ double side_lobe(double bins) {
     return amplitude * amplitude;
 }
 
-Lines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
-    Lines out;
+NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
+    NarrowLines out;
     const std::vector<double>& p = spectrum.power;
     out.df = spectrum.df;
     out.segments = std::max(1.0, spectrum.effective_segments);
@@ -106,7 +106,7 @@ Lines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
         const double ratio = std::sqrt((above ? p[k + 1] : p[k - 1]) / p[k]);
         const double shift = std::clamp((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 0.5);
         const double snr = p[k] / floor;
-        Line line{};
+        NarrowLine line{};
         line.frequency = (static_cast<double>(k) + (above ? shift : -shift)) * spectrum.df;
         line.deviation = spectrum.df * ((is_sharp ? 0.01 : 0.1) + 0.6 / std::sqrt(snr * out.segments));
         line.power = p[k] - floor;
@@ -115,11 +115,11 @@ Lines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
         line.is_hum = is_mains(line.frequency, 3.0 * line.deviation);
         out.found.push_back(line);
     }
-    std::ranges::sort(out.found, [](const Line& a, const Line& b) { return a.weight > b.weight; });
+    std::ranges::sort(out.found, [](const NarrowLine& a, const NarrowLine& b) { return a.weight > b.weight; });
     return out;
 }
 
-struct Comb {
+struct GrownComb {
     double frequency = 0.0, score = -1e9;
     std::array<int, most_tested> order{};  // of each tested line; 0: none
     std::size_t lines = 0;
@@ -128,18 +128,18 @@ struct Comb {
 };
 
 /// Grows a comb order by order: each line that fits narrows the rate, and with it the reach of the next.
-Comb comb_of(const Lines& lines, double frequency, double deviation, bool with_hum) {
+GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation, bool with_hum) {
     const std::size_t tested = std::min(lines.found.size(), most_tested);
     std::array<std::size_t, most_tested> by_frequency{};
     std::iota(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), 0u);
     std::sort(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), [&](std::size_t a, std::size_t b) { return lines.found[a].frequency < lines.found[b].frequency; });
-    Comb out;
+    GrownComb out;
     out.frequency = frequency;
     double information = 1.0 / (deviation * deviation), weighted = frequency * information;
     double score = 0.0;
     for (std::size_t i = 0; i < tested; ++i) {
         const std::size_t at = by_frequency[i];
-        const Line& line = lines.found[at];
+        const NarrowLine& line = lines.found[at];
         const double order = std::round(line.frequency / out.frequency);
         if (order < 1.0) continue;
         const double reach = 3.0 * std::sqrt(line.deviation * line.deviation + order * order / information);
@@ -163,7 +163,7 @@ Comb comb_of(const Lines& lines, double frequency, double deviation, bool with_h
 }
 
 /// Log-likelihood ratio of the strongest bin where a rate of which `frequency` is a multiple would have further orders.
-double between_orders(const Spectrum& spectrum, const Lines& lines, double frequency, int highest, double top) {
+double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double frequency, int highest, double top) {
     const double unlikely = power_quantile(lines.segments, 3.7);
     double strongest = 0.0;
     for (int divisor = 2; divisor <= 5; ++divisor)
@@ -176,7 +176,7 @@ double between_orders(const Spectrum& spectrum, const Lines& lines, double frequ
             const double power = std::max({spectrum.power[k - 1], spectrum.power[k], spectrum.power[k + 1]});
             // The skirts of the orders beside it are no line.
             double skirt = 0.0;
-            for (const Line& line : lines.found)
+            for (const NarrowLine& line : lines.found)
                 if (const double away = std::abs(line.frequency - place) / lines.df; away > 1.7)
                     skirt = std::max(skirt, 8.0 * line.power * side_lobe(away - 1.0 > 1.5 ? away - 1.0 : 1.5));
             const double snr = (power - skirt) / lines.floors[std::min(k / floor_block, lines.floors.size() - 1)];
@@ -185,31 +185,31 @@ double between_orders(const Spectrum& spectrum, const Lines& lines, double frequ
     return strongest;
 }
 
-struct Choice {
-    Comb best, rival;
+struct CombChoice {
+    GrownComb best, rival;
     double score = -1e9;
-    const Lines* lines = nullptr;
+    const NarrowLines* lines = nullptr;
     std::size_t level = 0;
 };
 
-Choice choose(const Lines& lines, double lowest, double highest, bool with_hum) {
-    Choice out;
+CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, bool with_hum) {
+    CombChoice out;
     out.lines = &lines;
-    std::vector<Comb> combs;
-    for (std::size_t i = 0; i < std::min(seeds, lines.found.size()); ++i)
+    std::vector<GrownComb> combs;
+    for (std::size_t i = 0; i < std::min(seed_lines, lines.found.size()); ++i)
         for (int k = 1; k <= most_divisions; ++k) {
             const double f = lines.found[i].frequency / k;
             if (f < lowest || f > highest || f < bins_between * lines.df) continue;
-            combs.push_back(comb_of(lines, f, lines.found[i].deviation / k, with_hum));
+            combs.push_back(grow_comb(lines, f, lines.found[i].deviation / k, with_hum));
         }
-    for (const Comb& one : combs)
+    for (const GrownComb& one : combs)
         if (one.common == 1 && one.score > out.best.score) out.best = one;
-    for (const Comb& one : combs)
+    for (const GrownComb& one : combs)
         if (one.score > out.rival.score && std::abs(one.frequency / out.best.frequency - 1.0) > 0.02) out.rival = one;
     return out;
 }
 
-/// Probability that the rate is right: logistic regression on the 1,000 machines of seeds 0 to 999 of `tactus-bench fundamental`, which judges it on others.
+/// Probability that the rate is right: logistic regression on the 1,000 machines of seed_lines 0 to 999 of `tactus-bench fundamental`, which judges it on others.
 /// Where the regression would extrapolate it is 0: hum of the mains, fewer than half of the lines, fewer than 6 periods.
 double probability_of(const SteadyFundamental& one) {
     if (!(one.explained >= 0.5) || one.periods < 6.0 || is_mains(one.frequency, 0.3)) return 0.0;
@@ -290,12 +290,12 @@ void SteadyFundamentalStream::gap() {
 SteadyFundamental SteadyFundamentalStream::estimate() const {
     SteadyFundamental out;
     const double top = factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_;
-    std::vector<Lines> all(levels_.size());
-    Choice chosen;
+    std::vector<NarrowLines> all(levels_.size());
+    CombChoice chosen;
     for (const bool with_hum : {false, true}) {
         for (std::size_t i = 0; i < levels_.size(); ++i) {
             if (!with_hum) all[i] = lines_of(levels_[i].spectrum(), top, i == 0);
-            Choice one = choose(all[i], lowest_, highest_, with_hum);
+            CombChoice one = choose_comb(all[i], lowest_, highest_, with_hum);
             if (one.best.lines == 0 || !(one.best.score > 0.0)) continue;
             const double explained = one.best.power / std::max(all[i].all / 1.5, one.best.power);
             one.score = one.best.score * explained;
@@ -305,8 +305,8 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         if (chosen.score > 0.0) break;
     }
     if (!(chosen.score > 0.0)) return out;
-    const Lines& lines = *chosen.lines;
-    const Comb& comb = chosen.best;
+    const NarrowLines& lines = *chosen.lines;
+    const GrownComb& comb = chosen.best;
     out.frequency = comb.frequency;
     out.lines = comb.lines;
     out.highest_order = comb.highest;
@@ -317,11 +317,11 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.lowest = std::max(lowest_, bins_between * lines.df);
     out.periods = comb.frequency / lines.df;
     out.explained = comb.power / std::max(lines.all / 1.5, comb.power);
-    const Line* strongest = nullptr;
+    const NarrowLine* strongest = nullptr;
     std::vector<int> orders;
     std::vector<double> others;
     for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) {
-        const Line& line = lines.found[i];
+        const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
             if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
             if (others.size() < 8) others.push_back(line.frequency);
