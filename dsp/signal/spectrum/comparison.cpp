@@ -300,7 +300,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
         if (static_cast<double>(take->frames) < shortest * take->rate)
             throw Error(fmt::format("the {} is shorter than {} s", name, shortest));
-    const auto length = static_cast<std::size_t>(rate * std::max(stretch, 4.0 * options.longest_delay));
+    const auto length = static_cast<std::size_t>(rate * stretch);
     const Stretch loud = loudest_stretch(reference, output, length);
     result.alignment =
         align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,7 +36,8 @@ struct Take {
 
 struct ComparisonOptions {
     ThresholdUnit touch = ThresholdUnit::displacement;
-    double longest_delay = 2.0;  ///< s, greatest delay or advance of the output
+    /// s, greatest delay or advance of the output; as far as at least 1 s and a quarter overlap.
+    double longest_delay = std::numeric_limits<double>::infinity();
     /// The other axes of both takes, sampled together with them: spectra are then sums of the powers of all axes.
     std::vector<Take> reference_axes{}, output_axes{};
 };
