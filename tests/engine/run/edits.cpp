@@ -3,6 +3,7 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/times.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -107,7 +108,8 @@ TEST_CASE("edits may follow each other faster than values travel", "[slow]") {
     CHECK(hashes_of(edited(0), edits, 3, 480, true, 0.4) == reference);
 }
 
-TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[live]") {
+TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[virtual][slow]") {
+    const VirtualClock clock;
     // TACTUS_STORM=2000 makes it a long one.
     const char* asked = std::getenv("TACTUS_STORM");
     const std::int64_t storm = asked ? std::atoll(asked) : 40;
@@ -150,7 +152,8 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a run that ends before the first tick of a group that an edit made has its hashes again", "[live]") {
+TEST_CASE("a run that ends before the first tick of a group that an edit made has its hashes again", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("unborn");
     std::string more = with(four_rates(), "wires = [\n", "wires = [\n  \"a.out -> late.in\",\n");
     more += "[nodes.late]\ntype = \"chaos\"\nrate = \"10 Hz\"\n";
@@ -187,7 +190,8 @@ TEST_CASE("a run that ends before the first tick of a group that an edit made ha
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[live]") {
+TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("set");
     run::Engine::PortHashes live_hashes;
     Flicks asked_at = 0, holds_at = 0;
@@ -223,7 +227,8 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("setting a parameter of a nested sub-patch sets all that it stands for", "[live]") {
+TEST_CASE("setting a parameter of a nested sub-patch sets all that it stands for", "[virtual]") {
+    const VirtualClock clock;
     const std::string parts = R"(
 [[parts]]
 path = "two.toml"
@@ -280,7 +285,8 @@ p = { type = "probe", rate = "1 kHz" }
     CHECK(factors() == std::vector{9.0, 9.0});
 }
 
-TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay", "[live][slow]") {
+TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay", "[virtual][slow]") {
+    const VirtualClock clock;
     const std::string plain = four_rates();
     // A group of another rate in each edit, which the next one drops.
     const auto with_group = [&](int edit) {
@@ -327,7 +333,8 @@ TEST_CASE("edits that make and drop groups leave no memory behind, and the count
     CHECK(engine.groups().size() < 15);
 }
 
-TEST_CASE("an edit that cannot be made leaves the old plan running", "[live]") {
+TEST_CASE("an edit that cannot be made leaves the old plan running", "[virtual]") {
+    const VirtualClock clock;
     run::EngineOptions options;
     options.seconds = 0.4;
     options.live = true;

@@ -208,7 +208,7 @@ TEST_CASE("gripper patches: one hash on any threads and blocks, and live when no
     }
 }
 
-TEST_CASE("run refuses no gripper, render refuses hardware", "[live]") {
+TEST_CASE("run refuses no gripper, render refuses hardware") {
     const Folder folder;
     const Outcome o = folder.tactus("render gripper-wqsm --set finger.device=serial --set motor.device=serial --out " +
                                     (folder.path / "o").string());
