@@ -31,9 +31,16 @@ void for_every_node(Check&& check) {
         }
 }
 
+/// A hand of the feed jumps through the whole bone from tick to tick: carving it with 27 times the voxels would take nine
+/// tenths of the time of all nodes.
+void prepare(NodeHarness& harness, const NodeType& type) {
+    if (type.name == "carve") harness.set("kerf", "3 mm").asset("source", test::coarse_ball());
+    harness.prepare();
+}
+
 std::uint64_t hash_of(const NodeType& type, const ValueType* any, Feed feed, std::uint64_t partition) {
     NodeHarness harness(type, {.max_frames = 17, .feed = feed, .drive_params = true, .any = any});
-    harness.prepare();
+    prepare(harness, type);
     harness.run(2000, partition);
     return harness.output_hash();
 }
@@ -99,7 +106,7 @@ TEST_CASE("any partition of a run into blocks gives the same bits, also of hosti
 TEST_CASE("finite values in give finite values out", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.drive_params = true, .any = any});
-        harness.prepare();
+        prepare(harness, type);
         harness.run(3000);
         CHECK(harness.finite());
     });
@@ -108,7 +115,7 @@ TEST_CASE("finite values in give finite values out", "[slow]") {
 TEST_CASE("a node recovers from values that are not finite, huge or denormal", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.feed = Feed::hostile, .any = any});
-        harness.prepare();
+        prepare(harness, type);
         harness.run(3000);
         harness.feed_with(Feed::ordinary);
         harness.run(3000);
@@ -122,7 +129,7 @@ TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system
     for_every_node([](const NodeType& type, const ValueType* any) {
         for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
             NodeHarness harness(type, {.feed = feed, .drive_params = true, .any = any});
-            harness.prepare();
+            prepare(harness, type);
             const RealtimeViolations seen = watch_scopes([&] { harness.run(500, 1); });
             INFO(seen.describe());
             CHECK(seen.none());
@@ -134,7 +141,7 @@ TEST_CASE("a node runs with every optional input left open", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.any = any});
         harness.disconnect_optional();
-        harness.prepare();
+        prepare(harness, type);
         harness.run(500);
         CHECK(harness.finite());
     });
