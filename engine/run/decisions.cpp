@@ -95,6 +95,7 @@ void Decisions::sample(build::DeviceSlot& slot, Flicks elapsed) noexcept {
     const DeviceSample sample = slot.device->acquire(seconds(elapsed));
     if (!driver.leave()) return;
     slot.port.sample = sample;
+    slot.port.sample.valid = is_good(sample);
     slot.port.sample.taken = slot.guard.was_taken();
     slot.port.sample.sound_lost = slot.guard.is_asked_to_fade();
 }

@@ -83,9 +83,9 @@ struct DeviceOutput {
         if (s.late) limiter_.fail(control::Fault::late_source);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
-        const bool is_good = s.valid && is_valid(s.pose);
-        const Wrench limited = limiter_.tick(givable(), s.counter, is_good, tick.elapsed_seconds());
-        const Wrench out = capped(limited, is_good, tick.elapsed_seconds());
+        const bool is_usable = is_good(s);
+        const Wrench limited = limiter_.tick(givable(), s.counter, is_usable, tick.elapsed_seconds());
+        const Wrench out = capped(limited, is_usable, tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;
         port_->fault = limiter_.fault();
@@ -170,12 +170,12 @@ private:
     }
 
     /// Observes also while it is off, so that the report says what the hand was given.
-    Wrench capped(const Wrench& limited, bool is_good, double elapsed_s) noexcept {
+    Wrench capped(const Wrench& limited, bool is_usable, double elapsed_s) noexcept {
         const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
         most_granted_ = std::max(most_granted_, watts);
         const Pose nowhere{{}, {0.0, 0.0, 0.0, 0.0}};
         const DeviceSample& s = port_->sample;
-        const Wrench out = cap_.tick(limited, port_->wrench, is_good ? s.pose : nowhere, elapsed_s, watts, s.taken);
+        const Wrench out = cap_.tick(limited, port_->wrench, is_usable ? s.pose : nowhere, elapsed_s, watts, s.taken);
         if (!energy_cap) return limited;
         const double removed = glm::length(limited.force - out.force);
         if (removed > 0.0 || limited.torque != out.torque) ++capped_ticks_;
@@ -213,13 +213,13 @@ private:
         must_engage_ = must_engage_ || port_->hold_off;
         // A device may give samples less often than this ticks.
         still_ticks_ = s.counter != counter_ ? 0 : still_ticks_ + 1;
-        const bool is_good = s.valid && is_valid(s.pose) && still_ticks_ < control::ForceLimits{}.stale_ticks;
-        well_for_ = is_good && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
+        const bool is_fresh = is_good(s) && still_ticks_ < control::ForceLimits{}.stale_ticks;
+        well_for_ = is_fresh && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
         if (last_fault_ == Fault::not_finite) return;
         const bool is_asked = recover.value != asked_;
         if (is_asked && port_->late.is_lost()) port_->late.forgive();
         is_let_ = is_let_ || is_asked;
-        if (is_lateness(last_fault_)) return return_from_lateness(is_good);
+        if (is_lateness(last_fault_)) return return_from_lateness(is_fresh);
         if (recover_after == 0.0 || well_for_ < recover_after) return;
         // A tick that was late, too, asks for more than the device.
         if (port_->late.is_lost() && !port_->late.returns()) return;
@@ -230,8 +230,8 @@ private:
     /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body. And a
     /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
     /// there. Then they wait for the hand to leave it.
-    void return_from_lateness(bool is_good) noexcept {
-        if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
+    void return_from_lateness(bool is_fresh) noexcept {
+        if (!is_fresh || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
         if (energy_cap && !must_engage_) limiter_.recover_slowly(control::LateReturn::ramp_s);
         else limiter_.recover(control::LateReturn::ramp_s);
         in_fault_ = is_let_ = false;
