@@ -2,6 +2,7 @@
 #include "engine/run/live_edits.hpp"
 
 #include "dsp/core/error.hpp"
+#include "engine/build/force_path.hpp"
 #include "engine/run/made_thread.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 
 // From setting a parameter to the first activation for which it may hold.
 constexpr Flicks set_lead = flicks_per_second * 3 / 1000;
+constexpr Flicks fade_notice = flicks_per_second / 1000;  // to the first activation that fades
 constexpr std::int64_t longest_wait_ns = 200'000'000;
 
 }  // namespace
@@ -167,6 +169,20 @@ bool LiveEdits::end() {
     return true;
 }
 
+Flicks LiveEdits::lead_of_set(const build::Generation& now, std::size_t node, const Param& param) {
+    if (!param.is_discrete || param.is_trigger) return set_lead;
+    const auto reach = build::reach_of(now, node);
+    if (!reach) return set_lead;
+    PauseWindow& window = time_.window;
+    const Flicks begin = present_.now() + fade_notice, lead = fade_notice + Timeline::fade_lead(reach->device_period);
+    const bool is_off = window.set_fade.load() <= begin && begin < window.set_until.load();
+    const Flicks until = begin + lead + reach->latency;
+    // In this order: at no time does the window seem to be without an end, or to be over.
+    window.set_until = is_off ? std::max(until, window.set_until.load()) : until;
+    if (!is_off) window.set_fade = begin;
+    return lead;
+}
+
 Flicks LiveEdits::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
     const build::Generation& now = timeline_.now();
     const auto [node, param] = patch::end_within(now.plan.patch, given_node, given_param);
@@ -189,7 +205,7 @@ Flicks LiveEdits::set(const std::string& given_node, const std::string& given_pa
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
     // The group's thread may change the range of the live parameter when it takes the plan over.
     const double value = compiled->parse(text);
-    const Flicks when = present_.now() + set_lead;
+    const Flicks when = present_.now() + lead_of_set(now, static_cast<std::size_t>(at), *found->second);
     const ParameterChange change{changes_++, when, found->second, value, now.ramp_of(found->second)};
     if (take::TakeWriter* take = recorder_.take()) take->change(change.id, now.number, node, param, value);
     if (!live.group->hand_over(change)) throw Error("too many changes are waiting already");

@@ -17,7 +17,7 @@ namespace tactus::take {
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '5'};
+constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '6'};
 
 struct Header {
     char magic[8];
@@ -107,7 +107,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
         const bool has_samples = record.kind != TimingKind::heard ||
                                  (record.value >= 1 && record.value <= std::min(record.count, sound_record_samples));
-        if (record.kind > TimingKind::heard || record.tick < 0 || record.count < 0 || !has_flags(record.sample) ||
+        if (record.kind > TimingKind::overdue || record.tick < 0 || record.count < 0 || !has_flags(record.sample) ||
             !has_samples)
             fail("a record of the timing log is damaged");
         ++log.records;

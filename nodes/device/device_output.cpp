@@ -39,7 +39,7 @@ struct DeviceOutput {
         "least "
         "1 s later and over 0.5 s, three times a minute; after a fault of samples when they are small; 0 s: only by "
         "'recover'. After a non-finite force they stay off"};
-    Param recover{discrete, "0", "0", "1e9", "change the number to let forces return after late ticks"};
+    Param recover{as_trigger, "0", "0", "1e9", "change the number to let forces return after late ticks"};
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
     Flag energy_cap{true, "a contact returns no more energy than the hand has put in; false: 'check' warns"};
@@ -77,10 +77,11 @@ struct DeviceOutput {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
         const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
-        port_->late.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
+        port_->late.tick(is_late(), is_quiet && !s.taken, tick.elapsed_seconds());
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
         if (s.late) limiter_.fail(control::Fault::late_source);
+        if (port_->overdue != control::Fault::none) limiter_.fail(port_->overdue);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
         const bool is_usable = is_good(s);
@@ -201,7 +202,7 @@ private:
         using control::Fault;
         last_fault_ = limiter_.fault();
         const DeviceSample& s = port_->sample;
-        if (s.taken || s.late) port_->late.lose();
+        if (is_late()) port_->late.lose();
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
@@ -238,6 +239,10 @@ private:
         ++returns_;
     }
 
+    bool is_late() const noexcept {
+        return port_->sample.taken || port_->sample.late || port_->overdue != control::Fault::none;
+    }
+
     /// A person let forces return a short while ago.
     bool is_let() const noexcept { return is_let_ && port_->late.is_attended(); }
 
@@ -247,7 +252,9 @@ private:
             case Fault::none: break;
             case Fault::not_finite: return ForceState::never;
             case Fault::late_commit:
-            case Fault::late_source: {
+            case Fault::late_source:
+            case Fault::late_value:
+            case Fault::old_world: {
                 const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let());
                 if (waits_for_hand) return ForceState::by_hand;
                 return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;

@@ -83,6 +83,26 @@ TEST_CASE("a sample that freezes the pose at device_input is a fault at device_o
         }
 }
 
+TEST_CASE("a value that is overdue fades the force within 10 ms, and it comes back as after a late tick") {
+    for (const control::Fault fault : {control::Fault::late_value, control::Fault::old_world}) {
+        NodeHarness node("device_output", test::servo);
+        node.device_feed = [&](std::int64_t k, DevicePort& port) {
+            port.sample = sample_at(0.0, k);
+            port.overdue = k >= 500 && k < 700 ? fault : control::Fault::none;
+        };
+        node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{2.0, 0.0, 0.0}, {}}; });
+        node.prepare();
+        node.run(600);
+        CHECK(node.values<Wrench>("applied")[499].force.x == Approx(2.0));
+        CHECK(node.values<Wrench>("applied")[509].force.x == 0.0);
+        CHECK(node.host.devices.at("")->fault == fault);
+        node.run(2000);
+        const auto applied = node.values<Wrench>("applied");
+        for (std::size_t k = 510; k < 1690; ++k) REQUIRE(applied[k].force.x == 0.0);
+        CHECK(node.last<Wrench>("applied").force.x == Approx(2.0));
+    }
+}
+
 TEST_CASE("device_output bounds what reaches the hand and tells what it was asked for") {
     NodeHarness node("device_output", test::servo);
     node.set("max_force", "6 N");
