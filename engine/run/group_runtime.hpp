@@ -46,6 +46,8 @@ public:
     std::int64_t ran() const { return ran_; }
     /// Activations before this one are complete; their values may be read. Any thread.
     std::int64_t done() const noexcept { return done_.load(std::memory_order_acquire); }
+    /// The activation after the last one that was computed, not left out. Any thread.
+    std::int64_t computed() const noexcept { return computed_.load(std::memory_order_acquire); }
     /// How often it was between two calls. Any thread: what a call read that was begun before has been given up.
     std::int64_t rests() const noexcept { return rests_.load(std::memory_order_acquire); }
     /// Of the program that runs; −1 before the first. Any thread.
@@ -80,6 +82,7 @@ public:
     void start_at(std::int64_t tick) {
         next_ = tick;
         done_.store(tick);
+        computed_.store(tick);
     }
 
     // Own thread.
@@ -129,6 +132,8 @@ private:
     /// Tells nodes which of their snapshots are still looked at.
     void note_readers(int frames) noexcept;
     void acquire(int frames) noexcept;
+    /// Finds for each device whose force it sends whether a value on that force's path is overdue.
+    void check_sources() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
     template <bool watched>
@@ -171,6 +176,7 @@ private:
     std::atomic<std::int64_t> rests_{0};
     std::atomic<bool> over_{false};
     alignas(64) std::atomic<std::int64_t> done_{0};
+    std::atomic<std::int64_t> computed_{0};
 };
 
 }  // namespace tactus::run

@@ -113,6 +113,13 @@ void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flic
     log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
+int ReplayedDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                               std::int64_t tick) noexcept {
+    const TimingRecord* const record = find(TimingKind::overdue, slot.id, tick);
+    const std::int64_t now = record ? record->value : slot.overdue;
+    return now < static_cast<std::int64_t>(sources.size()) ? static_cast<int>(now) : -1;
+}
+
 void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept {
     heard.fill(tick, frames, due_ns);
     for (std::int64_t at = tick; at < tick + frames; ++at) {

@@ -15,9 +15,6 @@ namespace tactus::run {
 
 namespace {
 
-/// From the first fading tick to the switch: a fade takes 10 ms, but one tick of a slow group at least.
-Flicks fade_lead(Flicks period) { return std::max(flicks_per_second / 50, 2 * period); }
-
 /// From handing a plan over to the first tick that fades.
 constexpr Flicks notice_lead = flicks_per_second * 30 / 1000;
 

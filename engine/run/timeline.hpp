@@ -5,6 +5,7 @@
 #include "engine/build/generation.hpp"
 #include "engine/run/options.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ public:
     std::unique_ptr<build::Generation> build_next(compile::Plan plan);
     /// Live: how far ahead the switch to a plan has to be, so that hands are without force by then.
     static Flicks lead_of(const build::Generation& next);
+    /// From the first activation of a device of `period` that fades to when its hand is without force: a fade takes 10 ms,
+    /// but one tick of a slow group at least.
+    static Flicks fade_lead(Flicks period) { return std::max(flicks_per_second / 50, 2 * period); }
     /// Live: every group takes the plan over at `when`, but not before every hand that it reaches is without force.
     void hand_over(std::unique_ptr<build::Generation> next, Flicks when);
     /// Destroys the plan before; no group uses it any more.

@@ -209,7 +209,7 @@ RecordUnpacker::Result RecordUnpacker::unpack(std::string_view& bytes, TimingRec
     left.remove_prefix(1);
     record = {};
     record.kind = static_cast<TimingKind>(head & 0x0f);
-    if (record.kind > TimingKind::heard || head >= 0x80) return Result::damaged;
+    if (record.kind > TimingKind::overdue || head >= 0x80) return Result::damaged;
     std::uint64_t number = 0;
     std::uint32_t source = known_.last_source(record.kind);
     if (head & other_source) {

@@ -64,7 +64,7 @@ struct AdmittanceController {
         "and 3 N/mm, depending on grip and person; the test rig is 0.38 N/mm. A lower number permits a "
         "quicker loop, which is unstable in a stiffer finger"};
     Param blend{"100 ms", "0 ms", "10 s", "time in which a new object replaces the old one"};
-    Param recover{discrete, "0", "0", "1e9", "change the number to go on after a fault"};
+    Param recover{as_trigger, "0", "0", "1e9", "change the number to go on after a fault"};
     Flag allow_unstable{false, "accept an unstable gain"};
 
     void prepare(const Setup& setup) {

@@ -48,11 +48,12 @@ TEST_CASE("of two hands of a group the larger force is told, whichever comes las
 
 namespace {
 
-/// Skips of the 1 kHz group by cause, when its tick 300 lasts 50 ms: `busy` computing, else waiting in the driver.
+/// Skips of the 1 kHz group by cause, when its tick 300 lasts 15 ms: `busy` computing, else waiting in the driver. A
+/// longer one would lose its real-time priority.
 std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
     Performance performance;
     performance.acquire = [busy](std::int64_t count, double, const Wrench&) {
-        if (!busy && count == 300) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        if (!busy && count == 300) std::this_thread::sleep_for(std::chrono::milliseconds(15));
         DeviceSample sample;
         sample.counter = count;
         sample.valid = true;
@@ -62,7 +63,7 @@ std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
     const std::string patch =
         PatchText{
             {{"hand", "device_input", "1 kHz", {{"device", "slow"}}},
-             {"plant", "planted", "1 kHz", {{"fault", busy ? "stall" : "none"}, {"at", "300"}, {"stall", "50 ms"}}}},
+             {"plant", "planted", "1 kHz", {{"fault", busy ? "stall" : "none"}, {"at", "300"}, {"stall", "15 ms"}}}},
             {"hand.pose -> plant.pose"},
             "[devices.slow]\ndriver = \"slow\"\n"}
             .toml();
