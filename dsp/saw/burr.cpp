@@ -161,7 +161,8 @@ void Burr::cut(const Drive& drive, double density, const CuttingLaw& law, BurrCo
     const double distance = glm::length(lag);
     // What rounding leaves of a lag is no contact.
     if (!(density > 0.0) && distance < 1e-8) at_ = target_;
-    if (!drive.running || !(drive.rate > 0.0) || !(density >= 1.0) || !(distance > 1e-12)) return;
+    if (!drive.running || !(drive.rate > 0.0) || !(drive.rendered > 0.0)) return;
+    if (!(density >= 1.0) || !(distance > 1e-12)) return;
     const double scale = law.reference_density / density;
     const double left = left_after_cut(law, distance, shape_.flutes * drive.rate * drive.dt, [&](double stretch) {
         const double stiff = drive.rendered * stiffness_ * scale * saturation_share(stretch * stretch);
