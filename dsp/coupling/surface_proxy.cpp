@@ -97,8 +97,9 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
             if (surface.triangles) free = surface.free_distance(from, direction, free, shape_, part);
         budget_.triangles -= given - part.triangles;
         if (part.is_spent()) {
+            // The rest of a budget says nothing about the length.
+            if (given < max_triangles / 4) break;
             stride_ = std::max(0.25 * tried, settled);
-            if (budget_.is_spent()) break;
             continue;
         }
         if (stride_ < far && 4 * (given - part.triangles) < given) stride_ *= 2.0;
@@ -139,7 +140,7 @@ double SurfaceProxy::held_back(double behind, double depth) noexcept {
     friction_ = friction_ >= 0.0 ? std::clamp(friction_, least, most) : most;
     state_.sticks = behind <= friction_ * depth;
     if (state_.sticks) {
-        if (behind < regrip * least * depth) friction_ = most;
+        if (behind <= regrip * least * depth) friction_ = most;
         return behind;
     }
     // The coefficient falls by one for a slide of twice the depth: at that slope the force of friction falls as fast as
