@@ -41,5 +41,6 @@ Verb rope_verb();
 Verb reconstruct_verb();
 Verb peers_verb();
 Verb fundamental_verb();
+Verb verdicts_verb();
 
 }  // namespace tactus::bench

@@ -8,6 +8,7 @@
 #include "dsp/signal/spectrum/cross.hpp"
 #include "dsp/signal/spectrum/decibels.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
+#include "dsp/signal/spectrum/level.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
@@ -171,6 +172,14 @@ double fundamental_of(const Take& take) {
     return found.is_certain() ? found.frequency : 0.0;
 }
 
+/// Fraction of the variance of a take, at its own rate, that a power in the band is.
+double fraction_inside(const Take& take, double power) {
+    Level level;
+    const Take::Blocks blocks = take.open();
+    for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) level.push(block);
+    return level.rms() > 0.0 ? std::min(1.0, power / (level.rms() * level.rms())) : 0.0;
+}
+
 double peak_of(double before, std::span<const double> samples) {
     for (const double x : samples) before = std::max(before, std::abs(x));
     return before;
@@ -234,7 +243,10 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
         crossed.emplace(pair.settings(middle));
     }
     std::vector<double> equally_strong;
+    Course reference(rate, result.lowest, result.highest), output(reference);
     pair.read([&](std::span<const double> r, std::span<const double> d) {
+        reference.push(r);
+        output.push(d);
         const std::size_t both = std::min(r.size(), d.size());
         spectrograms.push(r.first(both), d.first(both));
         if (!waveforms) return;
@@ -245,6 +257,10 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     });
     spectrograms.end_of_pass();
     result.spectrogram_similarity = spectrograms.value();
+    result.reference_kurtosis = CourseStatistics(reference.frames()).kurtosis();
+    result.output_kurtosis = CourseStatistics(output.frames()).kurtosis();
+    if (waveforms) result.course_db = course_difference_db(reference.frames(), output.frames());
+    else result.statistics = statistics_difference(reference.frames(), output.frames());
     if (!waveforms) return;
     // These compare all frequencies of the waveforms.
     if (result.highest >= 0.999 * most_frequency) {
@@ -332,6 +348,10 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
     score_spectra(axes, options, spectrograms, result);
     score_over_time(axes.front(), spectrograms, result);
+    if (axes.size() == 1) {
+        result.reference_inside = fraction_inside(reference, result.reference_rms * result.reference_rms);
+        result.output_inside = fraction_inside(output, result.output_rms * result.output_rms);
+    }
     // For a saw at another speed the orders are compared, each take at its own rate.
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);
