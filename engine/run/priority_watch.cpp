@@ -22,7 +22,7 @@ PriorityWatch::PriorityWatch() : loads_(watched_.size()) {
 
 void PriorityWatch::lock() noexcept {
     constexpr std::int64_t wait_ns = 50'000;
-    while (is_busy_.exchange(true, std::memory_order_acquire)) sleep_until(steady_ns() + wait_ns);
+    while (is_busy_.exchange(true, std::memory_order_acquire)) sleep_for(wait_ns);
 }
 
 void PriorityWatch::add(const std::string& name, pthread_t thread, int priority,

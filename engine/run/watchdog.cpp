@@ -76,7 +76,7 @@ bool Watchdog::farewell() {
     // A driver may have blocked the twin, too.
     if (!twin_.joinable()) return all;
     const std::int64_t until = steady_ns() + longest_wait_ns;
-    while (!is_twin_over_ && steady_ns() < until) sleep_until(steady_ns() + look_every_ns);
+    while (!is_twin_over_ && steady_ns() < until) sleep_for(look_every_ns);
     if (!is_twin_over_) {
         twin_.detach();
         return false;
@@ -107,7 +107,7 @@ void Watchdog::run_twin() noexcept {
         for (std::size_t i = 0; i < count_.load(std::memory_order_acquire); ++i)
             if (!watches_[i]->stand_in()) return;
         twin_passes_.fetch_add(1, std::memory_order_acq_rel);
-        sleep_until(steady_ns() + look_every_ns);
+        sleep_for(look_every_ns);
     }
     is_twin_over_ = true;
 }
