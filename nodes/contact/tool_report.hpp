@@ -17,7 +17,7 @@ public:
     struct Now {
         saw::HoldState state = saw::HoldState::engaged;
         bool touches = false;
-        double force = 0.0, lag = 0.0;  ///< N, m: they count while the tool touches
+        double force = 0.0, lag = 0.0;  ///< N, m: they count while the tool touches; of the force what was rendered
         double rendered = 1.0;  ///< share of the force that the device rendered
         double reach = 0.0;  ///< m from the pose to the tool's edge
         double seconds = 0.0;  ///< of the tick
@@ -30,7 +30,7 @@ public:
         if (now.state == saw::HoldState::waiting && is_valid(pose)) waited_ += now.seconds;
         if (now.touches) {
             ++touching_;
-            force_ += now.force;
+            force_ += now.force * now.rendered;
             deepest_ = std::max(deepest_, now.lag);
             limited_ += now.rendered < 0.99;
         } else if (touching_ == 0.0 && is_valid(pose)) {
