@@ -28,6 +28,7 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
+constexpr double least_coherence = 0.5;  // of copies: others are compared by their statistics
 
 /// A take resampled to the common rate, in pieces.
 class Stream {
@@ -259,8 +260,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     result.spectrogram_similarity = spectrograms.value();
     result.reference_kurtosis = CourseStatistics(reference.frames()).kurtosis();
     result.output_kurtosis = CourseStatistics(output.frames()).kurtosis();
-    if (waveforms) result.course_db = course_difference_db(reference.frames(), output.frames());
-    else result.statistics = statistics_difference(reference.frames(), output.frames());
+    result.statistics = statistics_difference(reference.frames(), output.frames());
     if (!waveforms) return;
     // These compare all frequencies of the waveforms.
     if (result.highest >= 0.999 * most_frequency) {
@@ -281,6 +281,10 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     for (std::size_t k = 0; k < cross.xx.size(); ++k)
         if (in_band(k) && cross.xx[k] > 1e-4 * greatest) sum += result.coherence[k], count += 1.0;
     result.coherence_mean = count > 0.0 ? sum / count : 0.0;
+    if (*result.coherence_mean > least_coherence) {
+        result.course_db = course_difference_db(reference.frames(), output.frames());
+        result.statistics.reset();
+    }
 }
 
 template <class Sample>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double frame_seconds = 0.02;
 constexpr std::size_t least_frames = 50;
-/// Differences of equal takes: of seeds 0 to 99 of `tactus-bench verdicts`.
+/// Above the differences of equal takes, seeds below 100 of `tactus-bench verdicts`.
 constexpr std::array<double, 5> statistic_tolerance{0.3, 1.5, 0.5, 0.5, 0.5};
 constexpr double course_floor_db = 30.0;
 

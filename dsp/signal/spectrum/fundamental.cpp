@@ -187,7 +187,7 @@ FundamentalEstimate FundamentalStream::along_path() const {
     const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5;
     if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
     // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the half.
-    out.certain = !out.steady && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
+    out.certain = is_path && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
     for (const HarmonicSum& one : whole)
         if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
             out.rivals.push_back(one);

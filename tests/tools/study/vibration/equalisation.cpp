@@ -2,7 +2,7 @@
 #include "tools/study/vibration/equalisation.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/support/places.hpp"
+#include "tests/tools/run_command.hpp"
 
 #include <cmath>
 #include <fstream>
