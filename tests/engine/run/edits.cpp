@@ -10,6 +10,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <map>
@@ -290,7 +291,9 @@ TEST_CASE("edits that make and drop groups leave no memory behind, and the count
     const std::string plain = four_rates();
     // A group of another rate in each edit, which the next one drops.
     const auto with_group = [&](int edit) {
-        return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n", 200 + 10 * (edit % 5));
+        constexpr std::array rates{120, 125, 150, 250, 400};
+        return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n",
+                                   rates[static_cast<std::size_t>(edit % 5)]);
     };
     const auto in_use = [] {
         const auto info = ::mallinfo2();
