@@ -68,6 +68,7 @@
     X(Grasp, coupling)                  \
     X(GripperInput, admittance)         \
     X(GripperOutput, admittance)        \
+    X(HandCoupling, coupling)           \
     X(HeldWeight, admittance)           \
     X(Impact, vibration)                \
     X(Insertion, contact)               \

@@ -58,6 +58,7 @@ struct ImportSummary {
     } density;  ///< kg/m³ over the samples inside
     double metal_mm3 = 0.0;  ///< inside, above max_bone_density (fillings, implants); left out of `density`
     std::size_t components = 0;  ///< found, before selection
+    std::size_t components_kept = 0;
     struct {
         std::optional<double> hu;  ///< of a CT; none for meshes and label maps
         std::string from;  ///< "given", or "suggested: " and the method

@@ -159,6 +159,7 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     summary.hu = volume::name_of(about.hu);
     summary.notes = about.notes;
     summary.components = made.components;
+    summary.components_kept = keep == 0 ? made.components : std::min(keep, made.components);
     const double voxel = volume_mm3(layout.spacing);
     summary.threshold.hu = threshold.value;
     summary.threshold.from = threshold.how;

@@ -206,6 +206,8 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
             made.summary.notes.push_back(fmt::format("of {} named segments {} have no voxels: {}",
                                                      reader->about.segments.size(), empty.size(), fmt::join(empty, ", ")));
         made.summary.components = keep > 0 ? parts : pieces_of(made.bone.distance);
+        made.summary.components_kept =
+            keep > 0 ? std::min(keep, made.summary.components) : made.summary.components;
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);

@@ -105,12 +105,13 @@ Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* orig
     const std::string file = path.string(), kind = lower_extension(path);
     if (kind != "stl" && kind != "ply" && kind != "obj")
         throw Error(fmt::format("{}: a mesh is read from .stl, .ply or .obj", file));
-    const std::string bytes = file::read_whole_file(path);
+    std::string bytes = file::read_whole_file(path);
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);  // a byte-order mark, as editors of Windows write it
     MeshText text = kind == "stl"   ? read_stl(bytes, file)
                     : kind == "ply" ? read_ply(bytes, file)
                                     : read_obj(bytes, file);
     check_numbers(text.surface, file);
-    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), text.unit, 0};
+    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), text.unit, 0, std::move(text.notes)};
     for (Vec3& v : text.surface.vertices)
         v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
     found.without_area = join_equal_points(text.surface);

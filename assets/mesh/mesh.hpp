@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tactus::mesh {
@@ -23,6 +24,7 @@ struct MeshOrigin {
     bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
     std::optional<double> unit;     ///< m, from "unit=mm", "unit=cm" or "unit=m" in a header or comment
     std::size_t without_area = 0;   ///< triangles dropped because two corners coincide
+    std::vector<std::string> notes{};  ///< what the file holds beside its triangles, and was not read
 };
 
 /// STL (binary, text), PLY or OBJ. Coordinates in LPS, times `scale`, in double precision; equal points are joined,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactus::mesh {
 
@@ -16,6 +17,7 @@ struct MeshText {
     geometry::TriangleSurface surface;
     std::optional<volume::Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
     std::optional<double> unit;          ///< m, from "unit=mm" and the like
+    std::vector<std::string> notes{};    ///< what the file holds beside its triangles, and was not read
 };
 
 MeshText read_stl(const std::string& bytes, const std::string& file);

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <map>
 
 namespace tactus::mesh {
 
@@ -22,15 +24,32 @@ int index_of(std::string_view word, std::size_t points, const std::string& file)
     return static_cast<int>(index);
 }
 
+/// The line at `at`, which moves behind it. A backslash at its end continues it; such a line is put together in `joined`.
+std::string_view next_line(std::string_view bytes, std::size_t& at, std::string& joined) {
+    joined.clear();
+    for (;;) {
+        const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+        std::string_view line = bytes.substr(at, end - at);
+        at = end + 1;
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        const bool goes_on = line.ends_with('\\') && at < bytes.size();
+        if (goes_on) line.remove_suffix(1);
+        if (joined.empty() && !goes_on) return line;
+        joined += line;
+        joined += ' ';
+        if (!goes_on) return joined;
+    }
+}
+
 }  // namespace
 
 MeshText read_obj(const std::string& bytes, const std::string& file) {
     MeshText mesh;
+    std::string joined;
+    std::map<std::string, std::size_t> others;  // elements that are no triangles
     for (std::size_t at = 0; at < bytes.size();) {
         leave_if_stopped();
-        const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-        const std::string_view line = std::string_view(bytes).substr(at, end - at);
-        at = end + 1;
+        const std::string_view line = next_line(bytes, at, joined);
         Words words(line);
         const std::string_view first = words.next();
         if (first.starts_with('#')) {
@@ -49,8 +68,16 @@ MeshText read_obj(const std::string& bytes, const std::string& file) {
                 if (corner >= 2) mesh.surface.triangles.push_back({start, last, index});
                 last = index;
             }
+            if (corner < 3) ++others["faces of less than three points"];
+        } else if (first == "l") {
+            ++others["lines"];
+        } else if (first == "p") {
+            ++others["points"];
+        } else if (first == "curv" || first == "curv2" || first == "surf") {
+            ++others["free-form curves and surfaces"];
         }
     }
+    for (const auto& [what, count] : others) mesh.notes.push_back(fmt::format("{} {} were not read", count, what));
     return mesh;
 }
 

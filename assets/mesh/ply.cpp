@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -128,9 +129,36 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
     throw Error(fmt::format("{}: the PLY header has no end", file));
 }
 
-void read_element(Body& body, const Element& element, const std::string& file, geometry::TriangleSurface& surface) {
+/// A triangle for every three points that follow each other, every second one turned; −1 begins a new strip.
+void read_strips(Body& body, const Property& property, double count, const std::string& file,
+                 geometry::TriangleSurface& surface) {
+    std::array<int, 2> last{};
+    std::size_t points = 0;
+    for (double c = 0.0; c < count; c += 1.0) {
+        if (c - 4096.0 * std::floor(c / 4096.0) == 0.0) leave_if_stopped();
+        const double value = body.number(property.type);
+        if (value == -1.0) {
+            points = 0;
+            continue;
+        }
+        if (!(value >= 0.0 && value < 2147483647.0))
+            throw Error(fmt::format("{}: a strip names a point that is not there", file));
+        const int index = static_cast<int>(value);
+        if (points >= 2 && index != last[0] && index != last[1] && last[0] != last[1])
+            surface.triangles.push_back(points % 2 == 0 ? std::array{last[0], last[1], index}
+                                                        : std::array{last[1], last[0], index});
+        last = {last[1], index};
+        ++points;
+    }
+}
+
+void read_element(Body& body, const Element& element, const std::string& file, geometry::TriangleSurface& surface,
+                  std::vector<std::string>& notes) {
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    const bool is_strips = element.name == "tristrips" || element.name == "tristrip" || element.name == "triangle_strips";
     if (element.properties.empty()) return;
+    if (!is_vertex && !is_face && !is_strips && element.count > 0.0)
+        notes.push_back(fmt::format("{:.0f} elements '{}' were not read", element.count, element.name));
     for (double n = 0.0; n < element.count; n += 1.0) {
         leave_if_stopped();
         Vec3 point(0.0);
@@ -143,7 +171,12 @@ void read_element(Body& body, const Element& element, const std::string& file, g
                 continue;
             }
             const double count = body.number(property.count_type);
-            const bool corners = is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+            const bool is_list = property.name == "vertex_indices" || property.name == "vertex_index";
+            if (is_strips && is_list) {
+                read_strips(body, property, count, file, surface);
+                continue;
+            }
+            const bool corners = is_face && is_list;
             int first = 0, last = 0;
             for (double c = 0.0; c < count; c += 1.0) {
                 const double value = body.number(property.type);
@@ -166,7 +199,7 @@ MeshText read_ply(const std::string& bytes, const std::string& file) {
     MeshText mesh;
     const Header header = header_of(bytes, file, mesh.frame, mesh.unit);
     Body body(std::string_view(bytes).substr(header.size), header.coding, file);
-    for (const Element& element : header.elements) read_element(body, element, file, mesh.surface);
+    for (const Element& element : header.elements) read_element(body, element, file, mesh.surface, mesh.notes);
     return mesh;
 }
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 #include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 namespace tactus::mesh {
 
@@ -42,32 +45,64 @@ void read_text(const std::string& bytes, const std::string& file, geometry::Tria
 
 }  // namespace
 
+namespace {
+
+/// Text in any case: "SOLID" and "Facet" are written, too.
+bool is_text(const std::string& bytes) {
+    const std::size_t start = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    return lower(std::string_view(bytes).substr(start, 5)) == "solid" && bytes.find('\0') == std::string::npos &&
+           lower(std::string_view(bytes).substr(0, 4096)).find("facet") != std::string::npos;
+}
+
+/// The triangles of a binary body at `at`; none when no whole body lies there.
+std::optional<std::uint32_t> triangles_at(const std::string& bytes, std::size_t at) {
+    std::uint32_t triangles = 0;
+    if (bytes.size() < at + 84) return std::nullopt;
+    std::memcpy(&triangles, bytes.data() + at + 80, 4);
+    if (bytes.size() - at < 84 + std::uint64_t{50} * triangles) return std::nullopt;
+    return triangles;
+}
+
+void read_body(const std::string& bytes, std::size_t at, std::uint32_t triangles, geometry::TriangleSurface& surface) {
+    for (std::uint32_t n = 0; n < triangles; ++n) {
+        if (n % 4096 == 0) leave_if_stopped();
+        std::array<float, 9> numbers;  // the corners; the stored normal is skipped
+        std::memcpy(numbers.data(), bytes.data() + at + 84 + std::size_t{50} * n + 12, sizeof numbers);
+        std::array<Vec3, 3> corners;
+        for (std::size_t c = 0; c < 3; ++c)
+            corners[c] = Vec3(double(numbers[3 * c]), double(numbers[3 * c + 1]), double(numbers[3 * c + 2]));
+        add_triangle(surface, corners);
+    }
+}
+
+}  // namespace
+
 MeshText read_stl(const std::string& bytes, const std::string& file) {
     MeshText mesh;
     mesh.frame = stated_frame(std::string_view(bytes).substr(0, 300));
     mesh.unit = stated_unit(std::string_view(bytes).substr(0, 300));
-    const bool text =
-        bytes.starts_with("solid") && bytes.find("facet") != std::string::npos && bytes.find('\0') == std::string::npos;
-    if (text) {
-        read_text(bytes, file, mesh.surface);
+    if (is_text(bytes)) {
+        read_text(lower(bytes), file, mesh.surface);
         return mesh;
     }
-    std::uint32_t triangles = 0;
-    if (bytes.size() >= 84) std::memcpy(&triangles, bytes.data() + 80, 4);
-    if (bytes.size() < 84 || bytes.size() < 84 + std::uint64_t{50} * triangles)
+    std::uint32_t stated = 0;
+    if (bytes.size() >= 84) std::memcpy(&stated, bytes.data() + 80, 4);
+    if (!triangles_at(bytes, 0))
         throw Error(
             fmt::format("{}: cut short or not an STL file: the header states {} triangles, but the file has {} bytes",
-                        file, triangles, bytes.size()));
-    if (triangles > 500'000'000) throw Error(fmt::format("{}: {} triangles are too many", file, triangles));
-    for (std::uint32_t n = 0; n < triangles; ++n) {
-        if (n % 4096 == 0) leave_if_stopped();
-        std::array<float, 9> numbers;  // the corners; the stored normal is skipped
-        std::memcpy(numbers.data(), bytes.data() + 84 + std::size_t{50} * n + 12, sizeof numbers);
-        std::array<Vec3, 3> corners;
-        for (std::size_t c = 0; c < 3; ++c)
-            corners[c] = Vec3(double(numbers[3 * c]), double(numbers[3 * c + 1]), double(numbers[3 * c + 2]));
-        add_triangle(mesh.surface, corners);
+                        file, stated, bytes.size()));
+    if (stated > 500'000'000) throw Error(fmt::format("{}: {} triangles are too many", file, stated));
+    // Bodies may follow each other, each with its own header.
+    std::size_t at = 0, bodies = 0;
+    for (std::optional<std::uint32_t> triangles; (triangles = triangles_at(bytes, at)); ++bodies) {
+        if (bodies > 0 && *triangles == 0) break;
+        read_body(bytes, at, *triangles, mesh.surface);
+        at += 84 + std::size_t{50} * *triangles;
     }
+    if (bodies > 1) mesh.notes.push_back(fmt::format("{} bodies follow each other in the file; all were read", bodies));
+    if (at < bytes.size())
+        mesh.notes.push_back(fmt::format("{} bytes behind the last triangle were not read: no body begins there",
+                                         bytes.size() - at));
     return mesh;
 }
 

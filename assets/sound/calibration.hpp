@@ -19,7 +19,8 @@ struct Calibration {
     double si = 1.0;
     bool is_acceleration = false;
     std::string source;  ///< "the header", "the comment of the file", "the option"; empty: not known
-    std::string remark;  ///< what was not used, and why; empty: nothing
+    std::string remark{};  ///< what was not used, and why; empty: nothing
+    std::string file_note{};  ///< what is wrong with the header of the sound; empty: nothing
 };
 
 /// "9.81 m/s²", "0.02 mm/s", "1 g" (standard gravity). Throws Error naming what is expected.

@@ -3,13 +3,18 @@
 
 #include "assets/file/room.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/wave_header.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <optional>
+#include <utility>
 
 namespace tactus::sound {
 
@@ -21,29 +26,67 @@ constexpr double most_frames_per_byte = 8192.0;
 /// libsndfile reports an unknown length as the largest number.
 constexpr sf_count_t unknown_length = sf_count_t{1} << 62;
 
-/// libsndfile reads a truncated RIFF file without an error.
-void check_riff_length(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    unsigned char head[8] = {};
-    if (!file.read(reinterpret_cast<char*>(head), sizeof head) || std::memcmp(head, "RIFF", 4) != 0) return;
-    const std::uintmax_t promised =
-        8u + (head[4] | head[5] << 8 | head[6] << 16 | static_cast<std::uintmax_t>(head[7]) << 24);
-    const std::uintmax_t present = std::filesystem::file_size(path);
-    // Streaming programs leave the length field at its largest value.
-    if (promised < 0xFFFFFF00u && present < promised)
-        throw Error(fmt::format("{}: the sound is cut short: it has {} of {} bytes", path.string(), present, promised));
+/// A header of ours before the samples of a file.
+struct Repaired {
+    std::ifstream file;
+    WaveHeader header;
+    sf_count_t at = 0;
+
+    sf_count_t length() const { return static_cast<sf_count_t>(header.bytes.size() + header.size); }
+
+    sf_count_t read(char* to, sf_count_t count) {
+        const auto head = static_cast<sf_count_t>(header.bytes.size());
+        sf_count_t done = 0;
+        if (at < head) {
+            done = std::min(count, head - at);
+            std::memcpy(to, header.bytes.data() + at, static_cast<std::size_t>(done));
+            at += done;
+        }
+        const sf_count_t rest = std::min(count - done, length() - at);
+        if (rest <= 0) return done;
+        file.clear();
+        file.seekg(static_cast<std::streamoff>(header.start) + at - head);
+        file.read(to + done, rest);
+        at += file.gcount();
+        return done + file.gcount();
+    }
+};
+
+SF_VIRTUAL_IO repaired_input() {
+    SF_VIRTUAL_IO io{};
+    io.get_filelen = [](void* user) { return static_cast<Repaired*>(user)->length(); };
+    io.seek = [](sf_count_t offset, int whence, void* user) {
+        auto& source = *static_cast<Repaired*>(user);
+        const sf_count_t base = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? source.at : source.length();
+        return source.at = std::clamp<sf_count_t>(base + offset, 0, source.length());
+    };
+    io.read = [](void* to, sf_count_t count, void* user) {
+        return static_cast<Repaired*>(user)->read(static_cast<char*>(to), count);
+    };
+    io.write = [](const void*, sf_count_t, void*) { return sf_count_t{0}; };
+    io.tell = [](void* user) { return static_cast<Repaired*>(user)->at; };
+    return io;
 }
 
 }  // namespace
 
-SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
+SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::string* note) {
     const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
     if (!std::filesystem::exists(path)) fail("no such sound file");
     if (std::filesystem::is_directory(path)) fail("is a folder, not a sound file");
     const auto size = static_cast<double>(file::require_file(path));
-    SoundHandle file(sf_open(path.c_str(), SFM_READ, &info));
+    SoundHandle file;
+    if (std::optional<WaveHeader> header = repaired_wave_header(path)) {
+        if (note) *note = header->note;
+        const auto source = std::make_shared<Repaired>();
+        source->file.open(path, std::ios::binary);
+        source->header = std::move(*header);
+        SF_VIRTUAL_IO io = repaired_input();
+        file = SoundHandle(sf_open_virtual(&io, SFM_READ, &info, source.get()), CloseSound{source});
+    } else {
+        file.reset(sf_open(path.c_str(), SFM_READ, &info));
+    }
     if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
-    check_riff_length(path);
     if (info.frames <= 0) fail("the sound is empty");
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
     if (info.samplerate > fastest_rate)

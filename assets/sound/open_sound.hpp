@@ -6,10 +6,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace tactus::sound {
 
 struct CloseSound {
+    std::shared_ptr<void> source;  ///< what the library reads from, or null: a file by its name
     void operator()(SNDFILE* file) const { sf_close(file); }
 };
 using SoundHandle = std::unique_ptr<SNDFILE, CloseSound>;
@@ -19,7 +21,8 @@ inline void keep_whole_frames(SNDFILE* file, sf_count_t frames) {
     sf_command(file, SFC_FILE_TRUNCATE, &frames, sizeof frames);
 }
 
-/// Opens for reading and fills `info`. Throws Error when the file is missing, not a sound, empty, or cut short.
-SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info);
+/// Opens for reading and fills `info`. A wave whose header is unfinished or wrong is read by the samples that it has, which
+/// `note` (may be null) then says. Throws Error when the file is missing, not a sound, or empty.
+SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::string* note = nullptr);
 
 }  // namespace tactus::sound

@@ -152,6 +152,7 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         source_->calibration = stated_calibration(source_->sound->comment()).value_or(Calibration());
         source_->factors.assign(source_->names.size(), 1.0);
         calibrate(calibration, sensitivity);
+        source_->calibration.file_note = source_->sound->note();
     } else {
         table::SampleLog log = table::load_sample_log(path, selection);
         source_->stretch = cut(log, stretch, path);
@@ -167,7 +168,17 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         for (const auto& piece : even.pieces) source_->frames += piece.front().size();
         source_->names = log.names;
         source_->calibration = calibration_of_columns(log, source_->factors);
-        calibrate(calibration, sensitivity);
+        const bool is_voltage = log.units.front() && log.units.front()->is_voltage();
+        if (!sensitivity && !calibration && is_voltage && !log.sensitivity.empty()) {
+            try {
+                calibrate(calibration, parse_sensitivity(log.sensitivity));
+            } catch (const Error& error) {
+                throw Error(fmt::format("{}: the sensitivity '{}' in the header is not understood: {}", path.string(),
+                                        log.sensitivity, error.message()));
+            }
+        } else {
+            calibrate(calibration, sensitivity);
+        }
         source_->log = LogFacts{.rows = log.times.size(),
                                 .lost_rows = log.lost_rows,
                                 .gaps = even.gaps,

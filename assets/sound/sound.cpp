@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 namespace tactus::sound {
 
@@ -58,12 +59,64 @@ sf_count_t frames_in(const std::filesystem::path& path) {
     return sound ? info.frames : 0;
 }
 
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        word |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+    return word;
+}
+
+void put_number(std::uint64_t number, std::size_t size, std::string& bytes, std::size_t at) {
+    for (std::size_t i = 0; i < size; ++i) bytes[at + i] = static_cast<char>(number >> (8 * i));
+}
+
+constexpr char reserved[] = "JUNK";
+constexpr std::uint32_t reserved_bytes = 28;  // of the chunk ds64, without its table
+
+/// Makes RF64 of a WAV of `data_bytes` of samples, in place: the chunk ds64, which has the lengths, comes to the front, and the
+/// reserved chunk goes. libsndfile chooses the format when it opens a file, when its length is not known yet. False when
+/// the header is another one.
+bool make_rf64(const std::filesystem::path& path, std::uint64_t data_bytes) {
+    constexpr std::uint64_t in_ds64 = 0xFFFFFFFF;
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    std::string head(1 << 16, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    file.clear();
+    if (!head.starts_with("RIFF")) return false;
+    std::string chunks;
+    bool has_room = false;
+    std::size_t at = 12;
+    for (; at + 8 <= head.size() && head.compare(at, 4, "data") != 0;) {
+        const std::size_t length = 8 + word_at(head, at + 4) + word_at(head, at + 4) % 2;
+        const bool is_reserved = head.compare(at, 4, reserved) == 0 && word_at(head, at + 4) == reserved_bytes;
+        if (is_reserved) has_room = true;
+        else chunks += head.substr(at, length);
+        at += length;
+    }
+    if (!has_room || at + 8 > head.size()) return false;
+    std::string made = "RF64....WAVEds64" + std::string(4 + reserved_bytes, '\0') + chunks + "data....";
+    put_number(in_ds64, 4, made, 4);
+    put_number(reserved_bytes, 4, made, 16);
+    put_number(std::filesystem::file_size(path) - 8, 8, made, 20);
+    put_number(data_bytes, 8, made, 28);
+    put_number(in_ds64, 4, made, made.size() - 4);
+    if (made.size() != at + 8) return false;
+    file.seekp(0);
+    file.write(made.data(), static_cast<std::streamsize>(made.size()));
+    file.flush();
+    return file.good();
+}
+
 }  // namespace
 
 struct SoundWriter::File {
     std::filesystem::path path, part;
     SoundHandle handle;
     sf_count_t frames = 0;  // written
+    std::uint64_t rf64_from = 0;
+    bool is_wav = false;
+    std::uint64_t frame_bytes = 0;
     bool has_failed = false;
 
     ~File() {
@@ -75,7 +128,7 @@ struct SoundWriter::File {
 };
 
 SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format,
-                         const std::string& comment)
+                         const std::string& comment, std::uint64_t rf64_from)
     : file_(std::make_unique<File>()) {
     file_->part = path.string() + ".part";
     file_->path = std::move(path);
@@ -83,8 +136,20 @@ SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, Sou
     info.channels = channels;
     info.samplerate = rate;
     info.format = format == SoundFormat::flac ? SF_FORMAT_FLAC | SF_FORMAT_PCM_24 : SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+    file_->is_wav = format == SoundFormat::float_wav;
+    file_->rf64_from = rf64_from;
+    file_->frame_bytes = sizeof(float) * static_cast<std::uint64_t>(channels);
     file_->handle.reset(sf_open(file_->part.c_str(), SFM_WRITE, &info));
     if (!file_->handle) throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(nullptr)));
+    if (file_->is_wav) {
+        char room[reserved_bytes] = {};
+        SF_CHUNK_INFO chunk{};
+        std::copy_n(reserved, 4, chunk.id);
+        chunk.id_size = 4;
+        chunk.datalen = reserved_bytes;
+        chunk.data = room;
+        sf_set_chunk(file_->handle.get(), &chunk);
+    }
     // The PEAK chunk stores the time of writing. Without it the same samples give the same bytes.
     sf_command(file_->handle.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
     if (!comment.empty()) sf_set_string(file_->handle.get(), SF_STR_COMMENT, comment.c_str());
@@ -115,6 +180,9 @@ void SoundWriter::finish() {
     bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
     // On a failing disk the header cannot be updated either, which libsndfile does not report.
     failed = failed || (file_->has_failed && frames_in(file_->part) != file_->frames);
+    if (!failed && file_->is_wav && std::filesystem::file_size(file_->part) >= file_->rf64_from)
+        failed = !make_rf64(file_->part, static_cast<std::uint64_t>(file_->frames) * file_->frame_bytes) ||
+                 frames_in(file_->part) != file_->frames;
     if (failed)
         throw Error(fmt::format("{}: the sound could not be completed; is the disk full? The part is in {}",
                                 file_->path.string(), file_->part.string()));

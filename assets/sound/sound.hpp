@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,14 +21,14 @@ struct Sound {
 };
 
 /// Reads every format of libsndfile (WAV, FLAC, AIFF, Ogg and others). Throws Error when the file is missing, not a
-/// sound, cut short or empty, contains NaN or infinity, or has more than 2^28 samples.
+/// sound, cut short (a wave is read up to its end) or empty, contains NaN or infinity, or has more than 2^28 samples.
 Sound load_sound(const std::filesystem::path& path);
 
 /// The mean of all channels.
 std::vector<float> mix_to_mono(const Sound& sound);
 
 enum class SoundFormat {
-    float_wav,  ///< 32-bit float, may exceed full scale; the same samples give the same bytes
+    float_wav,  ///< 32-bit float, may exceed full scale; the same samples give the same bytes. RF64 when it is long
     flac,       ///< 24 bit, clipped at full scale
 };
 
@@ -35,9 +36,14 @@ enum class SoundFormat {
 /// the sound ends with the last complete frame. For offline work and threads without a deadline.
 class SoundWriter {
 public:
-    /// `rate` in Hz; `comment` is kept in the file's metadata. Throws Error when the file cannot be made.
+    /// A WAV of so many bytes is completed as RF64 (EBU Tech 3306), which has 64-bit lengths: those of WAV end at 4 GiB, and
+    /// many programs read them as signed.
+    static constexpr std::uint64_t max_wav_bytes = std::uint64_t{1} << 31;
+
+    /// `rate` in Hz; `comment` is kept in the file's metadata. `rf64_from`: bytes of a file from which on it is RF64, at most
+    /// max_wav_bytes. Throws Error when the file cannot be made.
     SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format = SoundFormat::float_wav,
-                const std::string& comment = {});
+                const std::string& comment = {}, std::uint64_t rf64_from = max_wav_bytes);
     ~SoundWriter();
     SoundWriter(SoundWriter&&) noexcept;
     SoundWriter& operator=(SoundWriter&&) noexcept;

@@ -17,12 +17,13 @@ struct SoundReader::File {
     std::filesystem::path path;
     SF_INFO info{};
     SoundHandle handle;
+    std::string note;
     std::size_t done = 0;
 };
 
 SoundReader::SoundReader(std::filesystem::path path) : file_(std::make_unique<File>()) {
     file_->path = std::move(path);
-    file_->handle = open_sound(file_->path, file_->info);
+    file_->handle = open_sound(file_->path, file_->info, &file_->note);
 }
 
 SoundReader::~SoundReader() = default;
@@ -32,6 +33,8 @@ SoundReader& SoundReader::operator=(SoundReader&&) noexcept = default;
 double SoundReader::rate() const noexcept { return file_->info.samplerate; }
 std::size_t SoundReader::channels() const noexcept { return static_cast<std::size_t>(file_->info.channels); }
 std::size_t SoundReader::frames() const noexcept { return static_cast<std::size_t>(file_->info.frames); }
+
+const std::string& SoundReader::note() const noexcept { return file_->note; }
 
 std::string SoundReader::comment() const {
     SNDFILE* handle = file_->handle.get();

@@ -22,6 +22,8 @@ public:
     double rate() const noexcept;  ///< Hz
     std::size_t channels() const noexcept;
     std::size_t frames() const noexcept;  ///< as stated in the header
+    /// What is wrong with the header of the file, if anything, one sentence.
+    const std::string& note() const noexcept;
     /// The comment of the file and the description of a broadcast wave; empty: none.
     std::string comment() const;
 

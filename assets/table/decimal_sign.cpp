@@ -43,8 +43,6 @@ std::optional<std::string> DecimalSign::note(std::string_view field, int line) {
         return fmt::format("'{}' {}; write numbers without them", field.substr(0, 40), why);
     };
     if (field.find_first_of(",.", first + 1) != std::string_view::npos) return refuse("has thousands separators");
-    if (comma != std::string_view::npos && separator_ == ',')
-        return refuse("has a comma, which also separates the fields");
     const bool grouped = may_be_grouped(field, first);
     if (comma != std::string_view::npos) {
         if (!grouped) commas_ = true;
@@ -56,7 +54,6 @@ std::optional<std::string> DecimalSign::note(std::string_view field, int line) {
 }
 
 std::optional<DecimalSign::Doubt> DecimalSign::doubt() const {
-    if (separator_ == ',') return std::nullopt;
     if (commas_ && (points_ || maybe_points_))
         return Doubt{"some numbers have a decimal comma and some a point; write all alike", 0};
     if (!grouped_.empty() && !commas_)
@@ -72,7 +69,7 @@ char DecimalSign::sign() const { return commas_ ? ',' : points_ || maybe_points_
 
 std::optional<double> DecimalSign::parse(std::string_view field) const {
     std::array<char, 64> buffer;
-    if (separator_ != ',' && field.size() < buffer.size() && field.find(',') != std::string_view::npos) {
+    if (field.size() < buffer.size() && field.find(',') != std::string_view::npos) {
         std::replace_copy(field.begin(), field.end(), buffer.begin(), ',', '.');
         field = {buffer.data(), field.size()};
     }

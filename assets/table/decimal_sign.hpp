@@ -12,8 +12,8 @@ class DecimalSign {
 public:
     explicit DecimalSign(char separator) : separator_(separator) {}
 
-    /// Notes how `field` is written. Returns why it has no meaning: thousands separators, or a comma where commas separate
-    /// fields.
+    /// Notes how `field` is written. Returns why it has no meaning: thousands separators. Between commas a field
+    /// with a comma was quoted.
     std::optional<std::string> note(std::string_view field, int line);
 
     /// At the end: why a number may have two meanings, and its line (0: the whole file).

@@ -29,7 +29,7 @@ public:
     LogColumns choose() {
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             NamedColumn named = parse_column_name(shape_.names[i]);
-            if (!shape_.units.empty())
+            if (i < shape_.units.size())
                 if (auto unit = parse_column_unit(shape_.units[i])) named = {shape_.names[i], std::move(unit)};
             out_.named.push_back(std::move(named));
         }

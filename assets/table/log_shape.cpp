@@ -127,11 +127,13 @@ public:
         const std::size_t first = first_row();
         shape.first_row = lines_[first].number;
         name_columns(first, shape);
-        for (std::size_t i = 0; i < first && !shape.rate; ++i)
-            if (const std::optional<double> rate = rate_in(lines_[i].text)) shape.rate = {*rate, lines_[i].number};
         shape.separator = table_.separator;
         shape.kinds = table_.kinds;
         shape.kinds.resize(shape.names.size(), CellKind::lost);
+        read_increment(shape);
+        for (std::size_t i = 0; i < first; ++i) read_statement(lines_[i].text, shape);
+        for (std::size_t i = 0; i < first && !shape.rate; ++i)
+            if (const std::optional<double> rate = rate_in(lines_[i].text)) shape.rate = {*rate, lines_[i].number};
         return shape;
     }
 
@@ -356,6 +358,36 @@ private:
         }
         shape.skipped = static_cast<int>(above.size()) - (shape.header_line > 0 && !above.empty() ? 1 : 0) -
                         (shape.units_line > 0 ? 1 : 0);
+    }
+
+    /// An oscilloscope's row of units holds the start and the step of its times: "X,CH1,Start,Increment" above
+    /// "Sequence,Volt,-6.0e-02,1.0e-05".
+    static void read_increment(LogShape& shape) {
+        for (std::size_t i = 0; i < shape.units.size() && i < shape.names.size(); ++i) {
+            if (lower(shape.names[i]) != "increment") continue;
+            const double step = std::strtod(shape.units[i].c_str(), nullptr);
+            if (!(step > 0.0)) return;
+            shape.rate = {1.0 / step, shape.units_line};
+            for (std::size_t n = 0; n < shape.units.size() && n < shape.kinds.size(); ++n)
+                if (lower(shape.units[n]) == "sequence" || lower(shape.names[n]) == "start" || n == i)
+                    shape.kinds[n] = CellKind::lost;
+        }
+    }
+
+    /// "# sensitivity: 100 mV/g", and the units of the channels of a LabVIEW file.
+    static void read_statement(std::string_view line, LogShape& shape) {
+        const std::string text = lower(line);
+        if (const std::size_t at = text.find("sensitivity"); at != std::string::npos && shape.sensitivity.empty()) {
+            std::string_view rest = trimmed(line.substr(at + 11));
+            while (!rest.empty() && (rest.front() == ':' || rest.front() == '=' || rest.front() == ',' || rest.front() == ';'))
+                rest = trimmed(rest.substr(1));
+            const std::size_t end = std::min(rest.find_first_of(",;"), rest.size());
+            if (rest.find('/') < end) shape.sensitivity = as_utf8(trimmed(rest.substr(0, end)));
+        }
+        if (!text.starts_with("y_unit_label") || !shape.units.empty()) return;
+        const Fields labels = fields_of(line, shape.separator);
+        shape.units.resize(shape.names.size());
+        for (std::size_t i = 1; i < labels.size() && i < shape.units.size(); ++i) shape.units[i] = as_utf8(labels[i]);
     }
 
     /// "# t, ax, ay" and ";Headers, time,Ax" just above the rows.

@@ -10,11 +10,13 @@
 #include "assets/table/log_shape.hpp"
 #include "assets/table/time_unit.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -29,6 +31,7 @@ namespace tactus::table {
 namespace {
 
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
+constexpr int most_trailer = 100;  // lines
 constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {
@@ -53,6 +56,11 @@ public:
             split_fields(line, shape_.separator, fields_);
             if (is_first) choose();
             is_first = false;
+            if (log_.form.trailer > 0 || is_statistic(fields_.front())) {
+                if (++log_.form.trailer > most_trailer)
+                    fail_at(line_, 1, "rows follow below a row of statistics; cut the file there");
+                continue;
+            }
             if (is_selected()) row(line, lines.at_end());
         }
         check_sources();
@@ -86,6 +94,17 @@ private:
         log_.columns.resize(columns_.values.size());
         for (const std::size_t column : columns_.sources) sources_.push_back({column, {}, {}, 0});
         clock_times_.resize(columns_.clocks.size());
+    }
+
+    /// "Mean", "Max:", "Std. dev."
+    bool is_statistic(std::string_view field) const {
+        if (field.empty() || (field.front() >= '0' && field.front() <= '9') || field.front() == '-' || rows_ == 0)
+            return false;
+        const std::string word = lower(field.substr(0, field.find_first_of(" :._(")));
+        constexpr std::array<std::string_view, 16> words{"mean", "average", "avg", "min", "max", "minimum", "maximum",
+                                                         "std", "stddev", "rms", "sum", "total", "median", "statistics",
+                                                         "mittelwert", "summary"};
+        return std::ranges::find(words, word) != words.end();
     }
 
     bool is_selected() {
@@ -377,6 +396,7 @@ private:
     void note_form() {
         LogForm& form = log_.form;
         form.separator = shape_.separator;
+        log_.sensitivity = shape_.sensitivity;
         form.decimal = sign_.sign();
         form.header_line = shape_.header_line;
         form.units_line = shape_.units_line;
@@ -448,6 +468,7 @@ std::string describe(const LogForm& form) {
     if (form.units_line > 0) text += fmt::format(", units in line {}", form.units_line);
     text += fmt::format(", first row in line {}", form.first_row);
     if (form.skipped > 0) text += fmt::format(" ({} lines not used)", form.skipped);
+    if (form.trailer > 0) text += fmt::format(", {} lines of statistics at the end", form.trailer);
     return text + "; time: " + form.time;
 }
 

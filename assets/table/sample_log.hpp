@@ -29,6 +29,7 @@ struct LogForm {
     char decimal = '\0';     ///< '.' or ','; '\0': no number shows it
     int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
     int skipped = 0;         ///< lines above the rows that were not used, without comments
+    int trailer = 0;         ///< lines with statistics below the rows
     std::string time;        ///< "column 't' in ms", "clock times in column 'Time'", "--rate, 3200 Hz"
     bool is_time_unit_stated = true;  ///< by an option, a name or the cells; false: the only plausible one
 
@@ -45,6 +46,7 @@ struct SampleLog {
     std::vector<std::optional<ColumnUnit>> units;  ///< of the chosen columns, as stated in the file
     std::vector<std::vector<double>> columns;  ///< values per chosen column, as many as times
     std::string time_name;           ///< empty: no time column
+    std::string sensitivity;         ///< of the sensor, as the file states it, "100 mV/g"; empty: it does not
     std::size_t lost_rows = 0;  ///< rows without a number in a chosen column, or an incomplete last row
     LogForm form;
 };

@@ -49,7 +49,7 @@ struct Unit {
 constexpr std::array<Unit, 2> times{{{"_s", 1.0}, {"_ms", 1e-3}}};
 constexpr std::array<Unit, 3> lengths{{{"_mm", 1e-3}, {"_cm", 1e-2}, {"_m", 1.0}}};
 constexpr std::array<Unit, 1> forces{{{"_N", 1.0}}};
-constexpr std::array<Unit, 1> bare{{{"", 1.0}}};
+constexpr std::array<Unit, 1> without_unit{{{"", 1.0}}};
 
 class TrajectoryReader {
 public:
@@ -66,10 +66,10 @@ public:
         prefix_ = selection.tool.empty() ? "" : selection.tool + "_";
         time_ = need("", "t", times);
         for (std::size_t i = 0; i < 3; ++i) position_[i] = need(prefix_, position_names[i], lengths);
-        for (std::size_t i = 0; i < 4; ++i) rotation_[i] = need(prefix_, rotation_names[i], bare);
+        for (std::size_t i = 0; i < 4; ++i) rotation_[i] = need(prefix_, rotation_names[i], without_unit);
         for (std::size_t i = 0; i < 3; ++i) force_[i] = find(prefix_, force_names[i], forces);
-        trial_ = find("", "trial", bare);
-        status_ = find(prefix_, "status", bare);
+        trial_ = find("", "trial", without_unit);
+        status_ = find(prefix_, "status", without_unit);
         if (selection.trial != 0 && !trial_) fail(1, "there is no column 'trial' to choose a trial by");
     }
 

@@ -84,7 +84,7 @@ void Exchange::publish(const Reading& given) noexcept {
     if (reading.is_valid) {
         reading.pose.orientation = glm::normalize(reading.pose.orientation);
         if (!reading.has_twist) estimate(reading, now);
-        reading.is_valid = is_finite(reading.twist.linear) && is_finite(reading.twist.angular);
+        reading.is_valid = is_good(reading.pose, reading.twist);
     } else windowed_ns_ = 0;
     store(reading, now);
 }

@@ -232,7 +232,7 @@ public:
         const bool is_here = steered_.state.is_lost == 0;
         if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), steady_ns()});
         return {hand_.pose, hand_.twist, static_cast<std::uint32_t>(steered_.state.buttons), ++counter_,
-                is_here && is_valid(hand_.pose)};
+                is_here && is_good(hand_.pose, hand_.twist)};
     }
 
     void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }

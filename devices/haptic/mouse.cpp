@@ -92,7 +92,7 @@ public:
         const bool is_silent = silence > (has_heard_ ? longest_silence_of_window_ns : longest_start_ns);
         tell(is_silent);
         DeviceSample sample{hand_.pose, hand_.twist, is_silent && silence > longest_hold_of_window_ns ? 0u : buttons_,
-                            ++counter_, is_valid(hand_.pose)};
+                            ++counter_, is_good(hand_.pose, hand_.twist)};
         sample.late = is_silent;
         return sample;
     }

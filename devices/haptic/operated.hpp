@@ -74,10 +74,10 @@ public:
         if (modelled_) {
             modelled_->advance(operator_, force_.get(), elapsed_s);
             return {modelled_->pose(), modelled_->twist(), operator_.buttons(), ++counter_,
-                    is_valid(modelled_->pose())};
+                    is_good(modelled_->pose(), modelled_->twist())};
         }
         simulate::advance(hand_, operator_, force_.get(), elapsed_s);
-        return {hand_.pose, hand_.twist, operator_.buttons(), ++counter_, is_valid(hand_.pose)};
+        return {hand_.pose, hand_.twist, operator_.buttons(), ++counter_, is_good(hand_.pose, hand_.twist)};
     }
 
     void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }

@@ -65,8 +65,7 @@ DeviceSample unpack(const SampleRecord& record) noexcept {
     sample.counter = record.counter;
     sample.buttons = static_cast<std::uint32_t>(record.buttons);
     sample.late = record.is_late != 0;
-    sample.valid = record.is_valid == 1 && is_valid(sample.pose) && is_finite(sample.twist.linear) &&
-                   is_finite(sample.twist.angular);
+    sample.valid = record.is_valid == 1 && is_good(sample.pose, sample.twist);
     return sample;
 }
 

@@ -19,7 +19,15 @@ struct EditedBone {
 
     double value(const Vec3& p) const noexcept { return now.value(p); }
     double density(const Vec3& p) const noexcept { return now.density(p); }
-    float get(int i, int j, int k) const noexcept { return bone.get(i, j, k); }
+    // As BoneEditor::get, but inline: a stamp reads a sample in a few nanoseconds, and most samples need no more.
+    float get(int i, int j, int k) const noexcept {
+        const volume::BrickLayout& layout = now.layout();
+        const int bx = std::min(i >> 3, layout.bricks[0] - 1), by = std::min(j >> 3, layout.bricks[1] - 1),
+                  bz = std::min(k >> 3, layout.bricks[2] - 1);
+        const float* const brick = now.root->distance[static_cast<std::size_t>(layout.brick_index(bx, by, bz))];
+        return brick ? brick[volume::BrickLayout::sample_index(i - 8 * bx, j - 8 * by, k - 8 * bz)]
+                     : static_cast<float>(layout.far);
+    }
     bool set(int i, int j, int k, float d) noexcept { return bone.set(i, j, k, d); }
     std::array<int, 3> size() const noexcept { return bone.layout().size; }
     Vec3 origin() const noexcept { return bone.layout().origin; }

@@ -47,7 +47,9 @@ struct KerfStamp {
                 if (!(from <= to)) continue;  // of a nearly level row, `from` may exceed every int
                 const int stop = static_cast<int>(std::floor(to));
                 for (int i = static_cast<int>(std::ceil(from)); i <= stop; ++i) {
-                    whole &= lift(field, i, j, k, start + step * static_cast<double>(i), result);
+                    const double before = field.get(i, j, k);
+                    if (before >= radius) continue;  // of most samples; their places are not needed
+                    whole &= lift(field, i, j, k, before, start + step * static_cast<double>(i), result);
                 }
             }
         }
@@ -70,9 +72,7 @@ private:
     }
 
     template <class Field>
-    bool lift(Field& field, int i, int j, int k, const Vec3& p, CarveResult& result) const noexcept {
-        const double before = field.get(i, j, k);
-        if (before >= radius) return true;
+    bool lift(Field& field, int i, int j, int k, double before, const Vec3& p, CarveResult& result) const noexcept {
         const double limit = (radius - before) * (radius - before);
         const double squared = swept.squared_distance(p, limit);
         if (squared >= limit) return true;

@@ -9,6 +9,7 @@ namespace tactus::control {
 namespace {
 
 constexpr double most_force = 1e6, most_position = 1e3;  // N, m
+constexpr int most_lowerings = 10;  // of a gain that is chosen here, by a fifth each
 
 }  // namespace
 
@@ -19,14 +20,26 @@ double AdmittanceControl::limit_for(const ControllerSettings& settings) const no
     loop.gain = settings_.loop.gain;
     object.rest = settings_.object.rest;
     if (limit_ > 0.0 && loop == settings_.loop && object == settings_.object) return limit_;
-    return gain_limit(settings.loop, settings.object);
+    return switched_gain_limit(settings.loop, settings.object);
+}
+
+/// Between the gains that were simulated for the limit there may be one that does not settle.
+bool AdmittanceControl::settles_at(double gain, const ControllerSettings& settings) const noexcept {
+    if (!settings.object.one_sided || settings.allow_unstable) return true;
+    LoopModel loop = settings.loop;
+    loop.gain = gain;
+    return settles(loop, settings.object);
 }
 
 bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
     if (!settings.object.is_renderable()) return false;
     const double limit = limit_for(settings);
-    const double gain = settings.loop.gain > 0.0 ? settings.loop.gain : settings.gain_share * limit;
+    const bool is_chosen = !(settings.loop.gain > 0.0);
+    double gain = is_chosen ? settings.gain_share * limit : settings.loop.gain;
     if (!settings.allow_unstable && !(gain > 0.0 && gain < limit)) return false;
+    const bool is_known = engaged_ && gain == gain_ && limit == limit_;
+    for (int lower = 0; !is_known && !settles_at(gain, settings); ++lower, gain *= 0.8)
+        if (!is_chosen || lower == most_lowerings) return false;
     if (engaged_) {
         // The difference of both objects' positions under the present force decays slowly.
         VirtualObject old = object_, made = object_;

@@ -5,6 +5,7 @@
 #include "dsp/control/force_limiter.hpp"
 #include "dsp/control/loop_stability.hpp"
 #include "dsp/control/position_loop.hpp"
+#include "dsp/control/switched_loop.hpp"
 #include "dsp/control/virtual_object.hpp"
 
 namespace tactus::control {
@@ -27,7 +28,8 @@ struct ControllerSettings {
 class AdmittanceControl {
 public:
     /// Takes new settings without a jump of the wanted position. False: they cannot be rendered, or the loop would be
-    /// unstable and that is not allowed; the old ones stay. Real-time safe.
+    /// unstable and that is not allowed; the old ones stay. The loop of a one-sided object is simulated before it is accepted;
+    /// a gain that is chosen here is lowered until it settles. Real-time safe.
     bool set(const ControllerSettings& settings) noexcept;
 
     /// Speed for the motor, m/s, after `periods` periods. `sensed` is the fault of the sensors; `slips`: the load moves
@@ -45,6 +47,7 @@ public:
 
 private:
     double limit_for(const ControllerSettings& settings) const noexcept;
+    bool settles_at(double gain, const ControllerSettings& settings) const noexcept;
     bool is_stuck(double force, double position, bool slips) noexcept;
     double follow(double force, double position, int periods) noexcept;
 

@@ -28,6 +28,8 @@ const char* describe(Fault fault) noexcept {
         case Fault::stuck_encoder: return "the motor was told to run and the encoder stood still";
         case Fault::beyond_drive_limit: return "a motor was told to run faster than it may";
         case Fault::late_source: return "the window that moves the hand was too slow";
+        case Fault::late_value: return "a value that the force depends on came too late";
+        case Fault::old_world: return "what the force is computed against was not updated for 1 s";
     }
     return "unknown fault";
 }

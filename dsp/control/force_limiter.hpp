@@ -31,15 +31,19 @@ enum class Fault : std::uint8_t {
     sound_lost,
     stuck_encoder,
     beyond_drive_limit,
-    late_source
+    late_source,
+    late_value,
+    old_world
 };
 
 /// The machine was slow; nothing is wrong with the patch or the device.
-constexpr bool is_lateness(Fault fault) noexcept { return fault == Fault::late_commit || fault == Fault::late_source; }
+constexpr bool is_lateness(Fault fault) noexcept {
+    return fault == Fault::late_commit || (fault >= Fault::late_source && fault <= Fault::old_world);
+}
 
 /// The fault for a number on a wire; other numbers are invalid input.
 inline Fault fault_of_number(double number) noexcept {
-    for (int n = 0; n <= static_cast<int>(Fault::late_source); ++n)
+    for (int n = 0; n <= static_cast<int>(Fault::old_world); ++n)
         if (number == n) return static_cast<Fault>(n);
     return Fault::invalid_input;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clocks and waits of every thread of a live run. No other code of devices, nodes and engine calls a clock or a sleep;
-// a timed wait on a std::condition_variable uses the same steady clock. All of them end in the C library's functions, which
-// the test programs define themselves (tests/support/virtual_clock.hpp): the product has no second clock and no switch.
+// The clocks and waits of every thread of a live run. No other code of devices, nodes and engine calls a clock or a
+// sleep; a timed wait on a std::condition_variable uses the same steady clock. All of them end in the C library's
+// functions, which the test programs define themselves (tests/support/virtual_clock.hpp): the product has no second
+// clock and no switch.
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus::coupling {
@@ -41,22 +42,32 @@ struct Wave {
     Vec3 slope{0.0};
 };
 
-Wave wave_at(const Vec3& point, const ProxyShape& shape) noexcept {
+/// Waves along the two axes of the body that lie best in the surface, each with half of the height (triplanar mapping:
+/// the axis nearest to the normal is left out). Between two such axes the maps are blended; `sharpness` makes that zone
+/// narrow, as the blend of two maps is flatter than either.
+Wave wave_at(const Vec3& point, const Vec3& normal, const ProxyShape& shape) noexcept {
     if (!(shape.texture_height > 0.0)) return {};
-    const double k = 2.0 * std::numbers::pi / shape.texture_length, height = shape.texture_height / 3.0;
-    const Vec3 a = point * k;
-    return {shape.texture_height + height * (std::sin(a.x) + std::sin(a.y) + std::sin(a.z)),
-            height * k * Vec3(std::cos(a.x), std::cos(a.y), std::cos(a.z))};
+    constexpr double sharpness = 16.0;
+    Vec3 left_out(0.0);
+    const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+    for (int axis = 0; axis < 3; ++axis) left_out[axis] = std::pow(std::abs(normal[axis]) / largest, sharpness);
+    left_out /= left_out.x + left_out.y + left_out.z;
+    const double k = 2.0 * std::numbers::pi / shape.texture_length;
+    const Vec3 a = point * k, height = 0.5 * shape.texture_height * (Vec3(1.0) - left_out);
+    return {glm::dot(height, Vec3(std::sin(a.x), std::sin(a.y), std::sin(a.z))),
+            k * height * Vec3(std::cos(a.x), std::cos(a.y), std::cos(a.z))};
 }
 
 }  // namespace
 
-ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape) const noexcept {
+ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape, Budget& budget) const noexcept {
     const Vec3 local = pose.inverse().apply(at);
     Reading reading;
     double steepness = 1.0;
     if (triangles) {
-        const geometry::TriangleTree::Near near = triangles->nearest(local);
+        const geometry::TriangleTree::Near near =
+            triangles->nearest(local, std::numeric_limits<double>::infinity(), budget);
+        if (budget.is_spent()) return {};
         reading.value = near.distance;
         if (near.distance > 0.0 && std::isfinite(near.distance))
             reading.gradient = (local - near.point) / near.distance;
@@ -66,13 +77,13 @@ ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape)
     } else return {false, {}, 1e3};
     const double above = reading.value - shape.radius;
     Level level;
-    level.room = (above - 2.0 * shape.texture_height) / steepness;
+    level.room = (above - shape.texture_height) / steepness;
     const double steep = glm::length(reading.gradient);
     // In the middle of a wall the gradient shows no way out.
     if (!(steep > 0.05)) return level;
     level.seen = true;
     const Vec3 normal = reading.gradient / steep;
-    const Wave wave = wave_at(local - normal * reading.value, shape);
+    const Wave wave = wave_at(local - normal * reading.value, normal, shape);
     const Vec3 slope = wave.slope - normal * glm::dot(wave.slope, normal);
     level.plane.normal = pose.rotate(glm::normalize(normal - slope));
     level.plane.gap = (above - wave.lift) / steep / std::sqrt(1.0 + glm::dot(slope, slope)) - proxy_hover;
@@ -87,10 +98,10 @@ double ProxySurface::stride(const ProxyShape& shape) const noexcept {
     return most;
 }
 
-void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept {
+void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into, Budget& budget) const noexcept {
     const Vec3 local = pose.inverse().apply(at);
     std::array<geometry::TriangleTree::Near, 32> near;
-    const std::size_t count = triangles->all_near(local, shape.radius + proxy_hover + proxy_touch, near);
+    const std::size_t count = triangles->all_near(local, shape.radius + proxy_hover + proxy_touch, near, budget);
     for (std::size_t i = 0; i < count; ++i) {
         if (!(near[i].distance > 0.0)) continue;
         const Vec3 out = (local - near[i].point) / near[i].distance;
@@ -101,14 +112,15 @@ void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes&
 }
 
 double ProxySurface::free_distance(const Vec3& at, const Vec3& direction, double length,
-                                   const ProxyShape& shape) const noexcept {
+                                   const ProxyShape& shape, Budget& budget) const noexcept {
     const Pose back = pose.inverse();
     const Vec3 from = back.apply(at), along = back.rotate(direction) * length;
-    const double share = triangles->sweep(from, along, shape.radius);
+    const double share = triangles->sweep(from, along, shape.radius, budget);
     if (!(share < 1.0)) return length;
     // Slightly shortened, so that the next move does not start in contact; never below half.
     const Vec3 there = from + share * along;
-    const geometry::TriangleTree::Near near = triangles->nearest(there, 2.0 * shape.radius);
+    const geometry::TriangleTree::Near near = triangles->nearest(there, 1.01 * shape.radius + 2.0 * proxy_hover, budget);
+    if (budget.is_spent()) return 0.0;
     const double approach = -glm::dot(along, there - near.point) / (length * std::max(near.distance, 1e-12));
     return share * length - std::min(0.5 * share * length, proxy_hover / std::max(approach, 1e-3));
 }

@@ -15,13 +15,15 @@ namespace tactus::coupling {
 
 struct ProxyShape {
     double radius = 0.0;  ///< m, of the ball
-    double texture_height = 0.0;  ///< m, amplitude of the wave texture, from mean to crest
+    double texture_height = 0.0;  ///< m, amplitude of the wave texture, from its mean, which is the surface, to the crest
     double texture_length = 2e-3;  ///< m, wavelength along each axis of the body
     double step = 0.25e-3;  ///< m: maximum length of a step along a field; never more than half a voxel
 };
 
 /// One surface: its triangles if there are any, otherwise its distance field.
 struct ProxySurface {
+    using Budget = geometry::TriangleTree::Budget;
+
     const contact::Voxmap* map = nullptr;
     const geometry::TriangleTree* triangles = nullptr;
     Pose pose;
@@ -35,14 +37,16 @@ struct ProxySurface {
 
     /// True for triangles without texture, which do not need `level`.
     bool is_exact(const ProxyShape& shape) const noexcept { return triangles && !(shape.texture_height > 0.0); }
-    Level level(const Vec3& at, const ProxyShape& shape) const noexcept;
+    /// These three spend triangles of a budget. When it is spent, nothing is found and no move is free.
+    Level level(const Vec3& at, const ProxyShape& shape, Budget& budget) const noexcept;
     /// Maximum move beyond what is free, m.
     double stride(const ProxyShape& shape) const noexcept;
     /// Planes of all triangles that a ball at `at` touches.
-    void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept;
+    void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into, Budget& budget) const noexcept;
     /// Distance that a ball can move along the unit vector `direction` before it touches a triangle, m; at most
     /// `length`.
-    double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape) const noexcept;
+    double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape,
+                         Budget& budget) const noexcept;
 };
 
 inline constexpr double proxy_hover = 1e-7;  ///< m: distance at which a proxy is held off a surface

@@ -13,42 +13,45 @@ namespace {
 constexpr double point_radius = 1e-6;  // m
 constexpr double settled = 1e-9;  // m: a shorter move counts as none
 constexpr int most_moves = 200;
+constexpr double regrip = 0.8;  // of the sliding cone: a proxy this far inside is at rest
 
 }  // namespace
 
 void SurfaceProxy::reset(const Vec3& at) noexcept {
     state_ = {};
+    friction_ = unset;
+    stride_ = far;
     state_.proxy = at;
     started_ = true;
     seen_count_ = 0;
 }
 
-SurfaceProxy::View SurfaceProxy::look(const Vec3& at, std::span<const ProxySurface> surfaces) const noexcept {
+SurfaceProxy::View SurfaceProxy::look(const Vec3& at, std::span<const ProxySurface> surfaces) noexcept {
     View view;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (surfaces[i].is_exact(shape_)) {
-            surfaces[i].touched(at, shape_, view.planes);
+            surfaces[i].touched(at, shape_, view.planes, budget_);
             continue;
         }
-        view.levels[i] = surfaces[i].level(at, shape_);
+        view.levels[i] = surfaces[i].level(at, shape_, budget_);
         if (view.levels[i].seen && view.levels[i].plane.gap < proxy_touch) view.planes.add(view.levels[i].plane);
     }
     for (const ProxyPlane& plane : view.planes.all()) view.deepest = std::max(view.deepest, -plane.gap);
     return view;
 }
 
-Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) const noexcept {
+Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) noexcept {
     for (int round = 0; round < 8; ++round) {
         bool moved = false;
         for (const ProxySurface& surface : surfaces) {
             if (surface.is_exact(shape_)) continue;
-            const ProxySurface::Level level = surface.level(at, shape_);
+            const ProxySurface::Level level = surface.level(at, shape_, budget_);
             if (!level.seen || level.plane.gap > -0.5 * proxy_hover) continue;
             const Vec3 out = level.plane.normal * -level.plane.gap;
             const double length = glm::length(out);
             double free = length;
             for (const ProxySurface& other : surfaces)
-                if (other.triangles) free = other.free_distance(at, out / length, free, shape_);
+                if (other.triangles) free = other.free_distance(at, out / length, free, shape_, budget_);
             at += out * (free / length);
             moved = true;
         }
@@ -58,20 +61,20 @@ Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) const
 }
 
 bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const View& to,
-                           std::span<const ProxySurface> surfaces) const noexcept {
+                           std::span<const ProxySurface> surfaces) noexcept {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (surfaces[i].triangles || !surfaces[i].map) continue;
         const ProxySurface::Level &here = from.levels[i], &there = to.levels[i];
         if (here.room > glm::length(b - a)) continue;
         if (here.seen && there.seen && glm::dot(here.plane.normal, there.plane.normal) > 0.0) continue;
         // Two opposite walls, or both sides of a thin one: in the middle the field decides.
-        const double middle = surfaces[i].level(0.5 * (a + b), shape_).room;
+        const double middle = surfaces[i].level(0.5 * (a + b), shape_, budget_).room;
         if (middle < std::min(here.room, there.room)) return false;
     }
     return true;
 }
 
-Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept {
+Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
     View here = look(from, surfaces);
     double share = 1.0;  // of the distance to try: reduced after a move that made no progress
     for (int move = 0; move < most_moves; ++move) {
@@ -81,14 +84,28 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
         const double length = glm::length(target - from);
         if (!(length > settled)) break;
         const Vec3 direction = (target - from) / length;
-        double free = length * share;
+        double free = std::min(length * share, stride_);
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             if (!surfaces[i].is_exact(shape_))
                 free = std::min(free, std::max(here.levels[i].room, share * surfaces[i].stride(shape_)));
-            if (surfaces[i].triangles) free = surfaces[i].free_distance(from, direction, free, shape_);
         }
+        // One move may spend a part of the budget: a shorter one tests fewer triangles.
+        const double tried = free;
+        ProxySurface::Budget part{std::min(budget_.triangles, max_triangles / 4)};
+        const std::int64_t given = part.triangles;
+        for (const ProxySurface& surface : surfaces)
+            if (surface.triangles) free = surface.free_distance(from, direction, free, shape_, part);
+        budget_.triangles -= given - part.triangles;
+        if (part.is_spent()) {
+            // The rest of a budget says nothing about the length.
+            if (given < max_triangles / 4) break;
+            stride_ = std::max(0.25 * tried, settled);
+            continue;
+        }
+        if (stride_ < far && 4 * (given - part.triangles) < given) stride_ *= 2.0;
         const Vec3 next = settle(from + direction * free, surfaces);
         const View there = look(next, surfaces);
+        if (budget_.is_spent()) break;
         const bool gets_out = here.deepest > proxy_touch && there.deepest < here.deepest;
         const bool gets_near = glm::length(next - wanted) < glm::length(from - wanted) - 1e-3 * settled;
         if (!(gets_out || (gets_near && there.deepest < proxy_touch)) || !is_open(from, here, next, there, surfaces)) {
@@ -118,6 +135,20 @@ void SurfaceProxy::follow(std::span<const ProxySurface> surfaces) noexcept {
     std::ranges::copy(surfaces, seen_.begin());
 }
 
+double SurfaceProxy::held_back(double behind, double depth) noexcept {
+    const double most = settings.static_friction, least = std::min(settings.dynamic_friction, most);
+    friction_ = friction_ >= 0.0 ? std::clamp(friction_, least, most) : most;
+    state_.sticks = behind <= friction_ * depth;
+    if (state_.sticks) {
+        if (behind <= regrip * least * depth) friction_ = most;
+        return behind;
+    }
+    // The coefficient falls by one for a slide of twice the depth: at that slope the force of friction falls as fast as
+    // the spring's rises, so that it stays a continuous function of the hand's position. Solved for the end of the slide.
+    friction_ = std::max(least, 2.0 * friction_ - behind / depth);
+    return friction_ * depth;
+}
+
 const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
     // Farther than any room: an input fault.
     if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
@@ -125,6 +156,7 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     surfaces = surfaces.first(std::min(surfaces.size(), most_surfaces));
     shape_ = settings.shape;
     shape_.radius = std::max(shape_.radius, point_radius);
+    budget_.triangles = max_triangles;
     follow(surfaces);
     const Vec3 before = state_.proxy;
     Vec3 smooth = lead(before, goal, surfaces);
@@ -135,14 +167,14 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     if (state_.in_contact && settings.static_friction > 0.0) {
         const Vec3 lag = before - smooth - state_.normal * glm::dot(before - smooth, state_.normal);
         const double behind = glm::length(lag);
-        const double dynamic = std::min(settings.dynamic_friction, settings.static_friction);
-        state_.sticks = behind <= settings.static_friction * depth;
-        const Vec3 back = state_.sticks ? lag : lag * (dynamic * depth / behind);
+        const double kept = held_back(behind, depth);
+        const Vec3 back = behind > 0.0 ? lag * (kept / behind) : lag;
         // Back along the plane, then project to the surface again.
         const Vec3 held = smooth + back;
         smooth = lead(lead(smooth, held + state_.normal * proxy_touch, surfaces), held - state_.normal * proxy_touch,
                       surfaces);
     }
+    if (!state_.in_contact) friction_ = unset;
     state_.proxy = smooth;
     Vec3 force = settings.stiffness * (smooth - goal);
     const double size = glm::length(force);

@@ -5,8 +5,14 @@
 // The proxy moves from its last position towards the hand as far as surfaces permit, so it stays on the side it came
 // from and the spring force from hand to proxy never reverses. In contact it moves to the point nearest to the hand
 // within the half-spaces of all touched surfaces (god-object: Zilles and Salisbury 1995; ball and force shading:
-// Ruspini, Kolarov and Khatib 1997). No move passes through a surface, however far the hand has jumped. Friction is a
-// cone about that point; texture is a wave on the surface.
+// Ruspini, Kolarov and Khatib 1997). No move passes through a surface, however far the hand has jumped. Texture is a wave
+// on the surface.
+//
+// Friction is a cone about that point (Harwin and Melder 2002): the proxy stays where it is while it lies inside of the
+// cone, and otherwise follows to its rim. The cone has a state: it is that of static friction until the proxy slides,
+// narrows to that of sliding over a distance, and opens again once the proxy lies well inside. Without the state each
+// tick that slides is followed by ticks that stick, and the mean lies between the two coefficients. The narrowing over a
+// distance keeps the force continuous.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -14,6 +20,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace tactus::coupling {
@@ -37,6 +44,9 @@ struct ProxyState {
 class SurfaceProxy {
 public:
     static constexpr std::size_t most_surfaces = 8;
+    /// Triangles that one update tests at most. A proxy that needs more stays where it has proven space to be free, and
+    /// goes on from there in the next update.
+    static constexpr std::int64_t max_triangles = 6400;
 
     ProxySettings settings;
 
@@ -45,24 +55,33 @@ public:
     /// the first eight surfaces. A surface whose pose changes carries the proxy along and does not pass over it.
     const ProxyState& update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept;
     const ProxyState& state() const noexcept { return state_; }
+    /// Triangles that the last update tested.
+    std::int64_t tested() const noexcept { return max_triangles - budget_.triangles; }
 
 private:
+    static constexpr double far = 1e3, unset = -1.0;
+
     struct View {
         ProxyPlanes planes;
         std::array<ProxySurface::Level, most_surfaces> levels;
         double deepest = 0.0;  ///< m, greatest penetration of the proxy
     };
 
-    View look(const Vec3& at, std::span<const ProxySurface> surfaces) const noexcept;
+    View look(const Vec3& at, std::span<const ProxySurface> surfaces) noexcept;
     /// Projects out of fields that a move has entered.
-    Vec3 settle(Vec3 at, std::span<const ProxySurface> surfaces) const noexcept;
+    Vec3 settle(Vec3 at, std::span<const ProxySurface> surfaces) noexcept;
     /// False when the line between the two positions crosses a wall of a field.
     bool is_open(const Vec3& a, const View& from, const Vec3& b, const View& to,
-                 std::span<const ProxySurface> surfaces) const noexcept;
-    Vec3 lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept;
+                 std::span<const ProxySurface> surfaces) noexcept;
+    Vec3 lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept;
     void follow(std::span<const ProxySurface> surfaces) noexcept;
+    /// How much of a proxy's distance `behind` the frictionless position friction keeps, m, at `depth` m below it.
+    double held_back(double behind, double depth) noexcept;
 
     ProxyShape shape_;
+    ProxySurface::Budget budget_;  // of this update
+    double stride_ = far;  // m: longest move that is tried, on triangles
+    double friction_ = unset;  // coefficient now; unset: that of static friction
     ProxyState state_;
     bool started_ = false;
     std::array<ProxySurface, most_surfaces> seen_;  ///< of the last update

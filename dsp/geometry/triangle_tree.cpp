@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace tactus::geometry {
 
@@ -159,7 +160,7 @@ TriangleTree::Near TriangleTree::near_on(std::size_t triangle, const Vec3& p) co
     return near;
 }
 
-TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noexcept {
+TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within, Budget& budget) const noexcept {
     if (nodes_.empty()) return {};
     double least2 = within * within;
     std::size_t best = size();
@@ -170,6 +171,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
         if (!(distance2(p, node.low, node.high) < least2)) continue;
+        if (!budget.spend(node.count)) return {};
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
             const Vec3* c = &corners_[3 * std::size_t(t)];
             const Vec3 point = closest_on_triangle(p, c[0], c[1], c[2]);
@@ -186,7 +188,8 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
     return best < size() ? near_on(best, p) : Near{};
 }
 
-std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near> found) const noexcept {
+std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near> found,
+                                   Budget& budget) const noexcept {
     std::size_t count = 0, depth = 0;
     if (nodes_.empty()) return 0;
     std::uint32_t stack[most_levels];
@@ -195,6 +198,7 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
         if (!(distance2(p, node.low, node.high) < within * within)) continue;
+        if (!budget.spend(node.count)) return 0;
         for (std::uint32_t t = node.first; t < node.first + node.count && count < found.size(); ++t) {
             const Near near = near_on(t, p);
             if (near.distance < within) found[count++] = near;
@@ -206,8 +210,9 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
     return count;
 }
 
-double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept {
+double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double radius, Budget& budget) const noexcept {
     double first = 1.0;
+    const double length = glm::length(translation);
     if (nodes_.empty()) return first;
     std::uint32_t stack[most_levels];
     std::size_t depth = 0;
@@ -215,14 +220,22 @@ double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double rad
     while (depth > 0) {
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
+        // Most moves of a ball at rest on a surface are short: only what they reach counts.
+        const double reach = 1.000001 * (radius + first * length) + 1e-12;
+        if (!(distance2(from, node.low, node.high) < reach * reach)) continue;
         if (!meets(from, translation, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
+        if (!budget.spend(node.count)) return 0.0;
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
             const Vec3* c = &corners_[3 * std::size_t(t)];
             first = std::min(first, ball_meets(from, translation, radius, c[0], c[1], c[2]));
         }
         if (node.count > 0) continue;
-        stack[depth++] = node.first;
-        stack[depth++] = at + 1;
+        // The nearer child is visited first: what it stops shortens the search in the other.
+        std::uint32_t near = at + 1, far = node.first;
+        if (distance2(from, nodes_[far].low, nodes_[far].high) < distance2(from, nodes_[near].low, nodes_[near].high))
+            std::swap(near, far);
+        stack[depth++] = far;
+        stack[depth++] = near;
     }
     return first;
 }

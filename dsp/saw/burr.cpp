@@ -2,6 +2,7 @@
 #include "dsp/saw/burr.hpp"
 
 #include "dsp/saw/hand_limits.hpp"
+#include "dsp/saw/lag_norm.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace tactus::saw {
 
@@ -32,6 +34,12 @@ const std::array<Vec3, 26>& cube_directions() {
 }
 
 }  // namespace
+
+Burr::Burr(const BurrShape& shape, double stiffness)
+    : shape_(shape), stiffness_(stiffness),
+      shaft_(shape.shaft_radius > 0.0 ? shaft_body(shape.radius, shape.shaft_radius, shape.shaft_length)
+                                      : std::vector<BodyPoint>{},
+             stiffness) {}
 
 /// Directions in which the ball touches bone, and the free distance otherwise.
 struct Burr::Touch {
@@ -97,41 +105,72 @@ double Burr::follow(const volume::BoneSnapshot& bone, bool running) noexcept {
     return density;
 }
 
-BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, bool running, double rate, double dt,
+BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive,
                        const CuttingLaw& law) noexcept {
     BurrContact contact;
     fresh_ = false;
-    if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(dt > 0.0)) {
-        seated_ = false;
+    if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(drive.dt > 0.0)) {
+        hold_.drop();
+        stuck_ = false;
         return contact;
     }
-    const bool jumped = glm::length(pose.position - target_) > std::max(fastest_hand * dt, 0.001);
+    const bool was_waiting = hold_.state() == HoldState::waiting;
+    const bool jumped = !was_waiting && is_jump(last_, pose, shape_.radius + shape_.shaft_length, drive.dt);
+    if (jumped) {
+        at_ += pose.position - target_;
+        shaft_.carry(pose);
+    }
+    hold_.tick(drive.dt, drive.release || jumped, stuck_,
+               [&] { return bone.value(pose.position) >= shape_.radius && shaft_.is_free(bone, pose); });
+    last_ = pose;
     target_ = pose.position;
-    if (!seated_ || jumped || glm::length(target_ - at_) > most_lag) {
-        at_ = target_;
-        seated_ = fresh_ = bone.value(at_) >= shape_.radius;
+    contact.state = hold_.state();
+    if (hold_.state() == HoldState::engaged) {
+        if (was_waiting) {
+            at_ = target_;
+            fresh_ = true;
+            shaft_.seat(pose);
+        }
+        cut(drive, follow(bone, drive.running), law, contact);
+        shaft_.follow(bone, pose, drive.running);
+    } else if (!was_waiting) {
+        at_ = target_ + (at_ - target_) * hold_.kept();
+        shaft_.release(pose, hold_.kept());
+    } else {
+        stuck_ = false;
         return contact;
     }
-    const double density = follow(bone, running);
-    Vec3 lag = target_ - at_;
-    double distance = glm::length(lag);
-    if (!(distance > 1e-12)) return contact;
-    if (running && rate > 0.0 && density >= 1.0) {
-        const double scale = law.reference_density / density, stiff = stiffness_ * scale;
-        const double u = left_after_cut(law, distance, shape_.flutes * rate * dt,
-                                        [&](double stretch) { return std::pair{stiff * stretch, stiff}; });
-        contact.feed = (distance - u) / dt;
-        at_ += lag * ((distance - u) / distance);
-        lag = target_ - at_;
-        distance = u;
-        contact.along = law.along(stiffness_ * u * scale) / scale;
-    }
-    contact.wrench.force = lag * -stiffness_;
+    const Vec3 lag = target_ - at_;
+    const double distance = glm::length(lag);
+    contact.wrench.force = lag * (-stiffness_ * saturation_share(distance * distance));
     contact.wrench.torque = glm::cross(at_ - pose.position, contact.wrench.force);
-    contact.load = stiffness_ * distance;
-    contact.lag = distance;
-    contact.touches = true;
+    contact.load = glm::length(contact.wrench.force);
+    const ToolBody::Sum shaft = shaft_.push(pose.position);
+    contact.wrench = contact.wrench + shaft.wrench;
+    contact.magnitudes = contact.load + shaft.magnitudes;
+    contact.lag = std::max(distance, shaft.lag);
+    contact.touches = contact.magnitudes > 0.0;
+    stuck_ = contact.lag >= max_lag || glm::dot(contact.wrench.force, pose.rotate({0, 1, 0})) > 0.0 ||
+             (contact.touches && drive.rendered < 1.0);
     return contact;
+}
+
+/// The ball advances in bone of that density, which stops it; 0: none does.
+void Burr::cut(const Drive& drive, double density, const CuttingLaw& law, BurrContact& into) noexcept {
+    const Vec3 lag = target_ - at_;
+    const double distance = glm::length(lag);
+    // What rounding leaves of a lag is no contact.
+    if (!(density > 0.0) && distance < 1e-8) at_ = target_;
+    if (!drive.running || !(drive.rate > 0.0) || !(drive.rendered > 0.0)) return;
+    if (!(density >= 1.0) || !(distance > 1e-12)) return;
+    const double scale = law.reference_density / density;
+    const double left = left_after_cut(law, distance, shape_.flutes * drive.rate * drive.dt, [&](double stretch) {
+        const double stiff = drive.rendered * stiffness_ * scale * saturation_share(stretch * stretch);
+        return std::pair{stiff * stretch, stiff};
+    });
+    into.feed = (distance - left) / drive.dt;
+    at_ += lag * ((distance - left) / distance);
+    into.along = law.along(stiffness_ * left * saturation_share(left * left) * scale) / scale;
 }
 
 void Burr::fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept {
@@ -140,7 +179,7 @@ void Burr::fill(carve::CutFront& front, const Pose& pose, bool running) const no
     front.pitch = shape_.radius;
     front.count = 2;
     front.running = running ? 1 : 0;
-    front.seated = seated_ ? 3u : 0u;
+    front.seated = hold_.state() == HoldState::engaged ? 3u : 0u;
     front.fresh = fresh_ ? 3u : 0u;
     front.place(0, at_);
     front.place(1, at_);

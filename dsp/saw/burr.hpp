@@ -4,6 +4,9 @@
 
 #include "dsp/carve/cut_front.hpp"
 #include "dsp/saw/cutting_law.hpp"
+#include "dsp/saw/tool_body.hpp"
+#include "dsp/saw/tool_hold.hpp"
+#include "dsp/saw/tooth_row.hpp"
 #include "dsp/volume/bricks.hpp"
 
 namespace tactus::saw {
@@ -11,6 +14,8 @@ namespace tactus::saw {
 struct BurrShape {
     double radius = 0.002;  ///< m
     double flutes = 8.0;  ///< cutting edges
+    double shaft_radius = 0.001175;  ///< m: a shank of 2.35 mm (ISO 1797-1); 0: none
+    double shaft_length = 0.025;  ///< m, from the ball
 };
 
 /// Tool frame: origin in the ball's centre, y the direction of the shaft, towards the bone.
@@ -20,19 +25,22 @@ struct BurrContact {
     double along = 0.0;  ///< N: force of the flutes around the shaft
     double lag = 0.0;  ///< m
     double feed = 0.0;  ///< m/s
+    double magnitudes = 0.0;  ///< N, sum of the sizes of the forces of the ball and of all points of the shaft
     bool touches = false;
+    HoldState state = HoldState::waiting;
 };
 
 /// A ball that rests on bone it has not cut: a god object (Zilles and Salisbury 1995), held by a spring. Running, it
 /// advances along its own force by an implicit step of the cutting law, one flute bearing at a time; otherwise bone
-/// stops it, with Coulomb friction. It never moves away from its target, so that the force is passive.
+/// stops it, with Coulomb friction. It never moves away from its target, so that the force is passive. The shaft does
+/// not cut.
 class Burr {
 public:
     Burr() = default;
-    Burr(const BurrShape& shape, double stiffness) : shape_(shape), stiffness_(stiffness) {}
+    Burr(const BurrShape& shape, double stiffness);
 
-    /// `rate`: turns per second. A pose that is none gives no force and lets go of the bone. Allocates nothing.
-    BurrContact step(const volume::BoneSnapshot& bone, const Pose& pose, bool running, double rate, double dt,
+    /// `drive.rate`: turns per second. A pose that is none gives no force and drops the bone. Allocates nothing.
+    BurrContact step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive,
                      const CuttingLaw& law) noexcept;
 
     void fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept;
@@ -43,11 +51,16 @@ private:
 
     Touch touch(const volume::BoneSnapshot& bone, const Vec3& lag, double ahead) const noexcept;
     double follow(const volume::BoneSnapshot& bone, bool running) noexcept;
+    void cut(const Drive& drive, double density, const CuttingLaw& law, BurrContact& into) noexcept;
 
     BurrShape shape_;
     double stiffness_ = 0.0;
     Vec3 at_{0.0, 0.0, 0.0}, target_{0.0, 0.0, 0.0};
-    bool seated_ = false, fresh_ = false;
+    ToolBody shaft_;
+    ToolHold hold_;
+    Pose last_;
+    bool fresh_ = false;
+    bool stuck_ = false;  // in the last tick
 };
 
 }  // namespace tactus::saw

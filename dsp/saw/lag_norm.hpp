@@ -2,6 +2,8 @@
 // Energy of a family of springs whose stiffness stays bounded however many of them are stretched.
 #pragma once
 
+#include "dsp/saw/hand_limits.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -20,6 +22,18 @@ inline double squared_norm8(std::span<const double> squares) noexcept {
         sum += r2 * r2;
     }
     return most * std::sqrt(std::sqrt(sum));
+}
+
+/// A spring whose force stops growing at the length L = max_lag has the energy ½·l² up to there and L·l − ½·L² beyond.
+/// Twice that is the square that counts in the norm; `square`: l², m².
+inline double saturated_square(double square) noexcept {
+    constexpr double most = max_lag * max_lag;
+    return square <= most ? square : 2.0 * max_lag * std::sqrt(square) - most;
+}
+
+/// Force of such a spring over that of one that does not saturate.
+inline double saturation_share(double square) noexcept {
+    return square <= max_lag * max_lag ? 1.0 : max_lag / std::sqrt(square);
 }
 
 /// Stiffness of one spring: k·(u_i²/‖u‖₈²)³.

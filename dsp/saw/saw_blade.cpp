@@ -11,11 +11,9 @@
 namespace tactus::saw {
 
 SawBlade::SawBlade(const SawShape& shape, double stiffness)
-    : teeth_(shape, stiffness), faces_(shape, stiffness), squares_(BladeFaces::count) {
-    // Largest curvature of ½‖u‖₈²: as in contact::blade_contact, whose 44 teeth have 4 and 88 points of faces 22.
-    const double teeth = static_cast<double>(teeth_.teeth().size());
-    tooth_spring_ = stiffness / (4.0 * std::sqrt(std::sqrt(teeth / 44.0)));
-    face_spring_ = stiffness / 22.0;
+    : shape_(shape), teeth_(shape, stiffness), body_(blade_body(shape, stiffness), stiffness) {
+    // Largest curvature of ½‖u‖₈²: as in contact::blade_contact, whose 44 teeth have 4.
+    tooth_spring_ = stiffness / (4.0 * std::sqrt(std::sqrt(static_cast<double>(teeth_.teeth().size()) / 44.0)));
 }
 
 SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive,
@@ -23,17 +21,47 @@ SawContact SawBlade::step(const volume::BoneSnapshot& bone, const Pose& pose, co
     SawContact contact;
     if (!is_valid(pose) || glm::length(pose.position) > 1e3 || !(drive.dt > 0.0)) {
         teeth_.forget();
-        faces_.forget();
+        hold_.drop();
+        stuck_ = false;
         return contact;
     }
-    teeth_.follow(bone, pose, drive);
-    contact.feed = teeth_.cut(law, drive, tooth_spring_) / drive.dt;
-    teeth_.settle();
-    faces_.follow(bone, pose, drive.running, drive.dt);
+    const bool jumped = hold_.state() != HoldState::waiting &&
+                        is_jump(last_, pose, 0.5 * shape_.length + shape_.height, drive.dt);
+    if (jumped) {
+        teeth_.carry(pose);
+        body_.carry(pose);
+    }
+    const bool was_waiting = hold_.state() == HoldState::waiting;
+    hold_.tick(drive.dt, drive.release || jumped, stuck_,
+               [&] { return teeth_.is_free(bone, pose) && body_.is_free(bone, pose); });
+    last_ = pose;
+    contact.state = hold_.state();
+    if (hold_.state() == HoldState::engaged) {
+        if (was_waiting) {
+            teeth_.seat(pose);
+            body_.seat(pose);
+        }
+        teeth_.follow(bone, pose, drive);
+        contact.feed = teeth_.cut(law, drive, tooth_spring_) / drive.dt;
+        teeth_.settle();
+        body_.follow(bone, pose, drive.running);
+    } else if (!was_waiting) {
+        teeth_.release(pose, hold_.kept());
+        body_.release(pose, hold_.kept());
+    } else {
+        stuck_ = false;
+        return contact;
+    }
     const Mat3 axes(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
     push_teeth(axes, pose.position, law, drive.running, contact);
-    push_faces(axes, pose.position, contact);
+    const ToolBody::Sum body = body_.push(pose.position);
+    contact.wrench = contact.wrench + body.wrench;
+    contact.magnitudes += body.magnitudes;
+    contact.lag = std::max(contact.lag, body.lag);
+    contact.count += body.count;
     contact.side = std::abs(glm::dot(contact.wrench.force, axes[2]));
+    stuck_ = contact.lag >= max_lag || glm::dot(contact.wrench.force, axes[1]) > 0.0 ||
+             (contact.count > 0 && drive.rendered < 1.0);
     return contact;
 }
 
@@ -45,12 +73,13 @@ void SawBlade::push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw&
     for (const Tooth& tooth : teeth_.teeth()) {
         const double square = tooth.square();
         if (!(square > 0.0)) continue;
-        const double k = spring8(tooth_spring_, square, norm);
+        const double k = spring8(tooth_spring_, square, norm) * saturation_share(tooth.raw_square());
         const Vec3 push(tooth.lag.x * k, tooth.lag.y * k, tooth.lag.z * (k * tooth.bending));
         const Vec3 force = axes * -push;
         into.wrench.force += force;
         into.wrench.torque += glm::cross(tooth.at - about, force);
-        into.lag = std::max(into.lag, std::sqrt(square));
+        into.magnitudes += glm::length(force);
+        into.lag = std::max(into.lag, std::sqrt(tooth.raw_square()));
         const double thrust = std::max(push.y, 0.0);
         into.thrust += thrust;
         ++into.count;
@@ -58,28 +87,6 @@ void SawBlade::push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw&
         into.teeth += bearing;
         const double share = tooth.density[1] / law.reference_density;
         if (running) into.along += law.along(thrust / (bearing * share)) * bearing * share;
-    }
-}
-
-void SawBlade::push_faces(const Mat3& axes, const Vec3& about, SawContact& into) noexcept {
-    const auto points = faces_.points();
-    bool any = false;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        squares_[n] = points[n].seated ? faces_.square(points[n]) : 0.0;
-        any |= squares_[n] > 0.0;
-    }
-    if (!any) return;
-    const double norm = squared_norm8(squares_);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        if (!(squares_[n] > 0.0)) continue;
-        const FacePoint& p = points[n];
-        const double k = spring8(face_spring_, squares_[n], norm);
-        const Vec3 lag = faces_.lag(p);
-        const Vec3 force = axes * -Vec3(lag.x * k, lag.y * k, lag.z * (k * p.bending));
-        into.wrench.force += force;
-        into.wrench.torque += glm::cross(p.at - about, force);
-        into.lag = std::max(into.lag, std::sqrt(squares_[n]));
-        ++into.count;
     }
 }
 

@@ -2,10 +2,9 @@
 // A saw blade in a bone: the force that it feels and the front that it cuts.
 #pragma once
 
-#include "dsp/saw/blade_faces.hpp"
+#include "dsp/saw/tool_body.hpp"
+#include "dsp/saw/tool_hold.hpp"
 #include "dsp/saw/tooth_row.hpp"
-
-#include <vector>
 
 namespace tactus::saw {
 
@@ -17,33 +16,36 @@ struct SawContact {
     double lag = 0.0;  ///< m: greatest distance of a point of the blade from where bone holds it
     double feed = 0.0;  ///< m/s, advance of the teeth that cut
     double teeth = 0.0;  ///< teeth that bear on bone
+    double magnitudes = 0.0;  ///< N, sum of the sizes of the forces of all points
     int count = 0;  ///< points held by bone
+    HoldState state = HoldState::waiting;
 };
 
-/// Both families of springs, teeth and faces, have the energy ½·(K/c)·‖lag‖₈² (see contact/blade.hpp): the hand feels at
+/// Both families of springs, those of the teeth and of the blade's body, have the energy ½·(K/c)·‖lag‖₈² (see contact/blade.hpp): the hand feels at
 /// most about K however many points touch.
 class SawBlade {
 public:
     SawBlade() = default;
     SawBlade(const SawShape& shape, double stiffness);
 
-    /// One tick: the blade is held at `pose`. A pose that is none gives no force and lets go of the bone. Allocates
-    /// nothing.
+    /// One tick: the blade is held at `pose`. A pose that is none gives no force and drops the bone. Allocates nothing.
     SawContact step(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive,
                     const CuttingLaw& law) noexcept;
 
     const ToothRow& teeth() const noexcept { return teeth_; }
-    const BladeFaces& faces() const noexcept { return faces_; }
+    const ToolBody& body() const noexcept { return body_; }
 
 private:
     void push_teeth(const Mat3& axes, const Vec3& about, const CuttingLaw& law, bool running,
                     SawContact& into) noexcept;
-    void push_faces(const Mat3& axes, const Vec3& about, SawContact& into) noexcept;
 
+    SawShape shape_;
     ToothRow teeth_;
-    BladeFaces faces_;
-    double tooth_spring_ = 0.0, face_spring_ = 0.0;
-    std::vector<double> squares_;
+    ToolBody body_;
+    ToolHold hold_;
+    double tooth_spring_ = 0.0;
+    Pose last_;
+    bool stuck_ = false;  // in the last tick
 };
 
 }  // namespace tactus::saw

@@ -16,6 +16,7 @@ namespace tactus::saw {
 namespace {
 
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
+constexpr double passing = 0.02;  // s, time constant of the lag of a tooth in bone that it has not cut
 constexpr double settling = 0.02;  // s in which a tooth that came to bear takes its share of the thrust
 constexpr double kept_every = 0.006;  // s; seven rows outlast two ticks of carving at 60 Hz
 constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
@@ -57,36 +58,90 @@ void ToothRow::forget() noexcept {
     }
 }
 
-void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept {
+Vec3 ToothRow::place(const Pose& pose, std::size_t n) const noexcept {
+    const double x = first_ + pitch_ * static_cast<double>(n);
+    return pose.apply({x, -shape_.behind(x) - radius_, 0.0});
+}
+
+void ToothRow::set_pose(const Pose& pose) noexcept {
     axes_ = Mat3(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
     origin_ = pose.position;
+}
+
+bool ToothRow::is_free(const volume::BoneSnapshot& bone, const Pose& pose) const noexcept {
+    for (std::size_t n = 0; n < teeth_.size(); ++n)
+        if (bone.value(place(pose, n)) < radius_) return false;
+    return true;
+}
+
+void ToothRow::seat(const Pose& pose) noexcept {
+    forget();
+    set_pose(pose);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        teeth_[n].at = teeth_[n].target = place(pose, n);
+        teeth_[n].seated = teeth_[n].fresh = true;
+    }
+    for (PastRow& row : past_) row.cut = false;
+}
+
+void ToothRow::carry(const Pose& pose) noexcept {
+    set_pose(pose);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        tooth.target = place(pose, n);
+        tooth.at = goal(tooth) - axes_ * tooth.lag;
+    }
+}
+
+void ToothRow::release(const Pose& pose, double kept) noexcept {
+    set_pose(pose);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        tooth.target = place(pose, n);
+        tooth.lag = (goal(tooth) - tooth.at) * axes_ * kept;
+        tooth.at = goal(tooth) - axes_ * tooth.lag;
+        tooth.seated = tooth.fresh = false;
+        tooth.density = {};
+    }
+}
+
+void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept {
+    set_pose(pose);
     const Vec3& spacing = bone.layout().spacing;
     const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6});
     const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
-    const double jump = std::max(fastest_hand * drive.dt, 0.001);
     remember(drive);
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
-        const double x = first_ + pitch_ * static_cast<double>(n);
-        const Vec3 to = pose.position + axes_ * Vec3(x, -shape_.behind(x) - radius_, 0.0);
-        const bool jumped = glm::length(to - tooth.target) > jump;
-        tooth.target = to;
-        const bool held = tooth.seated && !jumped && tooth.square() > 0.0;
+        tooth.target = place(pose, n);
+        const bool held = tooth.raw_square() > 0.0;
         if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
         squares_[n] = held ? tooth.square() : 0.0;
         tooth.fresh = false;
         tooth.touched = tooth.density[1] > 0.0;
         tooth.density = {};
-        if (!tooth.seated || jumped) {
-            seat(bone, tooth);
-        } else {
-            pursue(walk, n);
+        if (tooth.seated) pursue(walk, n);
+        else pass(bone, tooth, drive.dt);
+        tooth.lag = (goal(tooth) - tooth.at) * axes_;
+        // What rounding leaves of a lag is no contact.
+        const bool blocked = tooth.density[0] + tooth.density[1] + tooth.density[2] > 0.0;
+        if (!blocked && tooth.raw_square() < 1e-16) {
+            tooth.at = goal(tooth);
+            tooth.lag = Vec3(0.0);
         }
-        tooth.lag = tooth.seated ? (goal(tooth) - tooth.at) * axes_ : Vec3(0.0);
     }
     held_ = squared_norm8(squares_);
     fades_ = std::min(drive.dt / settling, 1.0);
     hang(walk);
+}
+
+/// A tooth that the blade drew back into bone goes with it through the bone; what is left of its lag fades.
+void ToothRow::pass(const volume::BoneSnapshot& bone, Tooth& tooth, double dt) const noexcept {
+    const Vec3& y = axes_[1];
+    tooth.at += y * glm::dot(goal(tooth) - tooth.at, y);
+    const Vec3 left = (goal(tooth) - tooth.at) * std::exp(-dt / passing);
+    tooth.at = goal(tooth) - left;
+    tooth.fresh = tooth.seated = glm::dot(left, left) < 1e-16 && bone.value(tooth.at) >= radius_;
 }
 
 /// Teeth that touch nothing below hang from those that bear: as far above their targets as these, in between linearly.
@@ -128,12 +183,6 @@ void ToothRow::hang(const Walk& walk) noexcept {
     }
 }
 
-void ToothRow::seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept {
-    tooth.at = tooth.target;
-    tooth.lifted = 0.0;
-    tooth.seated = tooth.fresh = bone.value(tooth.target) >= radius_;
-}
-
 void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     Tooth& tooth = teeth_[n];
     const Vec3 to = goal(tooth);
@@ -145,7 +194,6 @@ void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
         tooth.at = to;
         return;
     }
-    if (distance > most_lag) return seat(walk.bone, tooth);
     plunge(walk, n);
     if (!tooth.seated) return;
     slide(walk, n, 0);
@@ -202,7 +250,7 @@ void ToothRow::plunge(const Walk& walk, std::size_t n) noexcept {
     double way = glm::dot(goal(tooth) - tooth.at, y);
     const double level = -walk.front.ahead + 0.15 * walk.voxel;
     if (way < 0.0) {
-        // Back out. Teeth do not hook in: what they would be drawn into, they let go.
+        // Back out. Teeth do not hook in: they pass what they would be drawn into.
         const Vec3 to = tooth.at + y * way;
         const double now = walk.front.floor(walk.bone, to, y, z);
         if (now < std::min(level - walk.front.ahead, walk.front.floor(walk.bone, tooth.at, y, z))) {
@@ -309,18 +357,19 @@ double ToothRow::squared_norm() noexcept {
 
 /// How far a tooth advances along y in a tick. `passes`: cuts over a place in it.
 double ToothRow::advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm,
-                         double passes) const noexcept {
+                         double passes, double rendered) const noexcept {
     const double rest = tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
-    const double scale = law.reference_density / (tooth.density[1] * bearing());
+    const double scale = rendered * law.reference_density / (tooth.density[1] * bearing());
     const double left = left_after_cut(law, tooth.lag.y, passes, [&](double y) {
-        const double square = y * y + rest, k = spring8(spring, square, norm) * scale;
+        const double square = y * y + rest;
+        const double k = spring8(spring, saturated_square(square), norm) * saturation_share(square) * scale;
         return std::pair{k * y, square > 0.0 ? k * (1.0 + 6.0 * y * y / square) : 0.0};
     });
     return tooth.lag.y - left;
 }
 
 double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept {
-    if (!drive.running || !(drive.rate > 0.0)) return 0.0;
+    if (!drive.running || !(drive.rate > 0.0) || !(drive.rendered > 0.0)) return 0.0;
     double norm = squared_norm();
     if (!(norm > 0.0)) return 0.0;
     const double passes = sharing_.cuts_per_cycle * drive.rate * drive.dt;
@@ -328,16 +377,18 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
     for (int round = 0; round < 2; ++round) {
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             const Tooth& tooth = teeth_[n];
-            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, passes) : 0.0;
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, passes, drive.rendered)
+                                                                 : 0.0;
             const double y = tooth.lag.y - cuts_[n];
-            squares_[n] = y * y + tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
+            squares_[n] =
+                saturated_square(y * y + tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z);
         }
         if (round == 0) norm = std::max(squared_norm8(squares_), 1e-24);
     }
     double sum = 0.0, cutting = 0.0;
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
-        const double k = spring8(spring, tooth.square(), norm);
+        const double k = spring8(spring, tooth.square(), norm) * saturation_share(tooth.raw_square()) * drive.rendered;
         Vec3 step(0.0, cuts_[n], 0.0);
         for (const int axis : {0, 2}) {
             const double density = tooth.density[static_cast<std::size_t>(axis)];
@@ -361,7 +412,7 @@ void ToothRow::settle() noexcept {
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             const Tooth& tooth = teeth_[n];
             cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? share * tooth.lifted : 0.0;
-            squares_[n] = tooth.square() + cuts_[n] * (2.0 * tooth.lag.y + cuts_[n]);
+            squares_[n] = saturated_square(tooth.raw_square() + cuts_[n] * (2.0 * tooth.lag.y + cuts_[n]));
         }
         if (squared_norm8(squares_) > held_) continue;
         for (std::size_t n = 0; n < teeth_.size(); ++n) {

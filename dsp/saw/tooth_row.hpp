@@ -5,6 +5,7 @@
 #include "dsp/carve/cut_front.hpp"
 #include "dsp/carve/round_front.hpp"
 #include "dsp/saw/cutting_law.hpp"
+#include "dsp/saw/lag_norm.hpp"
 #include "dsp/saw/saw_shape.hpp"
 #include "dsp/volume/bricks.hpp"
 
@@ -25,12 +26,14 @@ struct Tooth {
     Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, less `lifted`, m
     std::array<double, 3> density{};  ///< kg/m³ of the bone that stops it along x, y, z; 0: free
     double bending = 1.0;  ///< share of the contact stiffness across the blade that bending leaves
-    bool seated = false;  ///< false: it was placed inside bone; it feels nothing until it has been out
+    bool seated = false;  ///< false: the blade drew it back into bone; its lag fades, and it bears again once it is out
     bool fresh = false;
     bool touched = false;  ///< bone stopped its advance in the last tick
 
     /// Squared length of the lag; across the blade it counts by the share of stiffness.
-    double square() const noexcept { return lag.x * lag.x + lag.y * lag.y + bending * lag.z * lag.z; }
+    double raw_square() const noexcept { return lag.x * lag.x + lag.y * lag.y + bending * lag.z * lag.z; }
+    /// The same with saturation, for the norm.
+    double square() const noexcept { return saturated_square(raw_square()); }
 };
 
 /// What the teeth do in one tick.
@@ -38,12 +41,15 @@ struct Drive {
     bool running = false;
     double rate = 0.0;  ///< Hz, cycles of the stroke
     double dt = 0.001;  ///< s
+    /// Share of the forces that the device rendered in the last tick, 0 to 1. Teeth cut by what the hand could feel.
+    double rendered = 1.0;
+    bool release = false;  ///< the tool is to let go of the bone
 };
 
 /// The teeth rest on bone that they have not cut yet. Each node follows its target: in air at once, against bone not at
 /// all, except that a running blade advances it along its own force, by an implicit step of the cutting law. It never
 /// moves away from its target, so its spring only loses energy: whatever the bone does, the force is passive, and bone
-/// never pulls. A node that the blade draws back into bone lets go.
+/// never pulls. The lag of a node that the blade draws back into bone fades.
 ///
 /// The stiffness is that of the simulation, not of steel on bone: a real blade does not sink into bone by the lag of its
 /// teeth. So a tooth beside the bone hangs no deeper than the teeth that bear, and is not caught at the bone's side. When
@@ -72,8 +78,13 @@ public:
     /// Number of bearing teeth that a node stands for.
     double bearing() const noexcept { return pitch_ * sharing_.teeth_per_m; }
 
+    bool is_free(const volume::BoneSnapshot& bone, const Pose& pose) const noexcept;
+    void seat(const Pose& pose) noexcept;  ///< every tooth rests where the blade has it
+    void carry(const Pose& pose) noexcept;  ///< the blade jumped: the teeth go with it, with their lags
+    void release(const Pose& pose, double kept) noexcept;  ///< teeth approach their targets: `kept` of their lags stays
+    void forget() noexcept;  ///< bone holds no tooth
+
     void fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept;
-    void forget() noexcept;  ///< lets go of every tooth
 
 private:
     struct Walk;
@@ -91,15 +102,18 @@ private:
 
     /// Where its spring pulls a tooth.
     Vec3 goal(const Tooth& tooth) const noexcept { return tooth.target - axes_[1] * tooth.lifted; }
+    Vec3 place(const Pose& pose, std::size_t n) const noexcept;
+    void set_pose(const Pose& pose) noexcept;
     void remember(const Drive& drive) noexcept;
-    void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
+    void pass(const volume::BoneSnapshot& bone, Tooth& tooth, double dt) const noexcept;
     void pursue(const Walk& walk, std::size_t n) noexcept;
     double descend(const Walk& walk, std::size_t n, double way) noexcept;
     void plunge(const Walk& walk, std::size_t n) noexcept;
     void hang(const Walk& walk) noexcept;
     void slide(const Walk& walk, std::size_t n, int axis) noexcept;
     std::optional<double> cut_below(const Vec3& at, std::size_t n) const noexcept;
-    double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes) const noexcept;
+    double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes,
+                   double rendered) const noexcept;
 
     SawShape shape_;
     ToothSharing sharing_;

@@ -33,18 +33,17 @@ Vec3 median_position(std::span<const TrajectorySample> samples) {
 void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double reach) {
     if (samples.empty()) return;
     const Vec3 median = median_position(samples);
-    std::vector<double> depths;
+    double deep = glm::dot(samples.front().pose.position - median, feed);
     Quat rotation(0.0, 0.0, 0.0, 0.0), first = samples.front().pose.orientation;
     for (const TrajectorySample& sample : samples) {
         const Vec3 off = sample.pose.position - median;
         const double depth = glm::dot(off, feed);
+        deep = std::max(deep, depth);
         if (glm::length(off - feed * depth) > work_radius) continue;
-        depths.push_back(depth);
         const Quat& q = sample.pose.orientation;
         // q and −q are the same rotation: add them with equal sign.
         rotation = rotation + q * (glm::dot(q, first) < 0.0 ? -1.0 : 1.0);
     }
-    const double deep = depths.empty() ? 0.0 : quantile(std::move(depths), 0.95);
     const double length = glm::length(rotation);
     const Quat back = length > 1e-9 ? glm::conjugate(rotation / length) : Quat(1.0, 0.0, 0.0, 0.0);
     for (TrajectorySample& sample : samples) {

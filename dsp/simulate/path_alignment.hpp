@@ -8,10 +8,9 @@
 
 namespace tactus::simulate {
 
-/// Rigid motion of a whole recording. Where the hand worked, within 15 mm sideways of its median position, its deepest
-/// twentieth along `feed` (unit vector) then lies beyond `reach` (m) from the origin, the sideways median is 0 and the
-/// mean orientation is the identity. Shape, timing and relative motion do not change. An empty recording stays
-/// empty.
+/// Rigid motion of a whole recording. Its deepest place along `feed` (unit vector) then lies `reach` (m) from the origin,
+/// the sideways median is 0, and the mean orientation where the hand worked, within 15 mm sideways of its median position,
+/// is the identity. Shape, timing and relative motion do not change. An empty recording stays empty.
 void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double reach);
 
 }  // namespace tactus::simulate

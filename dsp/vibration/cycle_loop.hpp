@@ -19,12 +19,16 @@ public:
     static constexpr std::size_t fewest_cycles = 8;
 
     /// Rates in Hz. Among the longest loops, chooses the number of cycles after which the sound repeats itself best;
-    /// the end is cross-faded into the sound before the start. Content above 0.42 × output rate is removed, so that
-    /// playing 15 % faster does not alias. Throws Error when the record is shorter than 8 cycles.
-    CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate, double output_rate);
+    /// the end is cross-faded into the sound before the start. Content above 0.42 × output rate is removed. For playing
+    /// up to `max_ratio` times as fast, it keeps versions of which each holds half of the bandwidth of the one before
+    /// (Williams, Pyramidal parametrics, 1983), so that no component is played above half of the output rate. Throws
+    /// Error when the record is shorter than 8 cycles.
+    CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate, double output_rate,
+              double max_ratio = 1.0);
 
-    /// The sample at a phase in cycles, any number ≥ 0 (windowed sinc of 16 points).
-    double operator()(double cycles) const noexcept;
+    /// The sample at a phase in cycles, any number ≥ 0 (windowed sinc of 16 points). `ratio`: the rate at which the loop
+    /// is played over the recorded one; it chooses the version. The level of the sound does not depend on it.
+    double operator()(double cycles, double ratio = 1.0) const noexcept;
 
     double power() const { return power_; }  ///< mean square
     std::size_t cycles() const { return cycles_; }
@@ -37,9 +41,20 @@ public:
     friend double likeness(const CycleLoop& a, const CycleLoop& b);
 
 private:
-    std::vector<float> samples_;  // with guard samples on both sides
+    /// One bandwidth of the loop, with guard samples on both sides. Content lies below 0.21 × the rate of the samples,
+    /// where the images that the sinc leaves are fainter than −70 dB.
+    struct Version {
+        std::vector<float> samples;
+        std::size_t count = 0;  // samples of the loop
+        double power = 0.0;
+    };
+
+    void add_version(const std::vector<double>& loop);
+    double read(const Version& version, double part) const noexcept;
+
+    std::vector<Version> versions_;  // the first has all content, at twice the output rate
     std::array<std::complex<double>, orders> harmonics_{};
-    std::size_t cycles_ = 0, count_ = 0;
+    std::size_t cycles_ = 0;
     double offset_ = 0.0;  // cycles, in [0, 1)
     double samples_per_cycle_ = 0.0, power_ = 0.0;
 };

@@ -102,24 +102,37 @@ Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDes
     for (std::size_t k = 0; k < hz.size(); ++k)
         hz[k] = static_cast<double>(k + 1) * design.rate / static_cast<double>(size);
     const std::vector<Complex> h = interpolate(response, hz);
-    std::vector<Complex> spectrum(size / 2 + 1);
-    for (std::size_t k = 0; k < hz.size(); ++k) {
-        const Complex inverse = g * std::conj(h[k]) / (std::norm(h[k]) + regularisation(hz[k], design) * g * g);
-        const double gain = std::abs(inverse);
-        spectrum[k + 1] = gain > design.greatest_gain ? inverse * (design.greatest_gain / gain) : inverse;
-    }
-    if (!linear) spectrum = to_minimum_phase(spectrum);
-    spectrum.back() = spectrum.back().real();
-    const std::vector<double> impulse = signal::samples_of(spectrum);
-
     const std::size_t centre = linear ? count / 2 : 0;
     const double fade = linear ? 0.5 * static_cast<double>(count) : 0.25 * static_cast<double>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const double left = linear ? static_cast<double>(i) + 0.5 : fade, right = static_cast<double>(count - i) - 0.5;
-        const double edge = std::min({left, right, fade}) / fade;
-        const double window = 0.5 - 0.5 * std::cos(pi * edge);
-        out.taps.push_back(static_cast<float>(window * impulse[(size + i - centre) % size]));
+    const auto taps_with = [&](double greatest_gain) {
+        std::vector<Complex> spectrum(size / 2 + 1);
+        for (std::size_t k = 0; k < hz.size(); ++k) {
+            const Complex inverse = g * std::conj(h[k]) / (std::norm(h[k]) + regularisation(hz[k], design) * g * g);
+            const double gain = std::abs(inverse);
+            spectrum[k + 1] = gain > greatest_gain ? inverse * (greatest_gain / gain) : inverse;
+        }
+        if (!linear) spectrum = to_minimum_phase(spectrum);
+        spectrum.back() = spectrum.back().real();
+        const std::vector<double> impulse = signal::samples_of(spectrum);
+        std::vector<double> taps;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double left = linear ? static_cast<double>(i) + 0.5 : fade;
+            const double right = static_cast<double>(count - i) - 0.5, edge = std::min({left, right, fade}) / fade;
+            taps.push_back((0.5 - 0.5 * std::cos(pi * edge)) * impulse[(size + i - centre) % size]);
+        }
+        return taps;
+    };
+    // Cutting the impulse response ripples its gain: the limit is that of the taps.
+    double limit = design.greatest_gain;
+    std::vector<double> taps = taps_with(limit);
+    for (int round = 0; round < 4; ++round) {
+        double greatest = 0.0;
+        for (const Complex& gain : signal::spectrum_of(taps, size)) greatest = std::max(greatest, std::abs(gain));
+        if (greatest <= 1.005 * design.greatest_gain) break;
+        limit *= design.greatest_gain / greatest;
+        taps = taps_with(limit);
     }
+    for (const double tap : taps) out.taps.push_back(static_cast<float>(tap));
     const auto peak = std::ranges::max_element(out.taps, {}, [](float tap) { return std::abs(tap); });
     out.delay = static_cast<double>(linear ? static_cast<std::ptrdiff_t>(centre) : peak - out.taps.begin()) / out.rate;
     return out;

@@ -31,14 +31,30 @@ Decimated decimate(std::span<const float> samples, double rate, double wanted, d
     return out;
 }
 
-double line_power(std::span<const double> samples, double cycles_per_sample) {
-    const std::complex<double> step = std::polar(1.0, -2.0 * std::numbers::pi * cycles_per_sample);
-    std::complex<double> phasor = 1.0, sum = 0.0;
-    for (double x : samples) {
-        sum += x * phasor;
-        phasor *= step;
+/// Sum of the powers of the first `orders` multiples of a frequency, Hz. The lines advance side by side: one line's
+/// additions wait for each other, those of several lines do not.
+double line_powers(const Decimated& sound, double frequency, int orders) {
+    constexpr int side_by_side = 6;
+    double power = 0.0;
+    for (int first = 1; first <= orders; first += side_by_side) {
+        double step_re[side_by_side], step_im[side_by_side], sum_re[side_by_side]{}, sum_im[side_by_side]{};
+        double phasor_re[side_by_side], phasor_im[side_by_side]{};
+        for (int k = 0; k < side_by_side; ++k) {
+            const auto step = std::polar(1.0, -2.0 * std::numbers::pi * ((first + k) * frequency / sound.rate));
+            step_re[k] = step.real(), step_im[k] = step.imag(), phasor_re[k] = 1.0;
+        }
+        for (const double x : sound.samples)
+            for (int k = 0; k < side_by_side; ++k) {
+                sum_re[k] += x * phasor_re[k];
+                sum_im[k] += x * phasor_im[k];
+                const double re = phasor_re[k] * step_re[k] - phasor_im[k] * step_im[k];
+                phasor_im[k] = phasor_re[k] * step_im[k] + phasor_im[k] * step_re[k];
+                phasor_re[k] = re;
+            }
+        for (int k = 0; k < side_by_side && first + k <= orders; ++k)
+            power += sum_re[k] * sum_re[k] + sum_im[k] * sum_im[k];
     }
-    return std::norm(sum);
+    return power;
 }
 
 }  // namespace
@@ -50,9 +66,9 @@ double refine_rate(std::span<const float> samples, double sample_rate, double ra
     for (std::size_t i = 0; i < low.samples.size(); ++i)
         low.samples[i] *= 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) / count);
     const auto together = [&](double f) {
-        double sum = 0.0;
-        for (int k = 1; k <= orders && k * f < 0.3 * low.rate; ++k) sum += line_power(low.samples, k * f / low.rate);
-        return sum;
+        int within = 0;
+        while (within < orders && (within + 1) * f < 0.3 * low.rate) ++within;
+        return line_powers(low, f, within);
     };
     // The main lobe of the highest order is 4/(duration × orders) wide: search with a quarter of it, then refine.
     const double step = low.rate / count / orders;

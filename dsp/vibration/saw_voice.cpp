@@ -35,7 +35,7 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
     for (const SawRecording& recording : recordings) {
         const auto part = recording.part();
         const double exact = refine_rate(part, recording.sample_rate, recording.reciprocation_rate, 0.02);
-        loops_.emplace_back(part, recording.sample_rate, exact, rate);
+        loops_.emplace_back(part, recording.sample_rate, exact, rate, BladeMotion::greatest_rate / exact);
         loops_.back().align(loops_.front());
         layers_.push_back({loops_.size() - 1, exact, recording.load, recording.gain, recording.cutting});
         any[recording.cutting] = true;
@@ -123,6 +123,10 @@ void SawVoice::choose_layers(double load) noexcept {
     if (x > 0.0) aim(*above, x);
 }
 
+double SawVoice::sample(const Layer& layer) const noexcept {
+    return loops_[layer.loop](blade_.cycles(), blade_.rate() / layer.rate);
+}
+
 double SawVoice::mix() noexcept {
     for (const std::size_t i : active()) {
         Layer& layer = layers_[i];
@@ -134,14 +138,14 @@ double SawVoice::mix() noexcept {
     if (active_count_ == 1) {
         // A single layer plays at its own level, whatever its weight.
         const Layer& alone = layers_[active_.front()];
-        return alone.weight > 0.0 ? alone.amplitude * loops_[alone.loop](blade_.cycles()) : 0.0;
+        return alone.weight > 0.0 ? alone.amplitude * sample(alone) : 0.0;
     }
     double sum = 0.0, weights = 0.0, wanted = 0.0, got = 0.0;
     const std::size_t count = loops_.size();
     for (std::size_t i = 0; i < active_count_; ++i) {
         const Layer& a = layers_[active_[i]];
         if (a.weight <= 0.0) continue;
-        sum += a.weight * a.amplitude * loops_[a.loop](blade_.cycles());
+        sum += a.weight * a.amplitude * sample(a);
         weights += a.weight;
         const double share = a.weight * a.level;
         wanted += share * a.level;

@@ -19,8 +19,9 @@ namespace tactus::vibration {
 /// case if another is within that. Between two recorded loads the mix follows the load. Each switch is a cross-fade of
 /// `fade_time` whose gains account for the correlation of the recordings, so that the power changes smoothly. Below
 /// the lowest recorded rate the level falls with the square of the rate, as the acceleration of a stroke of
-/// constant length does. Without free-air recordings, cutting ones 12 dB lower replace them; without cutting ones,
-/// free-air ones replace them unchanged.
+/// constant length does; above the highest it stays, and no component is played above half of the sample rate. Without
+/// free-air recordings, cutting ones 12 dB lower replace them; without cutting ones, free-air ones replace them
+/// unchanged.
 ///
 /// `tick` is wait-free, does not allocate, and depends on its arguments and the state only.
 class SawVoice {
@@ -61,6 +62,7 @@ private:
     void choose_layers(double load) noexcept;
     const Group& choose_group() noexcept;
     void aim(Layer& layer, double share) noexcept;
+    double sample(const Layer& layer) const noexcept;
     double mix() noexcept;
     std::span<const std::size_t> active() const noexcept { return {active_.data(), active_count_}; }
 

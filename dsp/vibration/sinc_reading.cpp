@@ -56,14 +56,6 @@ SincKernel::SincKernel(int crossings) : half(crossings), table(static_cast<std::
     }
 }
 
-double SincKernel::operator()(double x) const noexcept {
-    const double position = std::abs(x) * steps;
-    const auto i = static_cast<std::size_t>(position);
-    if (i + 1 >= table.size()) return 0.0;
-    const double part = position - static_cast<double>(i);
-    return table[i] + part * (table[i + 1] - table[i]);
-}
-
 double read_between(const float* samples, double x) noexcept { return reading(samples, x); }
 
 }  // namespace tactus::vibration

@@ -2,6 +2,8 @@
 // Values between samples, by a windowed sinc.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace tactus::vibration {
@@ -14,7 +16,13 @@ struct SincKernel {
 
     /// Allocates.
     explicit SincKernel(int crossings);
-    double operator()(double x) const noexcept;
+    double operator()(double x) const noexcept {
+        const double position = std::abs(x) * steps;
+        const auto i = static_cast<std::int64_t>(position);
+        if (i + 1 >= static_cast<std::int64_t>(table.size())) return 0.0;
+        const double part = position - static_cast<double>(i), *const at = table.data() + i;
+        return at[0] + part * (at[1] - at[0]);
+    }
 };
 
 constexpr int reading_half = 8, reading_taps = 2 * reading_half;

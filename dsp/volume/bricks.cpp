@@ -2,6 +2,7 @@
 #include "dsp/volume/bricks.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/large_pages.hpp"
 #include "dsp/core/stop.hpp"
 #include "dsp/volume/interpolation.hpp"
 
@@ -110,7 +111,10 @@ BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEdit
     }
     const std::size_t extra =
         needed + static_cast<std::size_t>(options.max_versions) * static_cast<std::size_t>(options.max_dirty);
-    storage_ = std::make_unique<float[]>((2 * needed + extra) * brick_samples);
+    const std::size_t samples = (2 * needed + extra) * brick_samples;
+    storage_ = std::make_unique_for_overwrite<float[]>(samples);
+    prefer_large_pages(storage_.get(), samples * sizeof(float));
+    std::fill_n(storage_.get(), samples, 0.0f);  // also so that no tick touches a page first
     float* next = storage_.get();
     const auto take = [&next] { return std::exchange(next, next + brick_samples); };
     working_.layout = &layout_;

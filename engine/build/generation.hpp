@@ -11,6 +11,7 @@
 #include "engine/run/param_ramps.hpp"
 #include "graph/compile/plan.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -41,8 +42,13 @@ struct BuildContext {
     io::EngineHost& host;
     int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
     bool hash = true;  ///< keep hashes of all outputs
-    std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
-        constants;
+    /// A value that a wire brings from a file.
+    struct Constant {
+        std::shared_ptr<const void> owner;
+        std::vector<std::byte> handle;
+        std::uint64_t content = 0;  ///< hash of the file, from when it was loaded
+    };
+    std::map<std::pair<const ValueType*, std::string>, Constant> constants;
     /// Returns where the outputs of a group are recorded, as frames of that layout, or null. Empty: there is no take.
     std::function<RecordStream*(const io::FrameLayout&, const run::GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
@@ -65,6 +71,9 @@ struct Generation {
     /// Of each live parameter on which a force depends.
     std::unordered_map<const Param*, std::shared_ptr<run::ParamRamp>> ramps;
     std::unique_ptr<SwitchGate> gate;  ///< live, when it reaches a hand
+    std::unordered_map<const Input*, std::uint64_t> constants;  ///< content of what a file gives an input of plan.nodes
+    /// Of each driven device: a hash of all that its force depends on, but for parameters that ramp.
+    std::map<const DeviceSlot*, std::uint64_t> force_paths;
 
     /// Of a parameter, or null: it changes at once.
     run::ParamRamp* ramp_of(const Param* param) const;

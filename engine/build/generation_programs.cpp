@@ -168,12 +168,17 @@ void GenerationBuilder::make_programs() {
         if (made_->survived[i]) rewire(i);
         assign_devices(i);
     }
-    if (!before_ || !changes_force_path(*before_, *made_)) return;
-    for (std::size_t g = 0; g < made_->groups.size(); ++g) {
-        const auto old = groups_before_.find(made_->groups[g].get());
-        const bool drove = old != groups_before_.end() && !before_->programs[old->second]->driven.empty();
-        made_->programs[g]->changes_force = drove || !made_->programs[g]->driven.empty();
-    }
+    for (const auto& program : made_->programs)
+        for (const DeviceSlot* slot : program->driven) program->sources.push_back(sources_of(*made_, *slot));
+    for (const auto& program : made_->programs)
+        for (const DeviceSlot* slot : program->driven)
+            made_->force_paths[slot] = hash_of_force_path(*made_, *slot);
+    if (!before_) return;
+    const std::vector<const DeviceSlot*> changed = changed_forces(*before_, *made_);
+    for (std::size_t g = 0; g < made_->groups.size(); ++g)
+        made_->programs[g]->changes_force = std::ranges::any_of(changed, [&](const DeviceSlot* slot) {
+            return slot->group == made_->groups[g]->index;
+        });
 }
 
 void GenerationBuilder::make_ramps() {

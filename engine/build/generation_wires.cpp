@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where values lie, and what carries them from node to node.
 #include "engine/build/generation_builder.hpp"
+#include "engine/take/take_writer.hpp"
 #include "graph/compile/layout.hpp"
 
 #include <algorithm>
@@ -93,16 +94,18 @@ void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
     Input& input =
         *plan().nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
     const patch::PatchAsset* asset = assets_.at(wire.asset);
-    auto& [owner, handle] = context_.constants[{input.type, asset->path.string()}];
-    if (!owner) {
-        handle.resize(input.type->size);
+    BuildContext::Constant& constant = context_.constants[{input.type, asset->path.string()}];
+    if (!constant.owner) {
+        constant.handle.resize(input.type->size);
         try {
-            owner = input.type->load_asset(asset->path.string(), handle.data());
+            constant.owner = input.type->load_asset(asset->path.string(), constant.handle.data());
+            constant.content = take::hash_of_asset(asset->path);
         } catch (const Error& error) {
             throw Error(asset->where, error.what());
         }
     }
-    input.data = handle.data();
+    input.data = constant.handle.data();
+    made_->constants[&input] = constant.content;
 }
 
 void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Output& source, Input* target,

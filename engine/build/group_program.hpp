@@ -114,6 +114,16 @@ struct DeviceSlot {
     Flicks period = 0;  ///< of that group
     io::DeviceGuard guard;  ///< live runs
     Wrench committed;  ///< of the last tick
+    int overdue = -1;  ///< of the program's sources for it, the one whose values are too old now; −1: none
+};
+
+/// Another group, on whose values the force on a device depends.
+struct ValueSource {
+    const run::GroupRuntime* group = nullptr;
+    Flicks latency = 0;  ///< from an activation to when its values must be there
+    Flicks limit = 0;    ///< how late they may be before the force fades
+    control::Fault fault = control::Fault::late_value;
+    std::string name;  ///< for people: "node 'contact' of the group '500 Hz'"
 };
 
 /// A parameter of a node that goes on, and its value from now on.
@@ -162,6 +172,7 @@ struct GroupProgram {
     std::vector<Output*> event_outputs;  ///< emptied after each call
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
+    std::vector<std::vector<ValueSource>> sources;  ///< of each of them; those of force first
     std::vector<io::SoundHeard*> heard;
     std::vector<PublishedSnapshot> snapshots;
     // What to do when taking over:

@@ -20,6 +20,11 @@ Vec3 shorten(const Vec3& v, double length) noexcept {
 
 }  // namespace
 
+std::string DeviceFault::text() const {
+    const std::string text = control::describe(reason);
+    return source.front() == 0 ? text : text + " (" + source.data() + ")";
+}
+
 Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept {
     if (!is_finite(wanted)) return {};
     return {shorten(wanted.force, device.max_force), shorten(wanted.torque, device.max_torque)};
@@ -46,7 +51,8 @@ bool DeviceGuard::was_taken() noexcept {
     return taken;
 }
 
-void DeviceGuard::note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N) noexcept {
+void DeviceGuard::note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N,
+                       std::string_view source) noexcept {
     const auto told = state_.load(std::memory_order_relaxed);
     if (const auto now = static_cast<std::int64_t>(state); (told & 15) != now)
         state_.store(16 * tick + now, std::memory_order_release);
@@ -59,7 +65,8 @@ void DeviceGuard::note(control::Fault reason, control::ForceState state, std::in
     last_ = reason;
     if (reason == control::Fault::none) return;
     const std::int64_t count = count_.load(std::memory_order_relaxed);
-    newest_ = {reason, tick, force_N, -1, count};
+    newest_ = {reason, tick, force_N, -1, count, {}};
+    std::ranges::copy(source.substr(0, newest_.source.size() - 1), newest_.source.begin());
     keep();
     count_.store(count + 1, std::memory_order_release);
 }

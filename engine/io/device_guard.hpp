@@ -13,6 +13,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::io {
@@ -24,6 +26,10 @@ struct DeviceFault {
     double force_N = 0.0;   ///< that was on the hand the tick before
     std::int64_t over = -1;  ///< tick at which it was over, or another fault took its place; -1: it is not over
     std::int64_t number = 0;  ///< of the device's faults in this run, from 0 on
+    std::array<char, 96> source{};  ///< whose values were late, cut to this length; "": the fault has no other source
+
+    /// What happened, as a clause: "a value that the force depends on came too late (node 'ball' of the group '1 kHz')".
+    std::string text() const;
 };
 
 /// Whether the hand feels forces, and since when.
@@ -50,7 +56,9 @@ public:
     /// No tick comes any more, on purpose: the watchdog may fade what is left.
     void retire() noexcept { retired_.store(true, std::memory_order_release); }
     /// Keeps a fault to tell of, when the reason is new, and what the hand may expect.
-    void note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N) noexcept;
+    /// `source` as in DeviceFault.
+    void note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N,
+              std::string_view source = {}) noexcept;
 
     // Thread of the watchdog.
     /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the

@@ -22,6 +22,11 @@ public:
         if (value > max_.load(std::memory_order_relaxed)) max_.store(value, std::memory_order_relaxed);
     }
     std::uint64_t max_ns() const noexcept { return max_.load(std::memory_order_relaxed); }
+    /// Adds the counts of another one; nobody writes to either meanwhile.
+    void merge(const DurationHistogram& other) noexcept {
+        for (std::size_t i = 0; i < bin_count; ++i) bins_[i] += other.bins_[i].load(std::memory_order_relaxed);
+        if (other.max_ns() > max_ns()) max_.store(other.max_ns(), std::memory_order_relaxed);
+    }
 
     /// Upper edge of the bin that holds the quantile, in ns; 0 when nothing was counted.
     double quantile_ns(double q) const noexcept {
@@ -79,6 +84,9 @@ struct LateCounts {
     void add(LateCause cause, std::int64_t count) noexcept {
         of[static_cast<std::size_t>(cause)].fetch_add(count, std::memory_order_relaxed);
     }
+    void merge(const LateCounts& other) noexcept {
+        for (std::size_t i = 0; i < late_causes; ++i) of[i] += other.of[i].load(std::memory_order_relaxed);
+    }
     std::int64_t operator[](LateCause cause) const noexcept {
         return of[static_cast<std::size_t>(cause)].load(std::memory_order_relaxed);
     }
@@ -119,6 +127,18 @@ struct GroupTelemetry {
         // Whoever takes the largest meanwhile is told of it now or the next time, never not at all.
         if (newtons > most_force_N.load(std::memory_order_relaxed))
             most_force_N.store(newtons, std::memory_order_relaxed);
+    }
+    /// Adds the counts of another group; both have ended.
+    void merge(const GroupTelemetry& other) noexcept {
+        ticks += other.ticks;
+        misses += other.misses;
+        skipped += other.skipped;
+        dropped += other.dropped;
+        lost_events += other.lost_events;
+        skip_causes.merge(other.skip_causes);
+        withheld.merge(other.withheld);
+        execution.merge(other.execution);
+        lateness.merge(other.lateness);
     }
     /// The largest force since the call before; one thread.
     double take_most_force() const noexcept { return most_force_N.exchange(0.0, std::memory_order_relaxed); }

@@ -82,6 +82,19 @@ std::int64_t LiveDecisions::readable_until(const Link& link, const GroupRuntime&
 
 bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }
 
+int LiveDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                           std::int64_t tick) noexcept {
+    const auto is_overdue = [now = tick * period_](const build::ValueSource& source) {
+        const GroupRuntime& group = *source.group;
+        return !group.is_over() &&
+               now >= group.computed() * group.plan->period + source.latency + source.limit;
+    };
+    const auto found = std::ranges::find_if(sources, is_overdue);
+    const int now = found == sources.end() ? -1 : static_cast<int>(found - sources.begin());
+    if (now != slot.overdue) log_.note(take::TimingKind::overdue, tick, {.source = slot.id, .value = now});
+    return now;
+}
+
 LinkReading LiveDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                                 int frames) noexcept {
     const std::int64_t index = newest(link, producer, tick);

@@ -52,6 +52,8 @@ public:
     std::int64_t readable_until(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                                 std::int64_t until) const noexcept override;
     bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
+    int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                std::int64_t tick) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
     void commit(build::DeviceSlot& slot) noexcept override;

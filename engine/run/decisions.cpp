@@ -54,6 +54,11 @@ void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elaps
     log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
+/// On the virtual clock groups wait for each other.
+int Decisions::overdue(const build::DeviceSlot&, const std::vector<build::ValueSource>&, std::int64_t) noexcept {
+    return -1;
+}
+
 void Decisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept {
     heard.fill(tick, frames, due_ns);
     note_heard(heard, tick, frames);
@@ -95,6 +100,7 @@ void Decisions::sample(build::DeviceSlot& slot, Flicks elapsed) noexcept {
     const DeviceSample sample = slot.device->acquire(seconds(elapsed));
     if (!driver.leave()) return;
     slot.port.sample = sample;
+    slot.port.sample.valid = is_good(sample);
     slot.port.sample.taken = slot.guard.was_taken();
     slot.port.sample.sound_lost = slot.guard.is_asked_to_fade();
 }

@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 namespace tactus::run {
@@ -26,6 +27,9 @@ struct ParameterChange {
     double value = 0.0;  ///< SI
     ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
 };
+
+/// Changes of a run that is repeated, by their number in the log.
+using ReplayedChanges = std::unordered_map<std::int64_t, ParameterChange>;
 
 /// The changes of one group on their way to it.
 struct ChangeQueue {
@@ -108,6 +112,10 @@ public:
     /// Puts the device's state into its port. `elapsed` in flicks since the last call. When the thread was left behind in
     /// the driver, `driver` says so.
     virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
+    /// Which of the `sources` of the force on a device is overdue, the first of them; −1: none. `slot.overdue` has the
+    /// answer of the call before. Wait-free.
+    virtual int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                        std::int64_t tick) noexcept;
     /// Fills the port with the activations of the call, due at steady time `due_ns`. Wait-free.
     virtual void hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept;
     virtual LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick,

@@ -54,7 +54,10 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     for (Link* link : next.ended) link->abandon();
     for (Link* link : next.new_inputs) link->take_over();
     for (Link* link : next.new_outputs) link->begin_at(next_);
-    for (build::DeviceSlot* slot : next.driven) slot->guard.set_driven(true);
+    for (build::DeviceSlot* slot : next.driven) {
+        slot->guard.set_driven(true);
+        slot->overdue = -1;  // of the sources of the program before
+    }
     program_ = &next;
     if (is_paused_) hold_off();
     plan_number_.store(next.plan_number, std::memory_order_release);

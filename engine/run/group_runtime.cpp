@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace tactus::run {
@@ -28,8 +29,8 @@ void GroupRuntime::decide_live(const PauseWindow& pause) {
     decisions_ = std::make_unique<LiveDecisions>(log, plan->period, changes_, pause);
 }
 
-void GroupRuntime::replay(const std::vector<take::TimingRecord>& records, const std::vector<ParameterChange>& changes) {
-    decisions_ = std::make_unique<ReplayedDecisions>(log, records, changes);
+void GroupRuntime::replay(take::GroupRecords records, const ReplayedChanges& changes) {
+    decisions_ = std::make_unique<ReplayedDecisions>(log, std::move(records), changes);
 }
 
 int GroupRuntime::cut(int frames) const noexcept {
@@ -64,6 +65,16 @@ void GroupRuntime::acquire(int frames) noexcept {
     for (io::SoundHeard* heard : program_->heard) decisions_->hear(*heard, next_, frames, due_ns);
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
     for (build::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
+}
+
+void GroupRuntime::check_sources() noexcept {
+    for (std::size_t i = 0; i < program_->driven.size(); ++i) {
+        build::DeviceSlot& slot = *program_->driven[i];
+        const std::vector<build::ValueSource>& sources = program_->sources[i];
+        slot.overdue = decisions_->overdue(slot, sources, next_);
+        slot.port.overdue =
+            slot.overdue < 0 ? control::Fault::none : sources[static_cast<std::size_t>(slot.overdue)].fault;
+    }
 }
 
 bool GroupRuntime::read_link(Link& link, const GroupRuntime& producer, int frames) noexcept {
@@ -141,6 +152,7 @@ void GroupRuntime::begin_call(int frames) noexcept {
     acquire(n);
     if (is_forsaken()) return;
     RealtimeScope scope;
+    check_sources();
     read_links(n);
     note_readers(n);
     run_steps(n);
@@ -160,8 +172,12 @@ int GroupRuntime::finish_call() noexcept {
     for (const build::DeviceSlot* slot : program_->driven)
         largest = std::max(largest, glm::length(io::clamp_to_device(slot->port.wrench, slot->port.info).force));
     telemetry.note_force(largest);
-    for (build::DeviceSlot* slot : program_->driven) {
-        slot->guard.note(slot->port.fault, slot->port.state, next_, glm::length(slot->committed.force));
+    for (std::size_t i = 0; i < program_->driven.size(); ++i) {
+        build::DeviceSlot* const slot = program_->driven[i];
+        std::string_view source;
+        if (slot->overdue >= 0 && slot->port.fault == slot->port.overdue)
+            source = program_->sources[i][static_cast<std::size_t>(slot->overdue)].name;
+        slot->guard.note(slot->port.fault, slot->port.state, next_, glm::length(slot->committed.force), source);
         // The node that wrote it reads here what the device was given.
         slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
         slot->committed = slot->port.wrench;
@@ -173,6 +189,7 @@ int GroupRuntime::finish_call() noexcept {
     last_ = next_ + n - 1;
     next_ += n;
     decisions_->pass(next_);
+    computed_.store(next_, std::memory_order_release);
     done_.store(next_, std::memory_order_release);
     return n;
 }

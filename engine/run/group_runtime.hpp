@@ -46,6 +46,8 @@ public:
     std::int64_t ran() const { return ran_; }
     /// Activations before this one are complete; their values may be read. Any thread.
     std::int64_t done() const noexcept { return done_.load(std::memory_order_acquire); }
+    /// The activation after the last one that was computed, not left out. Any thread.
+    std::int64_t computed() const noexcept { return computed_.load(std::memory_order_acquire); }
     /// How often it was between two calls. Any thread: what a call read that was begun before has been given up.
     std::int64_t rests() const noexcept { return rests_.load(std::memory_order_acquire); }
     /// Of the program that runs; −1 before the first. Any thread.
@@ -60,6 +62,11 @@ public:
         ++changes_.given;
         return true;
     }
+    /// Counts for an older group that ended, too; this one has ended.
+    void take_over_counts(const GroupRuntime& older) {
+        telemetry.merge(older.telemetry);
+        description_.name = "ended groups";
+    }
     /// How many changes it was given by now.
     std::int64_t changes_given() const { return changes_.given; }
     /// How many of them it does not refer to any more. Any thread.
@@ -71,10 +78,11 @@ public:
     /// The clock decides in real time. `pause` must outlive the group's thread.
     void decide_live(const PauseWindow& pause);
     /// A log decides; see ReplayedDecisions.
-    void replay(const std::vector<take::TimingRecord>& records, const std::vector<ParameterChange>& changes);
+    void replay(take::GroupRecords records, const ReplayedChanges& changes);
     void start_at(std::int64_t tick) {
         next_ = tick;
         done_.store(tick);
+        computed_.store(tick);
     }
 
     // Own thread.
@@ -124,6 +132,8 @@ private:
     /// Tells nodes which of their snapshots are still looked at.
     void note_readers(int frames) noexcept;
     void acquire(int frames) noexcept;
+    /// Finds for each device whose force it sends whether a value on that force's path is overdue.
+    void check_sources() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
     template <bool watched>
@@ -166,6 +176,7 @@ private:
     std::atomic<std::int64_t> rests_{0};
     std::atomic<bool> over_{false};
     alignas(64) std::atomic<std::int64_t> done_{0};
+    std::atomic<std::int64_t> computed_{0};
 };
 
 }  // namespace tactus::run

@@ -5,11 +5,13 @@
 #include "dsp/core/clock.hpp"
 #include "dsp/core/realtime.hpp"
 #include "engine/run/made_thread.hpp"
+#include "engine/run/priority.hpp"
 
 #include <pthread.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::run {
 
@@ -23,15 +25,6 @@ constexpr std::int64_t poll_start_ns = 200'000;
 constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
 // A group that sleeps for longer looks now and then whether the run pauses or has ended.
 constexpr std::int64_t longest_sleep_ns = 10'000'000;
-
-/// The faster the group, the higher its priority. False when the system refuses.
-bool make_real_time(Flicks period) noexcept {
-    sched_param parameters{};
-    // 48 kHz: 77, 1 kHz: 60, 60 Hz: 47.
-    const double octaves_above_1_hz = std::log2(rate_of(period));
-    parameters.sched_priority = std::clamp(30 + static_cast<int>(3.0 * octaves_above_1_hz), 10, 80);
-    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-}
 
 }  // namespace
 
@@ -66,7 +59,8 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
     if (!is_over(group) && !pauses(group) && !group.is_forsaken()) group.rest();
 }
 
-void LiveRun::work(GroupRuntime& group) {
+void LiveRun::work(GroupThread& mine) {
+    GroupRuntime& group = mine.group;
     flush_denormals_to_zero();
     // Whoever sets the clock may have been interrupted by this very thread.
     control::TrimmedClock line;
@@ -112,8 +106,10 @@ void LiveRun::work(GroupRuntime& group) {
         if (!group.has_program()) continue;
         const std::int64_t computed_before = thread_ns();
         group.due_ns = due;
+        mine.busy_since_ns.store(begin, std::memory_order_relaxed);
         group.call(group.max_frames);
         busy_until = steady_ns();
+        if (!group.is_forsaken()) mine.busy_since_ns.store(0, std::memory_order_relaxed);
         telemetry.execution.add(busy_until - begin);
         overrun = observe::blame(begin - due, started, busy_until - begin, thread_ns() - computed_before);
         if (const std::int64_t missed = telemetry.awaited.exchange(0)) telemetry.withheld.add(overrun, missed);
@@ -138,17 +134,17 @@ void LiveRun::start_threads() {
     release_threads();
 }
 
-void LiveRun::make_thread(GroupRuntime& group) {
+void LiveRun::make_thread(GroupRuntime& group, int priority) {
     group.decide_live(parts_.time.window);
-    auto made = std::make_unique<GroupThread>(group);
+    auto made = std::make_unique<GroupThread>(group, priority);
     GroupThread& mine = *made;
     threads_.push_back(std::move(made));
     try {
-        mine.thread = made_thread("for the group " + group.plan->name, [this, &mine] {
-            if (!make_real_time(mine.group.plan->period)) is_refused_ = true;
+        mine.thread = made_thread("for the group " + group.plan->name, [this, &mine, priority] {
+            if (!set_priority(pthread_self(), priority)) is_refused_ = true;
             ++ready_;
             while (mine.order == GroupThread::wait) sleep_for(poll_start_ns);
-            if (mine.order == GroupThread::go) work(mine.group);
+            if (mine.order == GroupThread::go) work(mine);
             if (!mine.group.is_forsaken()) mine.is_over = true;
         });
     } catch (...) {
@@ -157,23 +153,39 @@ void LiveRun::make_thread(GroupRuntime& group) {
     }
 }
 
+void LiveRun::set_priorities(const build::Generation& generation) {
+    for (const auto& thread : threads_)
+        for (std::size_t g = 0; g < generation.groups.size(); ++g) {
+            if (generation.groups[g].get() != &thread->group) continue;
+            const int wanted = priority_of(generation.plan, generation.plan.groups[g]);
+            if (wanted != std::exchange(thread->priority, wanted) && thread->thread.joinable())
+                priorities_.set(thread->thread.native_handle(), wanted);
+        }
+}
+
 void LiveRun::cancel_threads() {
     for (const auto& thread : threads_)
         if (int expected = GroupThread::wait; thread->order.compare_exchange_strong(expected, GroupThread::cancel))
             thread->thread.join();
     std::erase_if(threads_, [](const auto& thread) { return thread->order == GroupThread::cancel; });
+    set_priorities(parts_.timeline.now());
     watchdog_.forget_beyond(devices_in_use_);
 }
 
 void LiveRun::release_threads() {
     devices_in_use_ = watchdog_.watched();
-    for (const auto& thread : threads_)
-        if (thread->order == GroupThread::wait) thread->order = GroupThread::go;
+    for (const auto& thread : threads_) {
+        if (thread->order != GroupThread::wait) continue;
+        priorities_.add(thread->group.plan->name, thread->thread.native_handle(), thread->priority,
+                        thread->busy_since_ns);
+        thread->order = GroupThread::go;
+    }
 }
 
 void LiveRun::end_thread(const GroupRuntime& group) {
     std::erase_if(threads_, [&](const auto& thread) {
         if (&thread->group != &group) return false;
+        priorities_.remove(thread->thread.native_handle());
         thread->thread.join();
         return true;
     });

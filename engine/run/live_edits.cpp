@@ -3,6 +3,7 @@
 
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
+#include "engine/build/force_path.hpp"
 #include "engine/run/made_thread.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 
 // From setting a parameter to the first activation for which it may hold.
 constexpr Flicks set_lead = flicks_per_second * 3 / 1000;
+constexpr Flicks fade_notice = flicks_per_second / 1000;  // to the first activation that fades
 constexpr std::int64_t longest_wait_ns = 200'000'000;
 
 }  // namespace
@@ -150,6 +152,9 @@ void LiveEdits::close_ended(const Threads& threads) {
     for (const auto& group : timeline_.groups())
         if (group->is_over()) threads.end(*group);
     recorder_.finish_ended(timeline_);
+    // Every reference to groups that are no more is gone: threads, rings of the journal, the plan before.
+    given_before_.clear();
+    timeline_.forget_ended();
 }
 
 bool LiveEdits::end() {
@@ -165,6 +170,20 @@ bool LiveEdits::end() {
     building_->thread.join();
     building_.reset();
     return true;
+}
+
+Flicks LiveEdits::lead_of_set(const build::Generation& now, std::size_t node, const Param& param) {
+    if (!param.is_discrete || param.is_trigger) return set_lead;
+    const auto reach = build::reach_of(now, node);
+    if (!reach) return set_lead;
+    PauseWindow& window = time_.window;
+    const Flicks begin = present_.now() + fade_notice, lead = fade_notice + Timeline::fade_lead(reach->device_period);
+    const bool is_off = window.set_fade.load() <= begin && begin < window.set_until.load();
+    const Flicks until = begin + lead + reach->latency;
+    // In this order: at no time does the window seem to be without an end, or to be over.
+    window.set_until = is_off ? std::max(until, window.set_until.load()) : until;
+    if (!is_off) window.set_fade = begin;
+    return lead;
 }
 
 LiveEdits::Setting LiveEdits::setting_of(const std::string& node, const std::string& param,
@@ -188,7 +207,7 @@ LiveEdits::Setting LiveEdits::setting_of(const std::string& node, const std::str
         if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
     // The group's thread may change the range of the live parameter when it takes the plan over.
-    return {&live, found->second, compiled->parse(text)};
+    return {static_cast<std::size_t>(at), &live, found->second, compiled->parse(text)};
 }
 
 Flicks LiveEdits::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
@@ -196,7 +215,9 @@ Flicks LiveEdits::set(const std::string& given_node, const std::string& given_pa
     const std::vector<patch::NamedEnd> ends = patch::ends_within(now.plan.patch, given_node, given_param);
     std::vector<Setting> settings;  // all are checked before the first one is made
     for (const patch::NamedEnd& end : ends) settings.push_back(setting_of(end.node, end.name, text));
-    const Flicks when = present_.now() + set_lead;
+    Flicks lead = set_lead;
+    for (const Setting& one : settings) lead = std::max(lead, lead_of_set(now, one.index, *one.param));
+    const Flicks when = present_.now() + lead;
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const Setting& one = settings[i];
         const ParameterChange change{changes_++, when, one.param, one.value, now.ramp_of(one.param)};

@@ -23,8 +23,8 @@ namespace tactus::run {
 class LiveEdits {
 public:
     LiveEdits(const EngineOptions& options, build::BuildContext& context, Timeline& timeline, Recorder& recorder,
-              const LiveTime& time)
-        : seconds_(options.seconds), context_(context), timeline_(timeline), recorder_(recorder), present_(time) {}
+              LiveTime& time)
+        : seconds_(options.seconds), context_(context), timeline_(timeline), recorder_(recorder), time_(time), present_(time) {}
     ~LiveEdits();
 
     /// See Engine.
@@ -63,6 +63,7 @@ private:
     };
     /// A parameter of a node that runs, and its value from now on.
     struct Setting {
+        std::size_t index = 0;  // of the node
         build::LiveNode* node = nullptr;
         Param* param = nullptr;
         double value = 0.0;
@@ -77,12 +78,15 @@ private:
     /// Every group has left the plan before and has been between two calls since.
     bool is_before_left();
     void close_ended(const Threads& threads);
+    /// How far ahead a parameter of a node is set. One that changes in one step is set while forces are held off.
+    Flicks lead_of_set(const build::Generation& now, std::size_t node, const Param& param);
     void tell(const EditOutcome& outcome) const;
 
     const double seconds_;
     build::BuildContext& context_;
     Timeline& timeline_;
     Recorder& recorder_;
+    LiveTime& time_;
     Present present_;
     std::optional<Edit> waiting_, making_;
     std::unique_ptr<Building> building_;

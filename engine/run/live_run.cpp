@@ -4,6 +4,7 @@
 
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
+#include "engine/run/priority.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -59,6 +60,27 @@ void LiveRun::service_pause() {
 void LiveRun::look() noexcept {
     const bool stops = must_end_ || (options_.stop && options_.stop->load());
     if (stops ? parts_.pause.end() : parts_.pause.begin_if_wanted()) watchdog_.let_go();
+    priorities_.look(steady_ns());
+}
+
+void LiveRun::note_old_values() {
+    if (is_still_) return;
+    constexpr int noted_periods = 3;
+    const Flicks now = present_.now();
+    for (const auto& program : parts_.timeline.now().programs)
+        for (const auto& sources : program->sources)
+            for (const build::ValueSource& source : sources) {
+                const GroupRuntime& group = *source.group;
+                const Flicks late = now - group.computed() * group.plan->period - source.latency;
+                const Flicks period = group.max_frames * group.plan->period;  // of its calls
+                if (source.fault != control::Fault::old_world || group.is_over() || late < noted_periods * period ||
+                    !noted_sources_.insert(source.name).second)
+                    continue;
+                parts_.host.notices.push_back(fmt::format(
+                    "{}: its values were {} periods late at {:.2f} s; the hand felt the last ones, and would feel "
+                    "nothing after 1 s",
+                    source.name, late / period, seconds(now)));
+            }
 }
 
 void LiveRun::service() {
@@ -69,6 +91,9 @@ void LiveRun::service() {
         if (std::string message = stream->take_message(); !message.empty())
             parts_.host.notices.push_back(std::move(message));
     service_pause();
+    note_old_values();
+    for (std::string& notice : priorities_.take_notices())
+        if (noted_demotions_.insert(notice).second) parts_.host.notices.push_back(std::move(notice));
     parts_.recorder.service(parts_.timeline, parts_.edits.is_building(), present_.now());
     parts_.edits.service({.prepare = [this](const build::Generation& next) { prepare_threads(next); },
                           .release = [this] { release_threads(); },
@@ -89,7 +114,8 @@ void LiveRun::guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devic
 void LiveRun::prepare_threads(const build::Generation& next) {
     guard(parts_.host.opened_devices());
     for (std::size_t g = 0; g < next.groups.size(); ++g)
-        if (next.group_is_new[g]) make_thread(*next.groups[g]);
+        if (next.group_is_new[g]) make_thread(*next.groups[g], priority_of(next.plan, next.plan.groups[g]));
+    set_priorities(next);
 }
 
 bool LiveRun::all_over() const {
@@ -108,6 +134,7 @@ void LiveRun::leave_blocked() {
             thread->done = group.done();
         }
         if (now - thread->late_since_ns < longest_block_ns || !group.forsake()) continue;
+        priorities_.remove(thread->thread.native_handle());
         thread->thread.detach();
         thread->is_over = true;
         has_left_threads_ = true;
@@ -140,8 +167,11 @@ void LiveRun::run() {
 
 /// Nobody is waited for who is blocked in a driver.
 void LiveRun::end_all() {
-    for (const auto& thread : threads_)
-        if (thread->thread.joinable()) thread->thread.join();
+    for (const auto& thread : threads_) {
+        if (!thread->thread.joinable()) continue;
+        priorities_.remove(thread->thread.native_handle());
+        thread->thread.join();
+    }
     for (const auto& slot : parts_.host.devices) slot->guard.retire();
     if (!watchdog_.farewell()) has_left_threads_ = true;
     if (!parts_.edits.end()) has_left_threads_ = true;

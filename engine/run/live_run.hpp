@@ -6,11 +6,14 @@
 #include "engine/run/live_edits.hpp"
 #include "engine/run/live_time.hpp"
 #include "engine/run/pause_control.hpp"
+#include "engine/run/priority_watch.hpp"
 #include "engine/run/watchdog.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -41,13 +44,15 @@ public:
 
 private:
     struct GroupThread {
-        explicit GroupThread(GroupRuntime& group_) : group(group_) {}
+        GroupThread(GroupRuntime& group_, int priority_) : group(group_), priority(priority_) {}
 
         enum Order : int { wait, go, cancel };
         GroupRuntime& group;
         std::atomic<int> order{wait};
         std::atomic<bool> is_over{false};
+        std::atomic<std::int64_t> busy_since_ns{0};  ///< when its present call began; 0: it is between two
         std::thread thread;
+        int priority;  ///< control thread
         // Control thread: since when it should have ended, and how far it had come then.
         std::int64_t late_since_ns = 0, done = 0;
     };
@@ -55,13 +60,15 @@ private:
     // group_thread.cpp
     void start_threads();
     /// Makes a thread that waits for its order. Throws std::system_error when the system refuses it.
-    void make_thread(GroupRuntime& group);
+    void make_thread(GroupRuntime& group, int priority);
+    /// Of the groups that run: an edit may have changed what they are there for.
+    void set_priorities(const build::Generation& generation);
     /// Ends those that still wait.
     void cancel_threads();
     void release_threads();
     void end_thread(const GroupRuntime& group);
     /// Thread of the group.
-    void work(GroupRuntime& group);
+    void work(GroupThread& mine);
     void rest_while_paused(GroupRuntime& group, control::TrimmedClock& line);
     bool pauses(const GroupRuntime& group) const;
     bool is_over(const GroupRuntime& group) const;
@@ -73,6 +80,8 @@ private:
     void service();
     void service_cards();
     void service_pause();
+    /// A notice, once per group, when values of the world are late by three periods.
+    void note_old_values();
     /// The groups that are no more, all at once.
     bool all_over() const;
     /// After its end: threads that a driver keeps are left behind.
@@ -84,6 +93,7 @@ private:
     const LiveOptions options_;
     control::TrimmedClock line_;  // control thread
     Present present_;
+    PriorityWatch priorities_;
     Watchdog watchdog_;
     std::size_t devices_in_use_ = 0;  // of those that the watchdog looks after
     std::atomic<std::size_t> ready_{0};  // threads that wait for the start
@@ -92,6 +102,8 @@ private:
     bool is_still_ = false;  // time stands still, or has just begun to go on
     bool has_left_threads_ = false;
     std::vector<std::unique_ptr<GroupThread>> threads_;
+    std::set<std::string> noted_sources_;  // whose late values were reported
+    std::set<std::string> noted_demotions_;
 };
 
 }  // namespace tactus::run

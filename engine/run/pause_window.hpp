@@ -19,14 +19,23 @@ struct PauseWindow {
     std::atomic<Flicks> until{never};  ///< from here on forces are passed again
     std::atomic<Flicks> end{never};  ///< activations at or after this time do not run at all
 
+    // While a parameter changes that cannot ramp, the same without a pause; only the control thread sets them:
+    std::atomic<Flicks> set_fade{never}, set_until{never};
+
     /// For a group of `period`: one that is so slow that it had no activation while forces were held off has one more.
     bool holds_off(Flicks time, Flicks period) const noexcept {
-        if (time < fade.load(std::memory_order_acquire)) return false;
-        const Flicks to = until.load(std::memory_order_acquire);
-        return to == never || time < to + period;
+        return is_within(fade, until, time, period) || is_within(set_fade, set_until, time, period);
     }
     bool stops(Flicks time) const noexcept { return time >= stop.load(std::memory_order_acquire); }
     bool ends(Flicks time) const noexcept { return time >= end.load(std::memory_order_acquire); }
+
+private:
+    static bool is_within(const std::atomic<Flicks>& from, const std::atomic<Flicks>& to, Flicks time,
+                          Flicks period) noexcept {
+        if (time < from.load(std::memory_order_acquire)) return false;
+        const Flicks end = to.load(std::memory_order_acquire);
+        return end == never || time < end + period;
+    }
 };
 
 }  // namespace tactus::run

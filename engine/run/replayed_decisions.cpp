@@ -15,8 +15,8 @@ using take::TimingRecord;
 static constexpr int any_source = -1;
 
 const TimingRecord* ReplayedDecisions::find(TimingKind kind, int source, std::int64_t tick) const noexcept {
-    for (std::size_t i = first_; i < records_.size(); ++i) {
-        const TimingRecord& record = records_[i];
+    for (std::size_t i = first_; const TimingRecord* at = records_.at(i); ++i) {
+        const TimingRecord& record = *at;
         if (record.tick > tick) break;
         const bool covers = tick < record.tick + std::max(record.count, 1);
         const bool is_meant = source == any_source || record.source == static_cast<std::uint32_t>(source);
@@ -27,9 +27,10 @@ const TimingRecord* ReplayedDecisions::find(TimingKind kind, int source, std::in
 
 const TimingRecord* ReplayedDecisions::find_switch(std::int64_t plan, std::int64_t tick) const noexcept {
     // Several plans may take over between two activations.
-    for (std::size_t i = first_; i < records_.size() && records_[i].tick <= tick; ++i)
-        if (const TimingRecord& r = records_[i]; r.kind == TimingKind::plan && r.tick == tick && r.value == plan)
-            return &r;
+    for (std::size_t i = first_; const TimingRecord* r = records_.at(i); ++i) {
+        if (r->tick > tick) break;
+        if (r->kind == TimingKind::plan && r->tick == tick && r->value == plan) return r;
+    }
     return nullptr;
 }
 
@@ -37,20 +38,23 @@ std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
     const TimingRecord* skip = find(TimingKind::skipped, 0, tick);
     if (!skip) return tick;
     // A plan may have taken over before it was known that the activation would be left out.
-    for (std::size_t i = first_; &records_[i] != skip; ++i)
-        if (records_[i].kind == TimingKind::plan && records_[i].tick == tick && records_[i].value > switched_to_)
-            return tick;
+    for (std::size_t i = first_; const TimingRecord* r = records_.at(i); ++i) {
+        if (r == skip) break;
+        if (r->kind == TimingKind::plan && r->tick == tick && r->value > switched_to_) return tick;
+    }
     return skip->tick + skip->count;
 }
 
 void ReplayedDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
     // Each once, and those that came after a switch in the same activation after it.
-    for (; applied_ < records_.size() && records_[applied_].tick <= tick; ++applied_) {
-        const TimingRecord& record = records_[applied_];
+    for (; const TimingRecord* at = records_.at(applied_); ++applied_) {
+        const TimingRecord& record = *at;
+        if (record.tick > tick) return;
         if (record.kind == TimingKind::plan && record.tick == tick && record.value > plan) return;
         if (record.kind != TimingKind::parameter || record.tick != tick) continue;
-        const ParameterChange& change = changes_[static_cast<std::size_t>(record.value)];
-        ramps.set(*change.param, change.ramp, change.value, tick, record.source, plan);
+        const auto change = changes_.find(record.value);
+        if (change == changes_.end()) continue;  // a log without the take that lists it
+        ramps.set(*change->second.param, change->second.ramp, change->second.value, tick, record.source, plan);
     }
 }
 
@@ -77,8 +81,8 @@ bool ReplayedDecisions::fades_for(const build::GroupProgram&, std::int64_t tick)
 std::int64_t ReplayedDecisions::end_of_call(std::int64_t tick, std::int64_t until,
                                             const build::GroupProgram*) const noexcept {
     // A logged decision begins or ends only between calls.
-    for (std::size_t i = first_; i < records_.size(); ++i) {
-        const TimingRecord& record = records_[i];
+    for (std::size_t i = first_; const TimingRecord* r = records_.at(i); ++i) {
+        const TimingRecord& record = *r;
         if (record.tick >= until) break;
         if (record.kind == TimingKind::heard) continue;
         const std::int64_t at = record.tick > tick ? record.tick : record.tick + record.count;
@@ -107,6 +111,13 @@ void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flic
     if (const TimingRecord* logged = find(TimingKind::device_sample, slot.id, tick)) slot.port.sample = logged->sample;
     else sample(slot, elapsed);
     log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
+}
+
+int ReplayedDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                               std::int64_t tick) noexcept {
+    const TimingRecord* const record = find(TimingKind::overdue, slot.id, tick);
+    const std::int64_t now = record ? record->value : slot.overdue;
+    return now < static_cast<std::int64_t>(sources.size()) ? static_cast<int>(now) : -1;
 }
 
 void ReplayedDecisions::hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept {
@@ -138,7 +149,10 @@ bool ReplayedDecisions::drops(const Link& link, std::int64_t tick, int) noexcept
 void ReplayedDecisions::commit(build::DeviceSlot&) noexcept {}
 
 void ReplayedDecisions::pass(std::int64_t tick) noexcept {
-    while (first_ < records_.size() && records_[first_].tick + std::max(records_[first_].count, 1) <= tick) ++first_;
+    for (const TimingRecord* r = records_.at(first_); r && r->tick + std::max(r->count, 1) <= tick;)
+        r = records_.at(++first_);
+    records_.forget_before(std::min(first_, applied_));
+    records_.read_ahead(tick + read_ahead);
 }
 
 }  // namespace tactus::run

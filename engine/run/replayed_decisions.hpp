@@ -4,16 +4,19 @@
 
 #include "engine/run/decisions.hpp"
 
+#include "engine/take/timing_log.hpp"
+
 #include <cstddef>
 
 namespace tactus::run {
 
 class ReplayedDecisions final : public Decisions {
 public:
-    /// `records` of this group, in order; `changes` by their number in the log. Both must outlive this.
-    ReplayedDecisions(DecisionLog& log, const std::vector<take::TimingRecord>& records,
-                      const std::vector<ParameterChange>& changes)
-        : Decisions(log), records_(records), changes_(changes) {}
+    /// `records` of this group; `changes` by their number in the log, which must outlive this.
+    ReplayedDecisions(DecisionLog& log, take::GroupRecords records, const ReplayedChanges& changes)
+        : Decisions(log), records_(std::move(records)), changes_(changes) {
+        records_.read_ahead(read_ahead);
+    }
 
     std::int64_t skip_from(std::int64_t tick) const noexcept override;
     void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept override;
@@ -28,6 +31,8 @@ public:
     bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
     bool may_begin(const std::vector<Link*>& links, std::int64_t tick) const noexcept override;
     void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept override;
+    int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
+                std::int64_t tick) noexcept override;
     void hear(io::SoundHeard& heard, std::int64_t tick, int frames, std::int64_t due_ns) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
@@ -40,8 +45,10 @@ private:
     /// The switch to a plan at an activation, or null.
     const take::TimingRecord* find_switch(std::int64_t plan, std::int64_t tick) const noexcept;
 
-    const std::vector<take::TimingRecord>& records_;
-    const std::vector<ParameterChange>& changes_;
+    static constexpr std::int64_t read_ahead = 4096;  // activations; a call is shorter, and reads no file then
+
+    mutable take::GroupRecords records_;  // reads on when it is asked for later ones
+    const ReplayedChanges& changes_;
     std::size_t first_ = 0;  ///< records before this one are past
     std::int64_t switched_to_ = 0;  ///< plan that took over last, by its number
     std::size_t applied_ = 0;  ///< changes of parameters before this one are made

@@ -86,7 +86,8 @@ void Taps::finish_ended(const std::unordered_set<const RecordStream*>& in_use) {
         tap = taps_.erase(tap);
     }
     for (const Tap& tap : ending_)
-        if (tap.group->is_over()) tap.stream->finish();
+        // The group of one that is finished may be gone.
+        if (!tap.stream->is_finished() && tap.group->is_over()) tap.stream->finish();
     update();
 }
 

@@ -15,9 +15,6 @@ namespace tactus::run {
 
 namespace {
 
-/// From the first fading tick to the switch: a fade takes 10 ms, but one tick of a slow group at least.
-Flicks fade_lead(Flicks period) { return std::max(flicks_per_second / 50, 2 * period); }
-
 /// From handing a plan over to the first tick that fades.
 constexpr Flicks notice_lead = flicks_per_second * 30 / 1000;
 
@@ -61,9 +58,8 @@ void Timeline::add(const build::Generation& next, Flicks when) {
 void Timeline::set_end(GroupRuntime& group) const {
     group.end = tick_at(options_.seconds, group.plan->period);
     if (!options_.replay) return;
-    static const std::vector<take::TimingRecord> nothing;
     const auto index = static_cast<std::size_t>(group.index);
-    group.replay(index < options_.replay->groups.size() ? options_.replay->groups[index] : nothing, replayed_changes_);
+    group.replay({*options_.replay, index}, replayed_changes_);
     group.end = std::min(group.end.load(), options_.replay->end_of(index, group.plan->period));
 }
 
@@ -113,16 +109,38 @@ void Timeline::retire() {
     for (const auto& link : now_->links) link->forget_continued();
 }
 
+void Timeline::forget_ended() {
+    const auto has_ended = [this](const std::shared_ptr<GroupRuntime>& group) {
+        // The thread of one that was left behind in a driver still refers to it.
+        return group->is_over() && !group->is_forsaken() && !now_->keeps(group.get());
+    };
+    // From the newest to the oldest, so that the first one of a name stays where it is in the list.
+    for (std::size_t i = groups_.size(); i-- > 0;) {
+        if (!has_ended(groups_[i])) continue;
+        const auto same = std::ranges::find_if(groups_, [&](const auto& other) {
+            return other != groups_[i] && has_ended(other) && other->plan->name == groups_[i]->plan->name &&
+                   other->plan->period == groups_[i]->plan->period;
+        });
+        if (same == groups_.end()) continue;
+        (*same)->telemetry.merge(groups_[i]->telemetry);
+        groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    for (auto ended = std::ranges::count_if(groups_, has_ended); ended > static_cast<std::ptrdiff_t>(max_ended); --ended) {
+        const auto oldest = std::ranges::find_if(groups_, has_ended);
+        const auto next = std::find_if(oldest + 1, groups_.end(), has_ended);
+        (*next)->take_over_counts(**oldest);
+        groups_.erase(oldest);
+    }
+}
+
 void Timeline::schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value) {
     const int at = now_->find(node);
     if (at < 0) throw Error(fmt::format("the take sets a parameter of '{}', a node that is not there", node));
     const auto& params = now_->nodes[static_cast<std::size_t>(at)]->params;
     const auto found = params.find(param);
     if (found == params.end()) throw Error(fmt::format("the take sets '{}.{}', which is not there", node, param));
-    if (id < 0 || id > 1'000'000) throw Error("the take's list of parameter changes is damaged");
-    if (replayed_changes_.size() <= static_cast<std::size_t>(id))
-        replayed_changes_.resize(static_cast<std::size_t>(id) + 1);
-    replayed_changes_[static_cast<std::size_t>(id)] = {id, 0, found->second, value, now_->ramp_of(found->second)};
+    if (id < 0) throw Error("the take's list of parameter changes is damaged");
+    replayed_changes_[id] = {id, 0, found->second, value, now_->ramp_of(found->second)};
 }
 
 /// Hashes of the outputs that end with a generation. A group that never took over the next one ends with its own; one

@@ -11,7 +11,7 @@
 #include <bit>
 #include <charconv>
 #include <set>
-#include <sstream>
+#include <fstream>
 
 namespace tactus::take {
 
@@ -148,7 +148,8 @@ Take Take::load(const fs::path& folder) {
         take.text = file::read_whole_file(folder / "patch-0.toml");
 
         reading = folder / "events.jsonl";
-        std::istringstream events(file::read_whole_file(reading));
+        file::require_file(reading);
+        std::ifstream events(reading);  // a line at a time: a long run sets parameters millions of times
         for (std::string line; std::getline(events, line);) {
             ++line_number;
             // The last line may have been cut off; result.json has the expected number of lines.

@@ -6,11 +6,14 @@
 #include "assets/file/growing_file.hpp"
 #include "dsp/core/ring.hpp"
 #include "dsp/core/time.hpp"
-#include "graph/node/device.hpp"
+#include "engine/take/packed_records.hpp"
+#include "engine/take/timing_record.hpp"
 
+#include <cstddef>
 #include <cstdint>
-#include <cstdio>
+#include <deque>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,36 +21,7 @@
 
 namespace tactus::take {
 
-enum class TimingKind : std::uint8_t {
-    device_sample,  ///< `source` is the device
-    held_read,      ///< activations tick … tick + count − 1 read index `value` of link `source`
-    skipped,        ///< activations tick … tick + count − 1 never ran
-    dropped,        ///< publications tick … tick + count − 1 towards link `source` found no room
-    parameter,  ///< from activation tick on, the parameter change numbered `value` holds; it comes in over `source`
-    ///< activations, 0: at once
-    fade,  ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
-    ///< pause, which `value` 1 begins and 0 ends
-    plan,  ///< from activation tick on, the plan numbered `value` runs; what it changes of parameters on which a force
-    ///< depends comes in over `source` activations, 0: at once
-    progress,  ///< all before tick is in the log; where a log that was cut off can be trusted to
-    end,  ///< the group ran up to tick − 1
-    whole,  ///< the last record of a log that was written to its end; `value` is the number of all records
-    heard,  ///< samples of sound input `source`, in `sample` (take/sound_record.hpp): the last `value` ones of
-    ///< activations tick … tick + count − 1
-};
-
-/// Written by the group that decides, in its own order.
-struct TimingRecord {
-    TimingKind kind = TimingKind::end;
-    std::uint16_t group = 0;
-    std::uint32_t source = 0;
-    std::int32_t count = 0;
-    std::int64_t tick = 0;
-    std::int64_t value = 0;
-    DeviceSample sample;
-};
-
-/// A log read back: the records of each group, in order.
+/// A log: an index of its file. The records themselves are read when they are needed (GroupRecords).
 struct TimingLog {
     std::uint64_t plan_hash = 0;
     double seconds = 0.0;  ///< as asked for
@@ -55,18 +29,56 @@ struct TimingLog {
     bool is_whole = true;
     std::int64_t records = 0;  ///< in the file
     std::optional<std::int64_t> written;  ///< number of records, as the last record states it
-    std::vector<std::vector<TimingRecord>> groups;
     Flicks cut = 0;  ///< of a run that was cut off: logical time up to which it can be repeated
 
-    /// `may_be_cut` accepts a log that stops anywhere, as after a crash. Throws Error when the file is missing, not a
-    /// log, or was not written to its end.
+    /// Packed records of a group that follow each other in the file.
+    struct Chunk {
+        std::uint64_t offset = 0;
+        std::uint32_t length = 0;
+    };
+    struct Group {
+        std::vector<Chunk> chunks;
+        std::int64_t records = 0;
+        std::optional<std::int64_t> end;  ///< it ran up to the activation before this one
+    };
+    std::vector<Group> groups;
+    std::shared_ptr<const int> file;  ///< descriptor, closed with the last copy
+
+    /// `may_be_cut` accepts a log that stops anywhere, as after a crash. Reads all of it once, to check it; keeps an index.
+    /// Throws Error when the file is missing, not a log, or was not written to its end.
     static TimingLog load(const std::filesystem::path& path, bool may_be_cut = false);
 
     /// Activations of a group that can be repeated.
     std::int64_t end_of(std::size_t group, Flicks period) const;
 };
 
-/// Writes a log outside of the ticks.
+/// The records of a group in order, read in pieces: memory does not grow with the log.
+class GroupRecords {
+public:
+    /// None when the log has no such group.
+    GroupRecords(const TimingLog& log, std::size_t group);
+    explicit GroupRecords(std::vector<TimingRecord> all) : window_(all.begin(), all.end()) {}
+
+    /// The record numbered `i` from 0, or null beyond the last one. None that was forgotten.
+    const TimingRecord* at(std::size_t i) noexcept;
+    /// Reads up to the first record of that activation or a later one.
+    void read_ahead(std::int64_t tick) noexcept;
+    /// The records before the one numbered `i` are not asked for again.
+    void forget_before(std::size_t i) noexcept;
+
+private:
+    bool read_chunk();
+
+    std::shared_ptr<const int> file_;
+    std::vector<TimingLog::Chunk> chunks_;
+    std::int64_t left_ = 0;  // records that were not read yet
+    std::size_t next_chunk_ = 0;
+    RecordUnpacker unpacker_;
+    std::deque<TimingRecord> window_;
+    std::size_t first_ = 0;  // number of the first one in the window
+};
+
+/// Writes a log outside of the ticks. The records of each group are packed by themselves and written in chunks.
 class TimingLogWriter {
 public:
     enum class Name {
@@ -79,19 +91,27 @@ public:
     TimingLogWriter(const TimingLogWriter&) = delete;
     TimingLogWriter& operator=(const TimingLogWriter&) = delete;
 
-    /// Throws Error when there is no room, once; the log ends with the last whole record then.
+    /// Throws Error when there is no room, once; the log ends with the last whole chunk then.
     void write(const TimingRecord& record);
     /// Passes what was written to the operating system: a crash of the program does not lose it.
     void flush();
     /// Writes the last record. When the disk is full the log keeps its name and counts as cut off. Throws Error.
     void finish();
-    std::uint64_t size() const { return bytes_; }
-    std::int64_t records() const { return static_cast<std::int64_t>(bytes_ / sizeof(TimingRecord)); }
+    std::uint64_t size() const { return bytes_; }  ///< of all chunks so far
+    std::int64_t records() const { return records_; }
 
 private:
+    struct Packed {
+        RecordPacker packer;
+        std::string chunk;  // waits to be written
+    };
+    void write_chunk(std::uint16_t group, Packed& packed);
+
     std::filesystem::path path_, part_;
     std::unique_ptr<file::GrowingFile> file_;
+    std::map<std::uint16_t, Packed> groups_;
     std::uint64_t bytes_ = 0;
+    std::int64_t records_ = 0;
 };
 
 }  // namespace tactus::take

@@ -2,6 +2,7 @@
 #include "graph/compile/compile.hpp"
 
 #include "graph/compile/decide_types.hpp"
+#include "graph/compile/force_path.hpp"
 #include "graph/compile/sounds.hpp"
 #include "graph/compile/units.hpp"
 #include "graph/patch/sub_patch.hpp"
@@ -27,6 +28,7 @@ std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Prob
     if (problems.empty()) order_nodes(plan, problems);
     if (!problems.empty()) return std::nullopt;
     order_feedback(plan);
+    rank_groups(plan);
     return plan;
 }
 

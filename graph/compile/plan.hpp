@@ -5,6 +5,8 @@
 #include "graph/node/node.hpp"
 #include "graph/patch/patch.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -58,6 +60,23 @@ struct PlanCycle {
     int longest = 1;           ///< most activations at a time: the shortest delay within
 };
 
+/// How a force depends on a node.
+enum class Dependence : std::uint8_t {
+    none,   ///< not at all
+    world,  ///< it stays passive when the node's values are old
+    force,  ///< the node's values must be fresh
+};
+
+/// What a group is there for; the smaller, the higher its priority in a live run. A hand comes before sound: a tick that
+/// is left out can be heard in one and throws the other.
+enum class Criticality : std::uint8_t {
+    force_output,  ///< it sends a force to a device
+    force_value,   ///< a force depends on fresh values of it
+    sound,
+    world_value,   ///< a force depends on values of it that may be old
+    other,
+};
+
 struct PlanGroup {
     std::string name;
     Flicks period = 0, latency = 0;
@@ -66,6 +85,7 @@ struct PlanGroup {
     std::vector<int> order;   ///< nodes, in the order they run
     std::vector<PlanCycle> cycles;  ///< audio groups only; in the order of their positions
     bool backlog_given = false;
+    Criticality criticality = Criticality::other;
 };
 
 struct Plan {
@@ -74,6 +94,11 @@ struct Plan {
     std::vector<PlanWire> wires;
     std::vector<PlanGroup> groups;  ///< fastest first, ties by name
 };
+
+/// Time between two calls of a group in a live run: an audio group is called once per quantum.
+constexpr Flicks call_period(const Plan& plan, const PlanGroup& group) {
+    return group.has_audio ? std::max(group.period, plan.patch.quantum) : group.period;
+}
 
 /// The node types a patch may use.
 using Catalogue = std::span<const NodeType* const>;

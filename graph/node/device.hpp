@@ -43,6 +43,14 @@ struct DeviceSample {
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
+/// True when a force may be computed from this motion: finite, with a quaternion of unit length.
+inline bool is_good(const Pose& pose, const Twist& twist) noexcept {
+    return is_valid(pose) && is_finite(twist.linear) && is_finite(twist.angular);
+}
+/// The same for a sample that the driver calls valid. Drivers, the engine and all nodes use this predicate and no other:
+/// with two that differ, device_input would freeze the pose while device_output sees no fault.
+inline bool is_good(const DeviceSample& sample) noexcept { return sample.valid && is_good(sample.pose, sample.twist); }
+
 /// Properties of a device. Zero means none or unknown.
 struct DeviceInfo {
     std::string name;

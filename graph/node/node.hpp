@@ -85,6 +85,7 @@ enum class NodeRole : std::uint8_t {
     inner,  ///< none of the others
     hand_source,  ///< gives the pose of a hand; has a text parameter `device`
     hand_sink,  ///< sends a force to a hand; has a text parameter `device`
+    motor_sink,  ///< drives the motors of a device; has a text parameter `device`
     placement,  ///< places a device in the scene; has a parameter `scale`: metres of the scene per metre of the device
     sound_sink,  ///< sends a signal to a sound card; has `card` and `channel` where nodes can share one
     file_sink  ///< writes a file

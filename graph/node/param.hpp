@@ -17,6 +17,12 @@ namespace tactus {
 struct Optional {};
 inline constexpr Optional optional{};
 
+/// Marks an input that describes the world: a bone, a target, a frame. A force that is computed from an old value of it
+/// stays passive, as against a bone that stands still. All other inputs are of force: an old value of them would hold the
+/// force while the hand moves on. Snapshots are of the world by their type.
+struct OfWorld {};
+inline constexpr OfWorld of_world{};
+
 /// Marks a parameter that decides memory or wiring. It cannot change while the patch runs.
 struct Structural {};
 inline constexpr Structural structural{};
@@ -25,9 +31,15 @@ inline constexpr Structural structural{};
 struct Internal {};
 inline constexpr Internal internal{};
 
-/// Marks a count, a choice by number or a trigger. It changes in one step; other parameters ramp.
+/// Marks a count or a choice by number. It changes in one step, while forces that depend on it are held off; other
+/// parameters ramp.
 struct Discrete {};
 inline constexpr Discrete discrete{};
+
+/// Marks a discrete parameter that is a request of the user, such as a press of a button. It is passed on at once, as a
+/// button of a device is; forces are not held off.
+struct AsTrigger {};
+inline constexpr AsTrigger as_trigger{};
 
 /// A quantity with unit and range. The unit of the default is the unit of the parameter. A number wire may drive it
 /// unless it is structural. The constructors throw Error for text that is no quantity.
@@ -47,6 +59,11 @@ struct Param {
           const char* about_ = "")
         : Param(default_text, min_text, max_text, about_) {
         is_discrete = true;
+    }
+    Param(AsTrigger, std::string_view default_text, std::string_view min_text, std::string_view max_text,
+          const char* about_ = "")
+        : Param(discrete, default_text, min_text, max_text, about_) {
+        is_trigger = true;
     }
     Param(const Param&) = delete;
     Param& operator=(const Param&) = delete;
@@ -68,6 +85,7 @@ struct Param {
     bool is_structural = false;
     bool is_internal = false;
     bool is_discrete = false;
+    bool is_trigger = false;  ///< see AsTrigger
 };
 
 /// One of several words. The first is the default.

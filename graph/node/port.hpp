@@ -28,7 +28,8 @@ struct Input {
     const ValueType* type = nullptr;
     const char *about = "", *unit = "";
     InputKind kind = InputKind::value;
-    bool is_optional = false;
+    bool is_optional : 1 = false;
+    bool is_of_world : 1 = false;  ///< see OfWorld
     bool connected = false;
     ValueKinds takes = kinds::every;  ///< of an input of several types
     int count = 0;                    ///< of a batch: values at `data`
@@ -68,6 +69,10 @@ struct In : Input {
         unit = unit_;
     }
     In(Optional, const char* about_ = "", const char* unit_ = "") : In(about_, unit_) { is_optional = true; }
+    In(OfWorld, const char* about_ = "", const char* unit_ = "") : In(about_, unit_) { is_of_world = true; }
+    In(Optional, OfWorld, const char* about_ = "", const char* unit_ = "") : In(of_world, about_, unit_) {
+        is_optional = true;
+    }
 
     const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
     operator const Element<T>&() const { return get(); }

@@ -15,7 +15,8 @@ namespace tactus::nodes {
 struct AdmittanceController {
     static constexpr auto about =
         "Admittance control: the measured force moves a virtual object, and a position loop makes the motor follow it. "
-        "Refuses settings with which the loop would be unstable.";
+        "Refuses settings with which the loop would be unstable. A one-sided object, which switches between two loops, is "
+        "simulated first.";
 
     In<double> force{"of the hand on the finger; positive closes the finger", "N"};
     In<double> position{"of the finger", "m"};
@@ -64,7 +65,7 @@ struct AdmittanceController {
         "and 3 N/mm, depending on grip and person; the test rig is 0.38 N/mm. A lower number permits a "
         "quicker loop, which is unstable in a stiffer finger"};
     Param blend{"100 ms", "0 ms", "10 s", "time in which a new object replaces the old one"};
-    Param recover{discrete, "0", "0", "1e9", "change the number to go on after a fault"};
+    Param recover{as_trigger, "0", "0", "1e9", "change the number to go on after a fault"};
     Flag allow_unstable{false, "accept an unstable gain"};
 
     void prepare(const Setup& setup) {
@@ -74,7 +75,7 @@ struct AdmittanceController {
         if (!wanted_settings.object.is_renderable())
             setup.fail("an object without stiffness, damping and mass has no force law; give a damping");
         if (!control_.set(wanted_settings)) {
-            const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
+            const double limit = tactus::control::switched_gain_limit(wanted_settings.loop, wanted_settings.object);
             const double hand = hand_stiffness * 1e-3;
             if (!(limit > 0.0))
                 setup.fail(

@@ -11,6 +11,7 @@ struct GripperOutput {
     static constexpr auto about =
         "Drives a gripper's motors, and the servo of a rig that holds it. After a fault the motors hold until "
         "'recover' changes.";
+    static constexpr NodeRole role = NodeRole::motor_sink;
 
     In<double> finger_speed{"positive closes the finger", "m/s"};
     In<double> thumb_speed{optional, "of the thumb part; unconnected: the thumb part holds", "m/s"};
@@ -20,7 +21,7 @@ struct GripperOutput {
     Out<double> cycles{"drive cycles per second of a walking motor at that speed", "Hz"};
     Out<bool> holds{"the motors hold because of a fault"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
-    Param recover{discrete, "0", "0", "1e9", "change the number to go on after a fault"};
+    Param recover{as_trigger, "0", "0", "1e9", "change the number to go on after a fault"};
     Param low_friction{discrete, "0", "0", "1",
                        "from 0.5 on the hand moves the finger freely, if the motor supports it"};
     Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
@@ -44,12 +45,13 @@ struct GripperOutput {
         }
         if (recover.value != asked_ && found == control::Fault::none) reason_ = control::Fault::none;
         asked_ = recover;
-        const bool still = reason_ != control::Fault::none || port_->hold_off;
+        const bool is_overdue = port_->overdue != control::Fault::none;
+        const bool still = reason_ != control::Fault::none || port_->hold_off || is_overdue;
         MotorDrive& motors = port_->motors;
         motors.speed = {still ? 0.0 : finger_speed.get(), still ? 0.0 : second};
         motors.free = !still && low_friction >= 0.5;
         if (cord.connected && std::isfinite(cord.get())) motors.cord = cord;
-        port_->fault = reason_ != control::Fault::none ? reason_ : upstream();
+        port_->fault = reason_ != control::Fault::none ? reason_ : is_overdue ? port_->overdue : upstream();
         port_->state = state();
         given = motors.speed[0];
         const double fastest = port_->info.max_speed;

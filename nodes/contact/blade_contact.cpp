@@ -2,6 +2,7 @@
 #include "dsp/contact/blade.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/visual.hpp"
+#include "nodes/contact/tool_parameters.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -17,9 +18,10 @@ struct BladeContact {
     Out<Wrench> wrench{"on the blade, about its origin", "N"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> penetration{"of the deepest point", "m"};
-    Out<bool> in_contact{"at least one point is in the bone"};
+    Out<bool> in_contact{"the thrust or the force passed 'contact_on' and has not fallen below 'contact_off'"};
     Param stiffness{"0.8 N/mm", "0.01 N/mm", "50 N/mm",
                     "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    ContactThreshold threshold;
     Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
     Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
@@ -39,9 +41,10 @@ struct BladeContact {
         wrench = now.wrench;
         load = now.load;
         penetration = now.penetration;
-        in_contact = now.count > 0;
+        const bool touches = threshold.update(touch_, std::max(now.load, glm::length(now.wrench.force)));
+        in_contact = touches;
         ++ticks_;
-        if (now.count == 0) return;
+        if (!touches) return;
         ++touching_;
         thrust_ += now.load;
         deepest_ = std::max(deepest_, now.penetration);
@@ -56,10 +59,12 @@ struct BladeContact {
 
 private:
     std::optional<contact::BladePoints> points_;
+    contact::ContactSwitch touch_;
     double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0;
 };
 
-TACTUS_NODE(BladeContact, pose, bone, wrench, load, penetration, in_contact, stiffness, length, height, thickness)
+TACTUS_NODE(BladeContact, pose, bone, wrench, load, penetration, in_contact, stiffness, threshold, length, height,
+            thickness)
 TACTUS_VISUALS(BladeContact)
 
 }  // namespace tactus::nodes

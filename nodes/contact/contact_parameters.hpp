@@ -5,6 +5,8 @@
 #include "dsp/coupling/held_contact.hpp"
 #include "graph/node/node.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <cstddef>
 #include <optional>
 
@@ -35,13 +37,22 @@ struct ContactParameters {
         contact.set(scene, held, grip, law(), both_ways, static_cast<std::size_t>(budget));
     }
 
+    /// Force of a saturated contact over the depth at which it set in, N/m: the points' own stiffness has fallen to zero
+    /// there. 0 without saturation.
+    double secant(const contact::ContactSum& now) const noexcept {
+        const double depth = now.penetration + blend;
+        return saturates() && depth > 0.0 ? glm::length(now.wrench().force) / depth : 0.0;
+    }
+
 private:
+    bool saturates() const noexcept { return saturation > 2.0 * blend; }
+
     contact::ContactLaw law() const noexcept {
         contact::ContactLaw law;
         law.by_area = !(point_stiffness > 0.0);
         law.stiffness = law.by_area ? area_stiffness : point_stiffness;
         law.blend = blend;
-        law.saturation = saturation > 2.0 * blend ? saturation.value : 1e6;
+        law.saturation = saturates() ? saturation.value : 1e6;
         law.interpolation =
             interpolation.index == 0 ? contact::Interpolation::trilinear : contact::Interpolation::quadratic;
         law.direction =

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/saw/saw_blade.hpp"
 #include "graph/node/node.hpp"
+#include "graph/node/notice.hpp"
 #include "graph/node/visual.hpp"
+#include "nodes/contact/tool_parameters.hpp"
 #include "nodes/contact/tool_report.hpp"
 
 #include <fmt/format.h>
@@ -14,13 +16,20 @@ namespace tactus::nodes {
 
 struct SawBlade {
     static constexpr auto about =
-        "A saw blade that rests on the bone it has not cut yet: forces on 88 points of its faces and a front of teeth, "
-        "which a running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes.";
+        "A saw blade that rests on the bone it has not cut yet: forces on all of its body, and a front of teeth, which a "
+        "running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes. No push "
+        "frees it: it is released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force "
+        "with the hand outside of the bone.";
 
     In<Pose> pose{"of the blade: x along the teeth, y into the bone, origin in the middle of the tooth line"};
     In<volume::BoneSnapshot> bone{"the carved bone"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
+    In<bool> release{optional, "while held, the bone is released: wire the clutch of the hand here"};
+    In<Wrench> asked{optional, "what device_output was asked for, as delay 1; with 'applied' teeth cut by the share of "
+                               "their thrust that the hand could feel",
+                     "N, N m"};
+    In<Wrench> applied{optional, "what the device was given, device_output.applied as delay 1", "N, N m"};
     Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
@@ -31,10 +40,16 @@ struct SawBlade {
         "stands",
         "Hz"};
     Out<double> penetration{"greatest elastic distance of a point of the blade from where bone holds it", "m"};
-    Out<bool> in_contact{"bone holds at least one point"};
+    Out<bool> in_contact{"the force between blade and bone passed 'contact_on' and has not fallen below 'contact_off'"};
+    Out<bool> waiting{"the blade lies in bone and has no force until it is out"};
+    Out<double> rendered{"share of the wanted force that the device was given in the last tick", "1"};
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
                     "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    Param device_scale{"1", "0.01", "10",
+                       "forces on the device over those of the tool; teeth cut by those of the tool, so that devices of "
+                       "different strength are comparable"};
+    ContactThreshold threshold;
     Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
     Param sharpness{structural, "1", "0.1", "20",
                     "forces of the published teeth over those of these: the same thrust cuts that much more"};
@@ -82,42 +97,61 @@ struct SawBlade {
                 shape.height * 1e3, shape.length * 1e3));
         law_ = saw::CuttingLaw{}.sharpened(sharpness);
         blade_.emplace(shape, stiffness);
+        waits_.attach(setup);
+        released_.attach(setup);
+        last_state_ = saw::HoldState::engaged;
+        touch_ = {};
         told_ = {};
         last_ = {};
     }
 
     void process(const Tick& tick) noexcept {
+        const double elapsed = tick.elapsed_seconds();
         const saw::Drive drive{
-            !running.connected || running.get(),
-            strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
-            std::clamp(tick.elapsed_seconds(), seconds(tick.period), 0.05)};
+            .running = !running.connected || running.get(),
+            .rate = strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
+            .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
+            .rendered = rendered_share(asked, applied),
+            .release = (release.connected && release.get()) || elapsed > std::max(longest_pause, 3.0 * seconds(tick.period))};
         const saw::SawContact now = blade_->step(bone.get(), pose.get(), drive, law_);
-        wrench = now.wrench;
+        wrench = now.wrench * device_scale;
         load = now.thrust;
         stroke_force = now.along;
         feed = now.feed;
         teeth = now.teeth;
         passing = drive.running ? std::numbers::pi * drive.rate * stroke / tooth_pitch : 0.0;
         penetration = now.lag;
-        in_contact = now.count > 0;
-        blade_->teeth().fill(last_, pose.get(), drive.running);
+        const bool touches = threshold.update(touch_, now.magnitudes);
+        in_contact = touches;
+        waiting = now.state == saw::HoldState::waiting;
+        rendered = drive.rendered;
+        blade_->teeth().fill(last_, pose.get(), drive.running && now.state == saw::HoldState::engaged);
         ++last_.version;
         last_.content_hash = carve::hash_of(last_);
         front = last_;
-        told_.add(bone.get(), pose.get(), now.count > 0, now.thrust, now.lag, 0.0);
+        if (now.state != last_state_ && is_valid(pose.get())) {
+            if (now.state == saw::HoldState::waiting) waits_.tell();
+            if (now.state == saw::HoldState::releasing && now.count > 0) released_.tell();
+            last_state_ = now.state;
+        }
+        told_.add(bone.get(), pose.get(),
+                  {now.state, touches, now.thrust, now.lag, drive.rendered, 0.0, seconds(tick.period)});
     }
 
-    void report(Report& report) const { told_.tell(report); }
+    void report(Report& report) const { told_.tell(report, device_scale); }
 
 private:
     std::optional<saw::SawBlade> blade_;
     saw::CuttingLaw law_;
     carve::CutFront last_;
     ToolReport told_;
+    contact::ContactSwitch touch_;
+    Notice waits_{tool_waits}, released_{tool_released};
+    saw::HoldState last_state_ = saw::HoldState::engaged;
 };
 
-TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, passing, penetration,
-            in_contact, front, stiffness, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke,
+TACTUS_NODE(SawBlade, pose, bone, running, strokes, release, asked, applied, wrench, load, stroke_force, feed, teeth,
+            passing, penetration, in_contact, waiting, rendered, front, stiffness, device_scale, threshold, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke,
             tooth_pitch)
 TACTUS_VISUALS(SawBlade)
 

@@ -18,7 +18,10 @@ struct VoxmapContact {
     In<Pose> pose{"of the body", "m"};
     In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the body, about its origin", "N, N m"};
-    Out<double> stiffness{"of all touching points together, along the stiffest of the three axes", "N/m"};
+    Out<double> stiffness{
+        "of all touching points together, along the stiffest of the three axes; with 'saturation' at least the force over "
+        "its depth, so that a saturated contact has a stiffness",
+        "N/m"};
     Out<double> penetration{"of the deepest point", "m"};
     Out<bool> in_contact{"at least one point exerts a force"};
     Param held{discrete, "0", "-1", "15", "place of the body in the scene"};
@@ -40,7 +43,7 @@ struct VoxmapContact {
         const contact::ContactSum now =
             is_valid(pose.get()) ? (*contact_)(pose, contact::ContactParts::all) : contact::ContactSum{};
         wrench = now.wrench();
-        stiffness = std::max({now.stiffness[0], now.stiffness[7], now.stiffness[14]});
+        stiffness = std::max({now.stiffness[0], now.stiffness[7], now.stiffness[14], contact.secant(now)});
         penetration = now.penetration;
         in_contact = now.in_contact > 0;
         deepest_ = std::max(deepest_, now.penetration);

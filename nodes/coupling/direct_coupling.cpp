@@ -23,9 +23,10 @@ struct DirectCoupling {
 
     void process(const Tick&) noexcept {
         const double all = contact_stiffness.get();
+        const bool touches = contact->force != Vec3(0.0) || contact->torque != Vec3(0.0);
         // The work of a contact energy E that is scaled by s over a path from free to free is ∫E ds: never positive while s
         // falls. A scale that followed the contact up again would give energy.
-        if (!(all > 0.0)) scale_ = 1.0;
+        if (!touches && !(all > 0.0)) scale_ = 1.0;
         else if (all > stiffness) scale_ = std::min(scale_, stiffness / all);
         const Wrench scaled = contact.get() * scale_;
         const double size = glm::length(scaled.force);

@@ -28,10 +28,10 @@ struct QuasiStaticCoupling {
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
     In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
-    In<Pose> target{optional, "pose that the held body is pulled to while 'guided'", "m"};
+    In<Pose> target{optional, of_world, "pose that the held body is pulled to while 'guided'", "m"};
     In<bool> guided{optional, "pull the body to the target; unconnected: false"};
-    In<bool> has_target{optional, "the target is valid; unconnected: true"};
-    In<double> target_of{optional, "place of the body that the target is for; unconnected: the held one"};
+    In<bool> has_target{optional, of_world, "the target is valid; unconnected: true"};
+    In<double> target_of{optional, of_world, "place of the body that the target is for; unconnected: the held one"};
     In<bool> settle{optional, "the springs to the hand yield while the body is guided, so that the hand adds no bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};

@@ -11,7 +11,7 @@ struct Spring {
         "velocities must be in the same frame.";
 
     In<Pose> device{"pose of the device", "m"};
-    In<Pose> object{"pose of the object", "m"};
+    In<Pose> object{of_world, "pose of the object", "m"};
     In<Twist> device_twist{optional, "velocity of the device, for the damper", "m/s, rad/s"};
     In<Twist> object_twist{optional, "velocity of the object, for the damping", "m/s, rad/s"};
     Out<Wrench> wrench{"on the device, about its origin; the object feels the opposite", "N, N m"};

@@ -12,8 +12,8 @@ struct Button {
         "changes it, and for as long as 'hold' is 1.";
 
     Out<bool> pressed{"true for 20 ms after each change of 'press', and while 'hold' is above 0.5"};
-    Param press{discrete, "0", "-1e9", "1e9", "change the number to press once"};
-    Param hold{discrete, "0", "0", "1", "above 0.5: pressed"};
+    Param press{as_trigger, "0", "-1e9", "1e9", "change the number to press once"};
+    Param hold{as_trigger, "0", "0", "1", "above 0.5: pressed"};
 
     void prepare(const Setup& setup) {
         ticks_ = static_cast<std::int64_t>(std::ceil(0.02 * setup.rate()));

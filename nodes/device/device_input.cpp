@@ -28,7 +28,7 @@ struct DeviceInput {
 private:
     void read() noexcept {
         const DeviceSample& s = port_->sample;
-        const bool good = s.valid && is_valid(s.pose) && is_finite(s.twist.linear) && is_finite(s.twist.angular);
+        const bool good = is_good(s);
         if (good) last_ = {s.pose.position, glm::normalize(s.pose.orientation)};
         pose = last_;
         twist = good ? s.twist : Twist{};

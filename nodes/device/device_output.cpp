@@ -40,7 +40,7 @@ struct DeviceOutput {
         "least "
         "1 s later and over 0.5 s, three times a minute; after a fault of samples when they are small; 0 s: only by "
         "'recover'. After a non-finite force they stay off"};
-    Param recover{discrete, "0", "0", "1e9", "change the number to let forces return after late ticks"};
+    Param recover{as_trigger, "0", "0", "1e9", "change the number to let forces return after late ticks"};
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
     Flag energy_cap{true, "a contact returns no more energy than the hand has put in; false: 'check' warns"};
@@ -72,15 +72,16 @@ struct DeviceOutput {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
         const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
-        port_->late.tick(s.taken || s.late, is_quiet && !s.taken, tick.elapsed_seconds());
+        port_->late.tick(is_late(), is_quiet && !s.taken, tick.elapsed_seconds());
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
         if (s.late) limiter_.fail(control::Fault::late_source);
+        if (port_->overdue != control::Fault::none) limiter_.fail(port_->overdue);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
-        const bool is_good = s.valid && is_valid(s.pose);
-        const Wrench limited = limiter_.tick(givable(), s.counter, is_good, tick.elapsed_seconds());
-        const Wrench out = capped(limited, is_good, tick.elapsed_seconds());
+        const bool is_usable = is_good(s);
+        const Wrench limited = limiter_.tick(givable(), s.counter, is_usable, tick.elapsed_seconds());
+        const Wrench out = capped(limited, is_usable, tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;
         port_->fault = limiter_.fault();
@@ -165,12 +166,12 @@ private:
     }
 
     /// Observes also while it is off, so that the report says what the hand was given.
-    Wrench capped(const Wrench& limited, bool is_good, double elapsed_s) noexcept {
+    Wrench capped(const Wrench& limited, bool is_usable, double elapsed_s) noexcept {
         const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
         most_granted_ = std::max(most_granted_, watts);
         const Pose nowhere{{}, {0.0, 0.0, 0.0, 0.0}};
         const DeviceSample& s = port_->sample;
-        const Wrench out = cap_.tick(limited, port_->wrench, is_good ? s.pose : nowhere, elapsed_s, watts, s.taken);
+        const Wrench out = cap_.tick(limited, port_->wrench, is_usable ? s.pose : nowhere, elapsed_s, watts, s.taken);
         if (!energy_cap) return limited;
         const double removed = glm::length(limited.force - out.force);
         if (removed > 0.0 || limited.torque != out.torque) ++capped_ticks_;
@@ -196,7 +197,7 @@ private:
         using control::Fault;
         last_fault_ = limiter_.fault();
         const DeviceSample& s = port_->sample;
-        if (s.taken || s.late) port_->late.lose();
+        if (is_late()) port_->late.lose();
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
@@ -208,13 +209,13 @@ private:
         must_engage_ = must_engage_ || port_->hold_off;
         // A device may give samples less often than this ticks.
         still_ticks_ = s.counter != counter_ ? 0 : still_ticks_ + 1;
-        const bool is_good = s.valid && is_valid(s.pose) && still_ticks_ < control::ForceLimits{}.stale_ticks;
-        well_for_ = is_good && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
+        const bool is_fresh = is_good(s) && still_ticks_ < control::ForceLimits{}.stale_ticks;
+        well_for_ = is_fresh && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
         if (last_fault_ == Fault::not_finite) return;
         const bool is_asked = recover.value != asked_;
         if (is_asked && port_->late.is_lost()) port_->late.forgive();
         is_let_ = is_let_ || is_asked;
-        if (is_lateness(last_fault_)) return return_from_lateness(is_good);
+        if (is_lateness(last_fault_)) return return_from_lateness(is_fresh);
         if (recover_after == 0.0 || well_for_ < recover_after) return;
         // A tick that was late, too, asks for more than the device.
         if (port_->late.is_lost() && !port_->late.returns()) return;
@@ -225,12 +226,16 @@ private:
     /// Without an energy cap, forces that are large already would throw out a hand that is deep inside of a body. And a
     /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
     /// there. Then they wait for the hand to leave it.
-    void return_from_lateness(bool is_good) noexcept {
-        if (!is_good || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
+    void return_from_lateness(bool is_fresh) noexcept {
+        if (!is_fresh || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
         if (energy_cap && !must_engage_) limiter_.recover_slowly(control::LateReturn::ramp_s);
         else limiter_.recover(control::LateReturn::ramp_s);
         in_fault_ = is_let_ = false;
         ++returns_;
+    }
+
+    bool is_late() const noexcept {
+        return port_->sample.taken || port_->sample.late || port_->overdue != control::Fault::none;
     }
 
     /// A person let forces return a short while ago.
@@ -242,7 +247,9 @@ private:
             case Fault::none: break;
             case Fault::not_finite: return ForceState::never;
             case Fault::late_commit:
-            case Fault::late_source: {
+            case Fault::late_source:
+            case Fault::late_value:
+            case Fault::old_world: {
                 const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let());
                 if (waits_for_hand) return ForceState::by_hand;
                 return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;

@@ -27,7 +27,8 @@ struct TumourMargin {
     In<tactus::coupling::Scene> scene{"the pieces, in the order of the plan"};
     In<Pose> pose{"of the hand in the scene", "m"};
     In<Twist> twist{optional, "of the hand; open: no damping", "m/s, rad/s"};
-    In<Pose> frame{optional, "the frame of the scans; open: the world. A frame that moves does work on the hand", "m"};
+    In<Pose> frame{optional, of_world,
+                   "the frame of the scans; open: the world. A frame that moves does work on the hand", "m"};
     In<double> held{optional, "place of the held piece; -1 or open: none"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<double> distance{"of the hand from the nearest wall, to the side of the stump; behind it negative", "m"};

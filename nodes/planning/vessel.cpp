@@ -35,8 +35,8 @@ struct Vessel {
     In<double> held{optional, "place of the held piece; -1 or open: none"};
     In<Pose> pose{optional, "of the held piece, newer than in the scene: coupling.pose", "m"};
     In<double> strength{optional, "share of the force that the hand feels, 0 to 1: grasp.strength; open: 1"};
-    In<Pose> site{optional, "where the end is sewn; open: 'plan_site', else 'site_at'", "m"};
-    In<bool> sewn{optional, "the end is sewn to its site; false: it is free; open: true"};
+    In<Pose> site{optional, of_world, "where the end is sewn; open: 'plan_site', else 'site_at'", "m"};
+    In<bool> sewn{optional, of_world, "the end is sewn to its site; false: it is free; open: true"};
     Out<Wrench> wrench{"on the hand: 'gain' times the vessel's pull on the held piece and its group; 0 of a vein",
                        "N, N m"};
     Out<double> tension{"true tension of the pedicle where it leaves the bone; 0 of a vein", "N"};

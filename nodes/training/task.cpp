@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/contact/contact_switch.hpp"
 #include "dsp/training/attempt_row.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/task_asset.hpp"
@@ -31,7 +32,6 @@ const ValueType attempt_row_type{
 };
 
 constexpr double near = 3e-3;          // m above the bone: from here on the cues speak
-constexpr double least_force = 0.1;    // N: touches the bone, when no wire says so
 constexpr double stop_ahead = 2e-3;    // m above the depth stop, and
 constexpr double margin_ahead = 1e-3;  // m outside of a margin, where the cue begins
 
@@ -48,7 +48,7 @@ struct Task {
 
     In<Pose> pose{"of the blade: x along the stroke, y into the bone, origin in the middle of the tooth edge"};
     In<Wrench> force{optional, "on the hand, after all limits: device_output.applied", "N, N m"};
-    In<bool> contact{optional, "the blade touches the bone; unconnected: there is a force of 0.1 N"};
+    In<bool> contact{optional, "the blade touches the bone; unconnected: a force passed 0.05 N and has not fallen below 0.02 N"};
     In<double> removed{optional, "volume removed since the start", "m^3"};
     In<double> heat{optional, "time that bone was above the temperature that harms it", "s"};
     Out<double> distance{"of the middle of the tooth edge from the planned plane, along its normal", "m"};
@@ -71,6 +71,7 @@ struct Task {
     void prepare(const Setup& setup) {
         task_ = task.shared();
         row_ = {};
+        touch_ = {};
         touched_ = 0;
         over_limit_ = deepest_ = worst_distance_ = worst_angle_ = 0.0;
         least_clearance_ = std::numeric_limits<double>::infinity();
@@ -95,7 +96,7 @@ struct Task {
         }
         const Wrench hand = force.connected && is_finite(force.get()) ? force.get() : Wrench{};
         const double pressed = std::min(glm::length(hand.force), 1e9);
-        const bool touches = contact.connected ? contact.get() : pressed > least_force;
+        const bool touches = contact.connected ? contact.get() : touch_.update(pressed);
         const double hot = heat.connected ? finite(heat.get()) : -1.0;
 
         const training::TaskLimits& limits = t.limits;
@@ -161,6 +162,7 @@ struct Task {
     }
 
 private:
+    contact::ContactSwitch touch_;
     std::shared_ptr<const training::Task> task_;
     RecordStream* stream_ = nullptr;
     training::AttemptRow row_;

@@ -109,6 +109,25 @@ struct Planted {
 };
 TACTUS_NODE(Planted, pose, wrench, fault, at, stall)
 
+/// Uses the processor for some time in each tick of an interval.
+struct Busy {
+    static constexpr auto about = "A node that is busy.";
+
+    Out<double> out{"0"};
+    Param from{"0 s", "0 s", "1 h", "when it begins"};
+    Param lasts{"0 s", "0 s", "1 h", "for how long"};
+    Param cost{"0 ms", "0 ms", "10 s", "of a tick in that time"};
+
+    void process(const Tick& tick) noexcept {
+        out = 0.0;
+        if (tick.time_seconds() < from || tick.time_seconds() >= from + lasts) return;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(cost.value);
+        while (std::chrono::steady_clock::now() < end) {
+        }
+    }
+};
+TACTUS_NODE(Busy, out, from, lasts, cost)
+
 /// A pose that does not move.
 struct Still {
     static constexpr auto about = "A fixed pose.";
@@ -141,7 +160,8 @@ compile::Catalogue chaos_catalogue() {
         const compile::Catalogue all = nodes::catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
         for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(),
-                                     &node_type_Planted(), &node_type_Still(), &node_type_Keeper()})
+                                     &node_type_Planted(), &node_type_Still(), &node_type_Keeper(),
+                                     &node_type_Busy()})
             with.push_back(type);
         return with;
     }();

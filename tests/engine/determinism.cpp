@@ -2,6 +2,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <filesystem>
 
@@ -51,7 +52,9 @@ TEST_CASE("every group runs the activations that start before the end, and no mo
     for (const auto& group : engine.groups()) CHECK(group->telemetry.misses.load() == 0);
 }
 
-TEST_CASE("a live run that misses nothing has the offline hash, and one that misses has that of its log", "[live]") {
+TEST_CASE("a live run that misses nothing has the offline hash, and one that misses has that of its log",
+          "[virtual][slow]") {
+    const VirtualClock clock;
     const std::string patch = four_rates();
     const std::uint64_t offline = rendered(patch, 1, 0, false, 0.4);
     for (const double dilate : {1.0, 4.0, 16.0}) {
@@ -79,7 +82,8 @@ TEST_CASE("a live run that misses nothing has the offline hash, and one that mis
     }
 }
 
-TEST_CASE("an overloaded live run skips, drops and holds, and its log still gives the same bits", "[live]") {
+TEST_CASE("an overloaded live run skips, drops and holds, and its log still gives the same bits", "[virtual][slow]") {
+    const VirtualClock clock;
     // The 1 kHz and 60 Hz groups need longer than their periods.
     std::string patch = four_rates();
     const auto slow_down = [&patch](const std::string& node, const std::string& work) {
@@ -109,7 +113,8 @@ TEST_CASE("an overloaded live run skips, drops and holds, and its log still give
 }
 
 TEST_CASE("a live run in which groups stand still for longer than rings hold is repeated, whatever blocks and threads",
-          "[live]") {
+          "[virtual][slow]") {
+    const VirtualClock clock;
     std::string patch = four_rates();
     const auto stand_still = [&patch](const std::string& name, const std::string& rate, int at) {
         patch += "[nodes." + name + "]\ntype = \"planted\"\nrate = \"" + rate +
@@ -132,7 +137,8 @@ TEST_CASE("a live run in which groups stand still for longer than rings hold is 
     std::filesystem::remove(log);
 }
 
-TEST_CASE("a damaged or foreign log is refused", "[live]") {
+TEST_CASE("a damaged or foreign log is refused", "[virtual]") {
+    const VirtualClock clock;
     const auto log = scratch("damaged.log");
     run::EngineOptions options;
     options.seconds = 0.05;

@@ -36,10 +36,6 @@ struct LiveOutcome {
 
 LiveOutcome run_case(const LiveCase& what, const WatchedHand& hand);
 
-/// The machine is busy with other things now and then, and ticks come too late: then a hand is let go of before it is
-/// time. Such a run is repeated.
-constexpr int attempts = 5;
-
 inline double ms_between(std::int64_t from, std::int64_t to) { return static_cast<double>(to - from) * 1e-6; }
 
 }  // namespace tactus::test

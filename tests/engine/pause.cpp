@@ -4,7 +4,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/skip.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -50,19 +50,13 @@ using Seconds = std::chrono::duration<double>;
 
 }  // namespace
 
-TEST_CASE("a pause fades the force, stops logical time for all groups, and replays to the bit", "[live]") {
-    auto folder = scratch("pause");
+TEST_CASE("a pause fades the force, stops logical time for all groups, and replays to the bit", "[virtual]") {
+    const VirtualClock clock;
+    const auto folder = scratch("pause");
     run::Engine::PortHashes live_hashes;
     double stood_at = 0.0, stood_for = 0.0, moved = 0.0;
-    std::size_t faults = 0, hiccups = 0;
-    // A machine that is too busy for 1 kHz faults now and then; a pause that is not rested through, every time.
-    for (int attempt = 0; attempt < 4; ++attempt) {
-        if (attempt > 0) {
-            if (faults + hiccups == 0) break;
-            std::filesystem::remove_all(folder);
-            folder = scratch("pause");
-            faults = hiccups = 0;
-        }
+    std::size_t faults = 0;
+    {
         take::TakeWriter take(folder,
                               {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
         run::EngineOptions options;
@@ -93,14 +87,9 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
         CHECK(stage == 3);
         CHECK(engine.pausing() == run::Engine::Pausing::runs);
         live_hashes = engine.port_hashes();
-        for (const auto& slot : engine.host().devices)
-            for (const io::DeviceFault& fault : slot->guard.faults()) {
-                const bool is_at_pause = std::abs(static_cast<double>(fault.tick) * 1e-3 - stood_at) < 0.02;
-                (is_at_pause ? faults : hiccups) += 1;
-            }
-        // Nobody is late for having waited: what the machine itself delays is far less than the pause.
-        for (const auto& group : engine.groups())
-            CHECK(static_cast<double>(group->telemetry.skipped) * seconds(group->plan->period) < 0.2);
+        for (const auto& slot : engine.host().devices) faults += slot->guard.faults().size();
+        // Nobody is late for having waited.
+        for (const auto& group : engine.groups()) CHECK(group->telemetry.skipped == 0);
     }
     CHECK(stood_for > 0.3);
     CHECK(moved == 0.0);
@@ -111,11 +100,6 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
     CHECK(again.hashes == live_hashes);
     CHECK(again.matches_result);
 
-    if (hiccups > 0) {
-        tactus::test::skip("the machine was too busy to keep the force up");
-        std::filesystem::remove_all(folder);
-        return;
-    }
     const take::Take take = take::Take::load(folder);
     const auto forces = [&](const std::string& port) {
         std::vector<double> force;
@@ -148,7 +132,8 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a run that is to end while it pauses goes on to its end", "[live]") {
+TEST_CASE("a run that is to end while it pauses goes on to its end", "[virtual]") {
+    const VirtualClock clock;
     run::EngineOptions options;
     options.seconds = 5.0;
     options.live = true;
@@ -166,7 +151,8 @@ TEST_CASE("a run that is to end while it pauses goes on to its end", "[live]") {
 }
 
 TEST_CASE("a node of a new rate that an edit brings while a run pauses waits with the others, and the take repeats it",
-          "[live]") {
+          "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("pause-edit");
     const std::string more = held + "[nodes.fresh]\ntype = \"chaos\"\nrate = \"200 Hz\"\n";
     take::TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.6, .live = true});

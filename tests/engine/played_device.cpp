@@ -3,8 +3,11 @@
 
 #include "devices/haptic/operated.hpp"
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <memory>
+#include <utility>
 
 namespace tactus::test {
 
@@ -30,20 +33,26 @@ private:
     haptic::SharedWrench force_;
 };
 
-Performance* performances[2] = {};
+constexpr std::size_t max_names = 8;
+std::array<Performance*, max_names> performances{};
 
-template <int slot>
+template <std::size_t slot>
 std::unique_ptr<HapticDevice> open_played(Options&, const haptic::PathResolver&) {
     return std::make_unique<PlayedDevice>(*performances[slot]);
+}
+
+template <std::size_t... slots>
+constexpr std::array<decltype(&open_played<0>), max_names> openers(std::index_sequence<slots...>) {
+    return {open_played<slots>...};
 }
 
 }  // namespace
 
 void play_as(const std::string& name, Performance& performance) {
-    static std::map<std::string, int> slots;
-    const int slot = slots.try_emplace(name, static_cast<int>(slots.size()) % 2).first->second;
-    performances[slot] = &performance;
-    haptic::add_haptic_driver({name, "a test plays it", slot == 0 ? open_played<0> : open_played<1>});
+    static std::map<std::string, std::size_t> slots;
+    const std::size_t slot = slots.try_emplace(name, slots.size()).first->second;
+    performances.at(slot) = &performance;
+    haptic::add_haptic_driver({name, "a test plays it", openers(std::make_index_sequence<max_names>())[slot]});
 }
 
 }  // namespace tactus::test

@@ -3,6 +3,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <sndfile.h>
 
@@ -52,7 +53,8 @@ void change_to(run::Engine& engine, std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("recording begins within a run for all outputs at one time, and the take repeats the run to the bit",
-          "[live]") {
+          "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("record");
     Flicks begun = 0;
     const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { change_to(e, 4); }},
@@ -85,7 +87,8 @@ TEST_CASE("recording begins within a run for all outputs at one time, and the ta
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a run that is recorded twice has two stretches of each output in one take", "[live]") {
+TEST_CASE("a run that is recorded twice has two stretches of each output in one take", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("twice");
     const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
                                           {0.25, [](run::Engine& e) { e.record(false); }},
@@ -101,7 +104,8 @@ TEST_CASE("a run that is recorded twice has two stretches of each output in one 
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a value that was changed in the second stretch of a take is found", "[live]") {
+TEST_CASE("a value that was changed in the second stretch of a take is found", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("forged");
     run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
                       {0.25, [](run::Engine& e) { e.record(false); }},
@@ -128,7 +132,8 @@ TEST_CASE("a value that was changed in the second stretch of a take is found", "
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a journal that grows too long is given up, and only recording is refused from then on", "[live]") {
+TEST_CASE("a journal that grows too long is given up, and only recording is refused from then on", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("long");
     bool was_refused = false;
     std::vector<std::string> notices;

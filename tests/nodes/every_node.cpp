@@ -31,9 +31,16 @@ void for_every_node(Check&& check) {
         }
 }
 
+/// A hand of the feed jumps through the whole bone from tick to tick: carving it with 27 times the voxels would take nine
+/// tenths of the time of all nodes.
+void prepare(NodeHarness& harness, const NodeType& type) {
+    if (type.name == "carve") harness.set("kerf", "3 mm").asset("source", test::coarse_ball());
+    harness.prepare();
+}
+
 std::uint64_t hash_of(const NodeType& type, const ValueType* any, Feed feed, std::uint64_t partition) {
     NodeHarness harness(type, {.max_frames = 17, .feed = feed, .drive_params = true, .any = any});
-    harness.prepare();
+    prepare(harness, type);
     harness.run(2000, partition);
     return harness.output_hash();
 }
@@ -81,22 +88,25 @@ struct Declaration final : MemberVisitor {
     }
 };
 
+void check_partitions(Feed feed) {
+    for_every_node([feed](const NodeType& type, const ValueType* any) {
+        const std::uint64_t whole = hash_of(type, any, feed, 0);
+        for (const std::uint64_t partition : {0u, 1u, 2u, 3u}) CHECK(hash_of(type, any, feed, partition) == whole);
+    });
+}
+
 }  // namespace
 
-TEST_CASE("any partition of a run into blocks gives the same bits", "[slow]") {
-    for_every_node([](const NodeType& type, const ValueType* any) {
-        for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
-            const std::uint64_t whole = hash_of(type, any, feed, 0);
-            CHECK(hash_of(type, any, feed, 0) == whole);
-            for (const std::uint64_t partition : {1u, 2u, 3u}) CHECK(hash_of(type, any, feed, partition) == whole);
-        }
-    });
+TEST_CASE("any partition of a run into blocks gives the same bits", "[slow]") { check_partitions(Feed::ordinary); }
+
+TEST_CASE("any partition of a run into blocks gives the same bits, also of hostile values", "[slow]") {
+    check_partitions(Feed::hostile);
 }
 
 TEST_CASE("finite values in give finite values out", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.drive_params = true, .any = any});
-        harness.prepare();
+        prepare(harness, type);
         harness.run(3000);
         CHECK(harness.finite());
     });
@@ -105,7 +115,7 @@ TEST_CASE("finite values in give finite values out", "[slow]") {
 TEST_CASE("a node recovers from values that are not finite, huge or denormal", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.feed = Feed::hostile, .any = any});
-        harness.prepare();
+        prepare(harness, type);
         harness.run(3000);
         harness.feed_with(Feed::ordinary);
         harness.run(3000);
@@ -119,7 +129,7 @@ TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system
     for_every_node([](const NodeType& type, const ValueType* any) {
         for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
             NodeHarness harness(type, {.feed = feed, .drive_params = true, .any = any});
-            harness.prepare();
+            prepare(harness, type);
             const RealtimeViolations seen = watch_scopes([&] { harness.run(500, 1); });
             INFO(seen.describe());
             CHECK(seen.none());
@@ -131,7 +141,7 @@ TEST_CASE("a node runs with every optional input left open", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.any = any});
         harness.disconnect_optional();
-        harness.prepare();
+        prepare(harness, type);
         harness.run(500);
         CHECK(harness.finite());
     });

@@ -14,13 +14,13 @@ namespace tactus::test {
 
 namespace {
 
-bone::Bone ball() {
+bone::Bone ball(int side = 84) {
     bone::Bone bone;
     bone.name = "ball";
     volume::Grid& d = bone.distance;
-    d.size = {84, 84, 84};
-    d.spacing = Vec3(1.0 / 3200.0);
-    d.origin = -0.5 * 83.0 * d.spacing;
+    d.size = {side, side, side};
+    d.spacing = Vec3(84.0 / 3200.0 / side);
+    d.origin = -0.5 * (side - 1.0) * d.spacing;
     d.values.resize(d.count());
     bone.density = d;
     for (int k = 0; k < d.size[2]; ++k)
@@ -49,6 +49,8 @@ sound::Recording tone(bool cutting, double rate, double load) {
 }
 
 }  // namespace
+
+std::shared_ptr<const void> coarse_ball() { return std::make_shared<const bone::Bone>(ball(28)); }
 
 std::shared_ptr<const void> sample_asset(std::string_view type_name) {
     if (type_name == AssetLoader<bone::Bone>::name) return std::make_shared<const bone::Bone>(ball());

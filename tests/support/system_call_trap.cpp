@@ -105,6 +105,8 @@ void disarm_system_call_trap() {
     prctl(PR_SET_SYSCALL_USER_DISPATCH, dispatch_off, 0, 0, 0);
 }
 
+bool traps_system_calls() noexcept { return selector == block; }
+
 }  // namespace tactus
 
 #else
@@ -113,6 +115,7 @@ namespace tactus {
 
 bool arm_system_call_trap() { return false; }
 void disarm_system_call_trap() {}
+bool traps_system_calls() noexcept { return false; }
 
 }  // namespace tactus
 

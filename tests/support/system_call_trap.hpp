@@ -8,5 +8,7 @@ namespace tactus {
 /// processor or a sanitizer does not allow it.
 bool arm_system_call_trap();
 void disarm_system_call_trap();
+/// Whether those of this thread are trapped now.
+bool traps_system_calls() noexcept;
 
 }  // namespace tactus

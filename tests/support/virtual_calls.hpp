@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <poll.h>
 #include <pthread.h>
 #include <time.h>
 
@@ -22,6 +23,7 @@ int lock(pthread_mutex_t* mutex) noexcept;
 int unlock(pthread_mutex_t* mutex) noexcept;
 /// `until` null: for ever.
 int wait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept;
+int poll(pollfd* files, nfds_t count, int longest_ms) noexcept;
 
 /// By any thread: wakes threads that take part. False: none of them waits for the condition.
 bool wake(const void* address, bool all) noexcept;

@@ -3,9 +3,11 @@
 
 #include "tests/support/next_definition.hpp"
 #include "tests/support/refused_threads.hpp"
+#include "tests/support/system_call_trap.hpp"
 #include "tests/support/virtual_calls.hpp"
 
 #include <linux/futex.h>
+#include <poll.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/syscall.h>
@@ -57,6 +59,7 @@ constexpr std::int64_t read_cost_ns(int reads_since_wait) noexcept {
 }
 // A mutex that a thread in real time holds is tried again.
 constexpr std::int64_t try_again_ns = 50'000;
+constexpr std::int64_t poll_again_ns = 1'000'000;
 constexpr std::size_t max_threads = 1024;
 constexpr int max_idle_s = 30;  // real time
 
@@ -70,8 +73,8 @@ std::int64_t real_ns(clockid_t clock) noexcept {
 }
 
 long futex(std::atomic<int>& word, int operation, int value, const timespec* longest = nullptr) noexcept {
-    return TACTUS_NEXT(syscall)(SYS_futex, reinterpret_cast<int*>(&word), operation | FUTEX_PRIVATE_FLAG, value, longest,
-                       nullptr, 0);
+    return TACTUS_NEXT(syscall)(SYS_futex, reinterpret_cast<int*>(&word), operation | FUTEX_PRIVATE_FLAG, value,
+                                longest, nullptr, 0);
 }
 
 /// A mutex that no definition of this program counts or replaces.
@@ -110,7 +113,7 @@ constinit thread_local Thread* current = nullptr;
 
 namespace {
 
-/// One at a time; never destroyed, because of threads that stop for ever.
+/// One at a time; never destroyed, because threads that were released may still be inside.
 class Scheduler {
 public:
     Scheduler(std::uint64_t seed, const VirtualClock::Lateness& lateness)
@@ -125,6 +128,14 @@ public:
         thread->wake_ns = late(now_ns_);
         threads_[count_++] = thread;
         return thread;
+    }
+    void started(Thread* thread, pthread_t handle) noexcept {
+        const Hold hold(lock_);
+        // A detached thread that has ended had the same handle.
+        const auto end = threads_.begin() + static_cast<std::ptrdiff_t>(count_);
+        const auto old = std::find_if(threads_.begin(), end, [&](const Thread* t) { return t->handle == handle; });
+        if (old != end) forget(*old);
+        thread->handle = handle;
     }
     void remove(Thread* thread) noexcept {
         const Hold hold(lock_);
@@ -198,6 +209,7 @@ public:
     }
     void begin() noexcept { await_turn(*current); }
     void end() noexcept {
+        if (!current) return;  // it was released
         lock_.lock();
         Thread& me = *current;
         me.has_ended = true;
@@ -208,7 +220,18 @@ public:
         lock_.unlock();
     }
     void join(Thread& other) noexcept {
-        while (!other.has_ended) wait(&other, never, [] {});
+        while (current && !other.has_ended) wait(&other, never, [] {});
+    }
+
+    /// By the thread that runs, as the last call: the others go on in real time.
+    void release() noexcept {
+        const Hold hold(lock_);
+        current = nullptr;
+        is_released_ = true;
+        for (std::size_t i = 0; i < count_; ++i) {
+            threads_[i]->may_run = 1;
+            futex(threads_[i]->may_run, FUTEX_WAKE, 1);
+        }
     }
 
     void set_lateness(const VirtualClock::Lateness& lateness) noexcept {
@@ -257,6 +280,7 @@ private:
         const std::int64_t cost = read_cost_ns(++me.reads);
         now_ns_ += cost;
         me.processor_ns += cost;
+        if (traps_system_calls()) return now_ns_;  // that of passing on is not the watched code's
         for (std::size_t i = 0; i < count_; ++i) {
             if (threads_[i] == &me || threads_[i]->wake_ns > now_ns_) continue;
             const int reads = me.reads;
@@ -314,9 +338,10 @@ private:
         return std::all_of(threads_.begin(), threads_.begin() + static_cast<std::ptrdiff_t>(count_),
                            [](const Thread* thread) { return thread->has_ended; });
     }
-    static void await_turn(Thread& me) noexcept {
+    void await_turn(Thread& me) noexcept {
         while (me.may_run.load() == 0) futex(me.may_run, FUTEX_WAIT, 0);
         me.may_run = 0;
+        if (is_released_) current = nullptr;
     }
     void forget(Thread* thread) noexcept {
         const auto end = threads_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -340,6 +365,7 @@ private:
     std::array<Thread*, max_threads> threads_{}, found_{};
     std::size_t count_ = 0;
     std::atomic<int> news_{0};
+    std::atomic<bool> is_released_{false};
 };
 
 std::atomic<Scheduler*> scheduler{nullptr};
@@ -371,11 +397,13 @@ int sleep_for(const timespec& duration) noexcept {
 }
 
 int lock(pthread_mutex_t* mutex) noexcept {
-    for (;;) {
+    while (current) {
         const int result = TACTUS_NEXT(pthread_mutex_trylock)(mutex);
         if (result != EBUSY) return result;
-        scheduler.load()->wait(mutex, scheduler.load()->now() + try_again_ns, [] {});
+        Scheduler& time = *scheduler;
+        time.wait(mutex, time.now() + try_again_ns, [] {});
     }
+    return TACTUS_NEXT(pthread_mutex_lock)(mutex);
 }
 
 int unlock(pthread_mutex_t* mutex) noexcept {
@@ -392,7 +420,18 @@ int wait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, con
         time.wake_held(mutex, false);
     });
     lock(mutex);
-    return woken ? 0 : ETIMEDOUT;
+    return woken || !until ? 0 : ETIMEDOUT;
+}
+
+int poll(pollfd* files, nfds_t count, int longest_ms) noexcept {
+    Scheduler& time = *scheduler;
+    const std::int64_t end_ns = longest_ms < 0 ? never : time.now() + longest_ms * poll_again_ns;
+    for (;;) {
+        const int ready = TACTUS_NEXT(poll)(files, count, 0);
+        if (ready != 0 || time.now() >= end_ns) return ready;
+        time.sleep_until(std::min(end_ns, time.now() + poll_again_ns));
+        if (!current) return TACTUS_NEXT(poll)(files, count, longest_ms);
+    }
 }
 
 bool wake(const void* address, bool all) noexcept {
@@ -430,8 +469,8 @@ VirtualClock::VirtualClock(const Lateness& lateness, std::uint64_t seed) : seed_
 }
 
 VirtualClock::~VirtualClock() {
-    current = nullptr;
-    scheduler = nullptr;  // not destroyed: threads may wait in it for ever
+    // Not destroyed: threads may still be inside.
+    scheduler.exchange(nullptr)->release();
 }
 
 bool VirtualClock::is_virtual() { return true; }
@@ -461,18 +500,22 @@ void VirtualClock::compute(std::int64_t duration_ns) { preempt(duration_ns); }
 
 }  // namespace tactus::test
 
+#if !defined(TACTUS_REAL_THREADS)
+namespace virtual_time = tactus::test::virtual_time;
+#endif
+
 extern "C" {
 
 int pthread_create(pthread_t* handle, const pthread_attr_t* attributes, void* (*run)(void*), void* argument) noexcept {
     if (tactus::test::refuses_thread()) return EAGAIN;
 #if !defined(TACTUS_REAL_THREADS)
-    if (tactus::test::current) {
-        auto& time = *tactus::test::scheduler.load();
-        tactus::test::virtual_time::Thread* const thread = time.add();
+    if (virtual_time::current) {
+        auto& time = *virtual_time::scheduler.load();
+        virtual_time::Thread* const thread = time.add();
         thread->run = run;
         thread->argument = argument;
-        const int result = tactus::test::create_real(handle, attributes, tactus::test::virtual_time::run_thread, thread);
-        if (result == 0) thread->handle = *handle;
+        const int result = tactus::test::create_real(handle, attributes, virtual_time::run_thread, thread);
+        if (result == 0) time.started(thread, *handle);
         else time.remove(thread);
         return result;
     }
@@ -483,8 +526,8 @@ int pthread_create(pthread_t* handle, const pthread_attr_t* attributes, void* (*
 #if !defined(TACTUS_REAL_THREADS)
 
 int pthread_join(pthread_t handle, void** result) {
-    if (tactus::test::current) {
-        auto& time = *tactus::test::scheduler.load();
+    if (virtual_time::current) {
+        auto& time = *virtual_time::scheduler.load();
         if (auto* const thread = time.find(handle)) {
             time.join(*thread);
             const int joined = TACTUS_NEXT(pthread_join)(handle, result);
@@ -496,23 +539,28 @@ int pthread_join(pthread_t handle, void** result) {
 }
 
 int pthread_setschedparam(pthread_t handle, int policy, const sched_param* parameters) noexcept {
-    if (tactus::test::current) return 0;
+    if (virtual_time::current) return 0;
     return TACTUS_NEXT(pthread_setschedparam)(handle, policy, parameters);
 }
 
 int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
-    if (tactus::test::current) return tactus::test::virtual_time::unlock(mutex);
+    if (virtual_time::current) return virtual_time::unlock(mutex);
     return TACTUS_NEXT(pthread_mutex_unlock)(mutex);
 }
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
-    if (tactus::test::current && tactus::test::scheduler.load()->read(clock, time)) return 0;
+    if (virtual_time::current && virtual_time::scheduler.load()->read(clock, time)) return 0;
     return TACTUS_NEXT(clock_gettime)(clock, time);
 }
 
 int sched_yield() noexcept {
-    if (!tactus::test::current) return TACTUS_NEXT(sched_yield)();
-    return tactus::test::virtual_time::sleep_for({0, 0});
+    if (!virtual_time::current) return TACTUS_NEXT(sched_yield)();
+    return virtual_time::sleep_for({0, 0});
+}
+
+int poll(pollfd* files, nfds_t count, int longest_ms) {
+    if (virtual_time::current && longest_ms != 0) return virtual_time::poll(files, count, longest_ms);
+    return TACTUS_NEXT(poll)(files, count, longest_ms);
 }
 
 // Atomic waits: libstdc++ calls the futex itself.
@@ -522,24 +570,24 @@ long syscall(long number, ...) noexcept {
     std::array<long, 6> a{};
     for (long& value : a) value = va_arg(given, long);
     va_end(given);
-    if (number == SYS_futex && tactus::test::scheduler.load() != nullptr) {
+    if (number == SYS_futex && virtual_time::scheduler.load() != nullptr) {
         const auto* const word = reinterpret_cast<const std::atomic<int>*>(a[0]);
         const int operation = static_cast<int>(a[1]) & FUTEX_CMD_MASK;
         if (operation == FUTEX_WAKE || operation == FUTEX_WAKE_BITSET)
-            tactus::test::virtual_time::wake(word, a[2] != 1);
-        if (tactus::test::current && (operation == FUTEX_WAIT || operation == FUTEX_WAIT_BITSET)) {
+            virtual_time::wake(word, a[2] != 1);
+        if (virtual_time::current && (operation == FUTEX_WAIT || operation == FUTEX_WAIT_BITSET)) {
             if (word->load() != static_cast<int>(a[2])) {
                 errno = EAGAIN;
                 return -1;
             }
-            auto& time = *tactus::test::scheduler.load();
+            auto& time = *virtual_time::scheduler.load();
             const auto* const until = reinterpret_cast<const timespec*>(a[3]);
-            std::int64_t end_ns = tactus::test::virtual_time::never;
-            if (until && operation == FUTEX_WAIT) end_ns = time.now() + tactus::test::virtual_time::ns_of(*until);
+            std::int64_t end_ns = virtual_time::never;
+            if (until && operation == FUTEX_WAIT) end_ns = time.now() + virtual_time::ns_of(*until);
             else if (until)
-                end_ns = time.steady_of(static_cast<int>(a[1]) & FUTEX_CLOCK_REALTIME ? CLOCK_REALTIME : CLOCK_MONOTONIC,
-                                        tactus::test::virtual_time::ns_of(*until));
-            if (time.wait(word, end_ns, [] {})) return 0;
+                end_ns = time.steady_of((a[1] & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC,
+                                        virtual_time::ns_of(*until));
+            if (time.wait(word, end_ns, [] {}) || !until) return 0;
             errno = ETIMEDOUT;
             return -1;
         }

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Virtual time for tests of threads. The test programs define the C library's clocks, sleeps, condition variables and
-// threads (realtime_counters.cpp, virtual_clock.cpp). Threads that take part in a VirtualClock run one at a time; when all
-// of them wait, its time advances to the next wake-up. A run of a second takes milliseconds, its threads are as late as the
-// test requests, and the same seed gives the same order of all threads.
-// Precedents: FoundationDB's simulation; Shadow (Jansen, Newsome, Wails, USENIX ATC 2022), which runs unchanged programs.
+// threads (realtime_counters.cpp, virtual_clock.cpp). Threads that take part in a VirtualClock run one at a time; when
+// all of them wait, its time advances to the next wake-up. A run of a second takes milliseconds, its threads are as
+// late as the test requests, and the same seed gives the same order of all threads. Precedents: FoundationDB's
+// simulation; Shadow (Jansen, Newsome, Wails, USENIX ATC 2022), which runs unchanged programs.
 #pragma once
 
 #include <cstdint>
 
 namespace tactus::test {
 
-/// While it exists, the thread that made it, every thread that this one starts, and those that they start, are in virtual
-/// time: std::chrono's clocks (but not the date), sleeps, std::thread, std::mutex, std::condition_variable, atomic waits.
-/// Time begins at the steady clock's. Reading a clock takes virtual time, computing takes none, and so a loop that reads the
-/// clock is a thread that computes. System calls that block stop virtual time. Real-time priorities are accepted and
-/// ignored. One at a time. Threads that have not ended when it is destroyed stop for ever: their data must outlive them.
-/// Under ThreadSanitizer, which owns these functions, time and threads are real.
+/// While it exists, the thread that made it, every thread that this one starts, and those that they start, are in
+/// virtual time: std::chrono's clocks, sleeps, std::thread, std::mutex, std::condition_variable, atomic waits, poll.
+/// Time begins at the steady clock's. Reading a clock takes virtual time, computing takes none, and so a loop that
+/// reads the clock is a thread that computes. `poll` checks its files every millisecond of virtual time, in which the
+/// kernel may have done little: what waits for processes or terminals stays in real time. Other system calls that block
+/// stop virtual time. Real-time priorities are accepted and ignored. One at a time. Threads that have not ended when it
+/// is destroyed go on in real time. Under ThreadSanitizer, which owns these functions, time and threads are real.
 class VirtualClock {
 public:
     struct Lateness {

@@ -40,5 +40,7 @@ Verb vessel_verb();
 Verb rope_verb();
 Verb reconstruct_verb();
 Verb peers_verb();
+Verb fundamental_verb();
+Verb verdicts_verb();
 
 }  // namespace tactus::bench

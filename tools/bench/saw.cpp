@@ -264,7 +264,7 @@ int bench_saw(const SawBenchChoice& choice) {
     fmt::print("{:<72} {:<20} {:<34} {}\n", "", "published", "Tactus", "off");
     for (const Row& r : made.rows) fmt::print("{:<72} {:<20} {:<34} {}\n", r.what, r.published, r.tactus, r.how_far);
     fmt::print(
-        "\nfront and forces, 32 teeth and 88 points of the faces, all teeth in bone: {:.1f} µs of CPU time, {:.2g} "
+        "\nfront and forces, 32 teeth and the body of the blade, all teeth in bone: {:.1f} µs of CPU time, {:.2g} "
         "times the {:.1f} µs of blade_pass; wall p99 {:.1f} µs\n",
         cost["front_us"].get<double>(), cost["front_over_blade_pass"].get<double>(),
         cost["blade_pass_us"].get<double>(), cost["front_wall_p99_us"].get<double>());

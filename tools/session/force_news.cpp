@@ -83,7 +83,7 @@ std::vector<HandForces> forces_of(const run::Engine& engine, LetReturn way) {
         if (control::is_off(state.state)) {
             if (const auto faults = slot->guard.faults(); !faults.empty()) {
                 forces.reason = faults.back().reason;
-                forces.fault = control::describe(forces.reason);
+                forces.fault = faults.back().text();
                 forces.fault_since_s = seconds(faults.back().tick * slot->period);
             }
             forces.is_windowless =
@@ -99,7 +99,7 @@ std::vector<FaultOnRecord> faults_on_record(const run::Engine& engine) {
     std::vector<FaultOnRecord> all;
     for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
-            all.push_back({slot->name, control::describe(fault.reason), seconds(fault.tick * slot->period),
+            all.push_back({slot->name, fault.text(), seconds(fault.tick * slot->period),
                            fault.over < 0 ? -1.0 : seconds(fault.over * slot->period), fault.force_N, fault.number});
     return all;
 }

@@ -122,6 +122,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
             json["faults"].push_back(
                 {{"device", slot->name},
                  {"reason", control::describe(fault.reason)},
+                 {"source", fault.source.front() == 0 ? Json() : Json(std::string(fault.source.data()))},
                  {"time_s", tactus::seconds(fault.tick * slot->period)},
                  {"over_s", fault.over < 0 ? Json() : Json(tactus::seconds(fault.over * slot->period))},
                  {"force_N", fault.force_N}});

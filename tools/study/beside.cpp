@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <condition_variable>
 #include <deque>
@@ -15,9 +16,11 @@
 namespace tactus::study {
 
 void let_others_go_first() noexcept {
-    constexpr int nice = 10;
-    // On Linux it is a value of the thread, and threads get that of the one that makes them.
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
+    constexpr int lower_by = 10, lowest = 19;
+    // On Linux it is a value of the thread, and threads inherit it. Relative to the main thread's: under `nice` an absolute
+    // value would be the higher priority, and refused.
+    const int of_program = ::getpriority(PRIO_PROCESS, static_cast<id_t>(::getpid()));
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), std::min(of_program + lower_by, lowest));
 }
 
 namespace {

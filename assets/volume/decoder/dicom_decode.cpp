@@ -480,9 +480,15 @@ DicomSamples decode_dicom_samples(const DicomSource& source, const std::vector<D
         // The bytes in GDCM, the copy that it returns, and the floats.
         file::require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file,
                            "its samples");
-        std::vector<char> buffer(picture.GetBufferLength());
-        if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");
         const gdcm::DataSet& set = reader.GetFile().GetDataSet();
+        std::vector<char> buffer(picture.GetBufferLength());
+        // GDCM clears the bits above the stored ones, where padding and damage show: plain samples are taken as they are.
+        const gdcm::ByteValue* plain = first.syntax == "1.2.840.10008.1.2" || first.syntax.starts_with("1.2.840.10008.1.2.1")
+                                           ? set.GetDataElement(pixel_data).GetByteValue()
+                                           : nullptr;
+        if (plain && plain->GetPointer() && plain->GetLength() >= buffer.size())
+            std::memcpy(buffer.data(), plain->GetPointer(), buffer.size());
+        else if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");
         const Padding padding = stated_padding(set, layout);
         const bool has_overlay = has_embedded_overlay(set);
         const std::span<float> values(memory(count), count);

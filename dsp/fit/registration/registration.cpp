@@ -223,29 +223,168 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
     return registered(moving, fixed, start, settings, From::near);
 }
 
-Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
-                                    std::span<const contact::SurfacePoint> fixed_points,
-                                    const RegistrationTarget& fixed, const RegistrationSettings& settings) {
-    if (moving.empty()) throw Error("there is no surface to register");
+namespace {
+
+constexpr int start_count = 24;
+
+/// Coarse registrations from all starts.
+std::vector<Registration> coarse_registrations(std::span<const contact::SurfacePoint> moving,
+                                               std::span<const contact::SurfacePoint> fixed_points,
+                                               const RegistrationTarget& fixed, const RegistrationSettings& settings) {
     const Spread from = spread_of(moving), to = spread_of(fixed_points);
     RegistrationSettings coarse = settings;
     coarse.most_points = std::max<std::size_t>(200, settings.most_points / 8);
     coarse.finest = 3.0 * settings.finest;
     coarse.stages = settings.stages / 2;
     coarse.by_parts = false;
-    Registration best;
-    for (int n = 0; n < 24; ++n) {
+    std::vector<Registration> found;
+    for (int n = 0; n < start_count; ++n) {
         // Aligns the principal axes in the four proper ways, each also rotated about the longest axis in steps of a
         // sixth.
         Mat3 axes = to.axes;
         if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
         const Quat rotation = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
-        const Registration found =
-            registered(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse, From::far);
-        if (n == 0 || found.median < best.median) best = found;
+        found.push_back(registered(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse, From::far));
     }
-    return register_surface(moving, fixed, best.pose, settings);
+    return found;
+}
+
+/// Compares poses by the distances of both surfaces.
+class PoseScore {
+public:
+    PoseScore(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed)
+        : moving_(thinned(moving, most)),
+          fixed_(thinned(fixed, most)),
+          to_moving_(moving_),
+          to_fixed_(fixed_),
+          gyration_(std::min(spread_of(moving).gyration, spread_of(fixed).gyration)),
+          middle_(spread_of(moving).middle) {
+        const double a = area_of(moving), b = area_of(fixed);
+        counts_moving_ = a < 1.25 * b;
+        counts_fixed_ = b < 1.25 * a;
+    }
+
+    double gyration() const { return gyration_; }
+    double limit() const { return distance_limit * gyration_; }
+
+    /// m, root mean square.
+    double operator()(const Pose& pose) const {
+        double sum = 0.0, area = 0.0;
+        if (counts_moving_) add(moving_, to_fixed_, pose, sum, area);
+        if (counts_fixed_) add(fixed_, to_moving_, pose.inverse(), sum, area);
+        return std::sqrt(sum / area);
+    }
+
+    bool is_same(const Pose& a, const Pose& b) const {
+        const double cosine = std::min(1.0, std::abs(glm::dot(a.orientation, b.orientation)));
+        return 2.0 * std::acos(cosine) < 20.0 * std::numbers::pi / 180.0 &&
+               glm::length(a.apply(middle_) - b.apply(middle_)) < 0.25 * gyration_;
+    }
+
+private:
+    static constexpr std::size_t most = 1500;
+    static constexpr double distance_limit = 0.25;
+
+    static double area_of(std::span<const contact::SurfacePoint> points) {
+        double area = 0.0;
+        for (const contact::SurfacePoint& p : points) area += p.area;
+        return area;
+    }
+
+    /// Distances count up to a quarter of the size, and so do points whose surfaces look away from each other.
+    void add(const std::vector<contact::SurfacePoint>& points, const RegistrationTarget& target, const Pose& pose,
+             double& sum, double& area) const {
+        const double limit = distance_limit * gyration_;
+        for (const contact::SurfacePoint& p : points) {
+            const Vec3 at = pose.apply(p.position);
+            const std::size_t n = target.nearest(at);
+            const Vec3 difference = at - target.position(n);
+            // To the plane of the nearest point, where that is as near as the points of a thinned surface are.
+            const double plane = std::abs(glm::dot(difference, target.normal(n))), point = glm::length(difference);
+            double d = point < limit ? plane : limit;
+            if (glm::dot(pose.rotate(p.normal), target.normal(n)) < 0.0) d = limit;
+            d = std::min(d, limit);
+            sum += p.area * d * d;
+            area += p.area;
+        }
+    }
+
+    std::vector<contact::SurfacePoint> moving_, fixed_;
+    RegistrationTarget to_moving_, to_fixed_;
+    double gyration_;
+    Vec3 middle_;
+    bool counts_moving_ = true, counts_fixed_ = true;
+};
+
+}  // namespace
+
+Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
+                                    std::span<const contact::SurfacePoint> fixed_points,
+                                    const RegistrationTarget& fixed, const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    const std::vector<Registration> found = coarse_registrations(moving, fixed_points, fixed, settings);
+    const auto best = std::ranges::min_element(found, {}, &Registration::median);
+    return register_surface(moving, fixed, best->pose, settings);
+}
+
+JudgedRegistration search_registration(std::span<const contact::SurfacePoint> moving,
+                                       std::span<const contact::SurfacePoint> fixed_points,
+                                       const RegistrationTarget& fixed, const Pose* start,
+                                       const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    constexpr std::size_t refined = 4;       // poses
+    constexpr double clearly_better = 0.75, as_good = 0.95;  // of a rival's score
+    constexpr double comes_together = 0.6;   // of the limit of a distance
+    const PoseScore score(moving, fixed_points);
+    std::vector<JudgedRegistration::Rival> coarse;
+    for (const Registration& each : coarse_registrations(moving, fixed_points, fixed, settings))
+        coarse.push_back({each.pose, score(each.pose)});
+    std::ranges::stable_sort(coarse, {}, &JudgedRegistration::Rival::score);
+
+    std::vector<std::pair<Registration, double>> found;
+    const auto add = [&](const Pose& from) {
+        Registration made = register_surface(moving, fixed, from, settings);
+        const double value = score(made.pose);
+        for (auto& [known, known_score] : found)
+            if (score.is_same(known.pose, made.pose)) {
+                if (value < known_score) known = made, known_score = value;
+                return;
+            }
+        found.emplace_back(std::move(made), value);
+    };
+    if (start) add(*start);
+    std::vector<Pose> starts;
+    for (const JudgedRegistration::Rival& each : coarse) {
+        if (starts.size() == refined) break;
+        if (std::ranges::any_of(starts, [&](const Pose& pose) { return score.is_same(pose, each.pose); })) continue;
+        starts.push_back(each.pose);
+        add(each.pose);
+    }
+    // What the sampling of the surfaces cannot tell apart.
+    const double noise = 1e-3 * score.gyration();
+    const auto ratio = [&](double better, double worse) { return (better + noise) / (worse + noise); };
+    std::size_t best = 0;
+    for (std::size_t n = 1; n < found.size(); ++n) {
+        const bool is_from_start = start && best == 0;
+        if (ratio(found[n].second, found[best].second) < (is_from_start ? as_good : 1.0)) best = n;
+    }
+    JudgedRegistration judged;
+    judged.best = found[best].first;
+    judged.score = found[best].second;
+    for (std::size_t n = 0; n < found.size(); ++n)
+        if (n != best) judged.rivals.push_back({found[n].first.pose, found[n].second});
+    std::ranges::stable_sort(judged.rivals, {}, &JudgedRegistration::Rival::score);
+    judged.verdict = judged.score > comes_together * score.limit() ? RegistrationVerdict::none
+                     : judged.rivals.empty() || ratio(judged.score, judged.rivals.front().score) < clearly_better
+                         ? RegistrationVerdict::fit
+                         : RegistrationVerdict::ambiguous;
+    if (judged.verdict == RegistrationVerdict::ambiguous)
+        std::erase_if(judged.rivals, [&](const JudgedRegistration::Rival& rival) {
+            return ratio(judged.score, rival.score) < clearly_better;
+        });
+    if (start) judged.best.before = median_distance(thinned(moving, settings.most_points), fixed, *start);
+    return judged;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "dsp/geometry/point_tree.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,32 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
 Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
                                     std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings = {});
+
+enum class RegistrationVerdict : std::uint8_t {
+    fit,        ///< one pose is clearly better than all others
+    ambiguous,  ///< another pose fits about as well, as for a shape that is nearly symmetric
+    none        ///< no pose brings the surfaces together
+};
+
+struct JudgedRegistration {
+    Registration best;
+    RegistrationVerdict verdict = RegistrationVerdict::none;
+    double score = 0.0;  ///< m, root mean square distance of both surfaces at `best`, each distance limited
+    struct Rival {
+        Pose pose;
+        double score = 0.0;  ///< m
+    };
+    std::vector<Rival> rivals;  ///< other poses, best first; of an ambiguous result those that fit about as well
+};
+
+/// Searches from 24 starts as register_from_anywhere, and from `start` if it is not null, and compares the best pose with
+/// the best of those that are more than 20 degrees or a quarter of the size away. The comparison is relative, because the
+/// surface of another person never fits exactly: a fit is at least a quarter better than any other pose. Of poses that fit
+/// equally well, the one from `start` is returned. Where one surface is a part of the other, only its distances count.
+JudgedRegistration search_registration(std::span<const contact::SurfacePoint> moving,
+                                       std::span<const contact::SurfacePoint> fixed_points,
+                                       const RegistrationTarget& fixed, const Pose* start,
+                                       const RegistrationSettings& settings = {});
 
 /// Points of the moving surface at `pose` that are farther than `away` (m) from the fixed one: the largest connected
 /// patch by area (gaps below `gap`), dilated by `margin`.

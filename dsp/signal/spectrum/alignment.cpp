@@ -46,13 +46,20 @@ std::ptrdiff_t peak_of(const std::vector<double>& circle, std::ptrdiff_t from, s
     return best;
 }
 
-}  // namespace
+constexpr double least_overlap = 1.0;  // s, and a quarter of the shorter record
 
-Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
-                      double highest, double longest) {
+/// Odds and lags of one search for a delay.
+struct DelaySearch {
+    double rate, lowest, highest;  // Hz
+    std::ptrdiff_t reach;          // samples to both sides
+    double tests = 1.0;            // number of such searches; 0: the peak counts whatever its height
+};
+
+/// The delay of `output`, of which as many samples as both have are used.
+Alignment delay_between(std::span<const double> reference, std::span<const double> output, const DelaySearch& wanted) {
+    const double rate = wanted.rate, lowest = wanted.lowest, highest = wanted.highest;
     const std::size_t common = std::min(reference.size(), output.size());
-    const auto reach =
-        static_cast<std::ptrdiff_t>(std::min(std::round(longest * rate), 0.5 * static_cast<double>(common)));
+    const std::ptrdiff_t reach = wanted.reach;
     Alignment found;
     if (common < 64 || reach < 1) return found;
     const std::size_t size = std::bit_ceil(common + static_cast<std::size_t>(reach) + 1);
@@ -89,9 +96,8 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
     const double height = std::abs(at(whitened, coarse)) * static_cast<double>(size) / (2.0 * bins);
     found.significance = height * std::sqrt(2.0 * kept * hann_independence);
     // Correlation peaks of a band are about 1/(2 × bandwidth) apart.
-    const double trials = std::max(1.0, 4.0 * longest * (highest - lowest));
-    const double needed = std::sqrt(2.0 * std::log(2.0 * trials / chance));
-    found.significant = found.significance > needed;
+    const double trials = std::max(1.0, 4.0 * static_cast<double>(reach) / rate * (highest - lowest)) * wanted.tests;
+    found.significant = wanted.tests == 0.0 || found.significance > std::sqrt(2.0 * std::log(2.0 * trials / chance));
     if (!found.significant) return found;
 
     const std::vector<double> correlation = samples_of(plain);
@@ -103,6 +109,65 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
     found.delay = (static_cast<double>(lag) + shift) / rate;
     const double peak = middle - 0.25 * (left - right) * shift;
     found.correlation = std::clamp(peak * static_cast<double>(size) / (2.0 * std::sqrt(power_a * power_b)), -1.0, 1.0);
+    return found;
+}
+
+/// Blocks of the output in windows of the reference of twice their length: finds an excerpt wherever it is, and records
+/// that have a quarter in common. The delay is that of the most significant block.
+Alignment delay_of_blocks(std::span<const double> reference, std::span<const double> output, DelaySearch wanted,
+                          double longest) {
+    const std::size_t shorter = std::min(reference.size(), output.size());
+    const auto least = static_cast<std::size_t>(least_overlap * wanted.rate);
+    if (shorter < least) return {};
+    const std::size_t block = std::max(least, shorter / 4);
+    wanted.reach = static_cast<std::ptrdiff_t>(block);
+    const std::size_t windows = reference.size() / block, blocks = output.size() / block;
+    wanted.tests = static_cast<double>(windows * blocks);
+    Alignment best;
+    std::vector<double> padded(2 * block);
+    for (std::size_t i = 0; i < blocks; ++i) {
+        // The block in the middle, so that it lies within the window at any delay between two windows.
+        std::ranges::fill(padded, 0.0);
+        // Faded: the leakage of lines that are cut would correlate with that of any other record.
+        std::ranges::copy(windowed(output.subspan(i * block, block), block),
+                          padded.begin() + static_cast<std::ptrdiff_t>(block / 2));
+        for (std::size_t j = 0; j < windows; ++j) {
+            const std::size_t from = std::min(j * block, reference.size() - std::min(reference.size(), 2 * block));
+            if (from + 2 * block > reference.size()) continue;
+            Alignment found = delay_between(reference.subspan(from, 2 * block), padded, wanted);
+            found.delay += (static_cast<double>(i * block) - static_cast<double>(block / 2) - static_cast<double>(from)) / wanted.rate;
+            if (found.significant && std::abs(found.delay) <= longest && found.significance > best.significance)
+                best = found;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
+                      double highest, double longest) {
+    const double shorter = static_cast<double>(std::min(reference.size(), output.size()));
+    DelaySearch wanted{rate, lowest, highest,
+                       static_cast<std::ptrdiff_t>(std::min(std::round(longest * rate), 0.5 * shorter))};
+    Alignment found = delay_between(reference, output, wanted);
+    if (!found.significant) found = delay_of_blocks(reference, output, wanted, longest);
+    if (!found.significant) found = delay_of_blocks(output, reference, wanted, longest), found.delay = -found.delay;
+    if (!found.significant) return found;
+    // Again on what both have in common, by which the correlation is normalised.
+    const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay * rate));
+    const auto from_reference = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, -lag)),
+               from_output = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, lag));
+    if (from_reference >= reference.size() || from_output >= output.size()) return {};
+    const std::span<const double> r = reference.subspan(from_reference), d = output.subspan(from_output);
+    const std::size_t overlap = std::min(r.size(), d.size());
+    if (static_cast<double>(overlap) < std::min(shorter, std::max(least_overlap * rate, 0.25 * shorter))) return {};
+    wanted.reach = static_cast<std::ptrdiff_t>(std::ceil(search * rate));
+    wanted.tests = 0.0;
+    const Alignment fine = delay_between(r.first(overlap), d.first(overlap), wanted);
+    if (!fine.significant) return found;
+    found.delay = static_cast<double>(lag) / rate + fine.delay;
+    found.correlation = fine.correlation;
     return found;
 }
 

@@ -8,6 +8,7 @@
 #include "dsp/signal/spectrum/cross.hpp"
 #include "dsp/signal/spectrum/decibels.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
+#include "dsp/signal/spectrum/level.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
+constexpr double least_coherence = 0.5;  // of copies: others are compared by their statistics
 
 /// A take resampled to the common rate, in pieces.
 class Stream {
@@ -171,6 +173,14 @@ double fundamental_of(const Take& take) {
     return found.is_certain() ? found.frequency : 0.0;
 }
 
+/// Fraction of the variance of a take, at its own rate, that a power in the band is.
+double fraction_inside(const Take& take, double power) {
+    Level level;
+    const Take::Blocks blocks = take.open();
+    for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) level.push(block);
+    return level.rms() > 0.0 ? std::min(1.0, power / (level.rms() * level.rms())) : 0.0;
+}
+
 double peak_of(double before, std::span<const double> samples) {
     for (const double x : samples) before = std::max(before, std::abs(x));
     return before;
@@ -234,7 +244,10 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
         crossed.emplace(pair.settings(middle));
     }
     std::vector<double> equally_strong;
+    Course reference(rate, result.lowest, result.highest), output(reference);
     pair.read([&](std::span<const double> r, std::span<const double> d) {
+        reference.push(r);
+        output.push(d);
         const std::size_t both = std::min(r.size(), d.size());
         spectrograms.push(r.first(both), d.first(both));
         if (!waveforms) return;
@@ -245,6 +258,9 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     });
     spectrograms.end_of_pass();
     result.spectrogram_similarity = spectrograms.value();
+    result.reference_kurtosis = CourseStatistics(reference.frames()).kurtosis();
+    result.output_kurtosis = CourseStatistics(output.frames()).kurtosis();
+    result.statistics = statistics_difference(reference.frames(), output.frames());
     if (!waveforms) return;
     // These compare all frequencies of the waveforms.
     if (result.highest >= 0.999 * most_frequency) {
@@ -265,6 +281,10 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     for (std::size_t k = 0; k < cross.xx.size(); ++k)
         if (in_band(k) && cross.xx[k] > 1e-4 * greatest) sum += result.coherence[k], count += 1.0;
     result.coherence_mean = count > 0.0 ? sum / count : 0.0;
+    if (*result.coherence_mean > least_coherence) {
+        result.course_db = course_difference_db(reference.frames(), output.frames());
+        result.statistics.reset();
+    }
 }
 
 template <class Sample>
@@ -300,7 +320,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
         if (static_cast<double>(take->frames) < shortest * take->rate)
             throw Error(fmt::format("the {} is shorter than {} s", name, shortest));
-    const auto length = static_cast<std::size_t>(rate * std::max(stretch, 4.0 * options.longest_delay));
+    const auto length = static_cast<std::size_t>(rate * stretch);
     const Stretch loud = loudest_stretch(reference, output, length);
     result.alignment =
         align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);
@@ -332,6 +352,10 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
     score_spectra(axes, options, spectrograms, result);
     score_over_time(axes.front(), spectrograms, result);
+    if (axes.size() == 1) {
+        result.reference_inside = fraction_inside(reference, result.reference_rms * result.reference_rms);
+        result.output_inside = fraction_inside(output, result.output_rms * result.output_rms);
+    }
     // For a saw at another speed the orders are compared, each take at its own rate.
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);

@@ -4,12 +4,14 @@
 
 #include "dsp/signal/spectrum/above_noise.hpp"
 #include "dsp/signal/spectrum/alignment.hpp"
+#include "dsp/signal/spectrum/course.hpp"
 #include "dsp/signal/spectrum/line_match.hpp"
 #include "dsp/signal/spectrum/perception.hpp"
 #include "dsp/signal/spectrum/similarity.hpp"
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,7 +37,8 @@ struct Take {
 
 struct ComparisonOptions {
     ThresholdUnit touch = ThresholdUnit::displacement;
-    double longest_delay = 2.0;  ///< s, greatest delay or advance of the output
+    /// s, greatest delay or advance of the output; as far as at least 1 s and a quarter overlap.
+    double longest_delay = std::numeric_limits<double>::infinity();
     /// The other axes of both takes, sampled together with them: spectra are then sums of the powers of all axes.
     std::vector<Take> reference_axes{}, output_axes{};
 };
@@ -62,6 +65,12 @@ struct Comparison {
     std::optional<double> coherence_mean;                    ///< for aligned takes only
     double touch_cosine = 0.0;  ///< cosine_1000 with perceptual weights
     double touch_gap_db = 0.0;  ///< how much stronger the output feels at equal power
+    /// Of aligned takes, dB: rms difference of their levels over time; see `course_difference_db`.
+    std::optional<double> course_db;
+    /// Of separate takes of at least 1 s: their statistics over time.
+    std::optional<StatisticsDifference> statistics;
+    double reference_kurtosis = 0.0, output_kurtosis = 0.0;  ///< in the band
+    double reference_inside = 0.0, output_inside = 0.0;  ///< fraction of the variance of each take within the band
     double reference_hz = 0.0, output_hz = 0.0;  ///< fundamentals; 0 when none was found
     double speed_ratio = 1.0;  ///< output's over the reference's, corrected in the spectra
     MatchedLines lines;

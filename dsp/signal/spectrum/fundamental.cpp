@@ -31,6 +31,11 @@ WelchSettings whole_settings(double rate, std::size_t frames) {
     return WelchSettings::hann(rate, segment, segment / 2);
 }
 
+/// Hz: the least rate that a section resolves: five bins between its orders.
+double section_least(double rate) {
+    return 5.0 * rate / static_cast<double>(std::bit_floor(static_cast<std::size_t>(std::max(64.0, 0.25 * rate))));
+}
+
 bool alike(double a, double b, double ratio) { return a > 0.0 && b > 0.0 && std::abs(a / b - 1.0) < ratio; }
 
 }  // namespace
@@ -38,6 +43,10 @@ bool alike(double a, double b, double ratio) { return a > 0.0 && b > 0.0 && std:
 FundamentalStream::FundamentalStream(double rate, std::size_t frames, double lowest, double highest)
     : lowest_(lowest),
       highest_(highest),
+      highest_moving_(std::min(highest, std::max(500.0, 4.0 * lowest))),
+      rate_(rate),
+      // Rates outside of the range are sought too: their multiples inside it are no fundamentals.
+      steady_(rate, frames, std::min(lowest, lowest_fundamental), std::max(highest, highest_fundamental)),
       whole_(whole_settings(rate, frames)),
       section_(section_settings(rate, frames)),
       fresh_section_(section_),
@@ -45,6 +54,8 @@ FundamentalStream::FundamentalStream(double rate, std::size_t frames, double low
 
 void FundamentalStream::push(std::span<const double> samples) {
     whole_.push(samples);
+    steady_.push(samples);
+    pushed_ += samples.size();
     while (!samples.empty()) {
         const std::size_t part = std::min(samples.size(), section_length_ - in_section_);
         section_.push(samples.first(part));
@@ -65,7 +76,7 @@ void FundamentalStream::end_section() {
     for (const double movement : movement_) all += movement, most = std::max(most, movement);
     // An impact excites many frequencies at once: the ripples of its spectrum are no lines.
     if (most < jump_in * all)
-        for (const HarmonicSum& one : harmonic_sums(section_.spectrum(), lowest_, highest_, most_candidates))
+        for (const HarmonicSum& one : harmonic_sums(section_.spectrum(), lowest_, highest_moving_, most_candidates))
             section.candidates[section.count++] = one;
     sections_.push_back(section);
     section_ = fresh_section_;
@@ -75,6 +86,7 @@ void FundamentalStream::end_section() {
 
 void FundamentalStream::gap() {
     whole_.forget_waiting();
+    steady_.gap();
     section_ = fresh_section_;
     in_section_ = 0;
     movement_.fill(0.0);
@@ -122,9 +134,9 @@ FundamentalStream::Path FundamentalStream::best_path() const {
     return path;
 }
 
-FundamentalEstimate FundamentalStream::estimate() const {
+FundamentalEstimate FundamentalStream::along_path() const {
     FundamentalEstimate out;
-    const std::vector<HarmonicSum> whole = harmonic_sums(whole_.spectrum(), lowest_, highest_);
+    const std::vector<HarmonicSum> whole = harmonic_sums(whole_.spectrum(), lowest_, highest_moving_);
     const HarmonicSum sharp = whole.empty() ? HarmonicSum{} : whole.front();
     const Path path = best_path();
     std::vector<HarmonicSum> heard;
@@ -174,9 +186,56 @@ FundamentalEstimate FundamentalStream::estimate() const {
     out.high = out.steady ? out.frequency : high;
     const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5;
     if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
+    // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the half.
+    out.certain = is_path && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
     for (const HarmonicSum& one : whole)
         if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
             out.rivals.push_back(one);
+    return out;
+}
+
+FundamentalEstimate FundamentalStream::estimate() const {
+    FundamentalEstimate out = along_path();
+    const SteadyFundamental lines = steady_.estimate();
+    const double seconds = static_cast<double>(pushed_) / rate_;
+    const bool in_range = lines.frequency >= lowest_ && lines.frequency <= highest_;
+    const bool is_sure = lines.confidence >= FundamentalEstimate::sure;
+    const bool agrees = alike(lines.frequency, out.frequency, 0.03) ||
+                        (lines.frequency >= 0.95 * out.low && lines.frequency <= 1.05 * out.high);
+    if (is_sure && in_range) {
+        const bool moves = !lines.is_sharp && !out.steady && out.low > 2.0 * section_least(rate_) &&
+                           alike(lines.frequency, out.frequency, 0.05);
+        if (!moves) {
+            out.frequency = out.low = out.high = lines.frequency;
+            out.steady = true;
+            out.deviation = lines.is_sharp ? lines.deviation : 0.0;
+        }
+        out.confidence = lines.confidence;
+        out.certain = true;
+    } else if (out.frequency > 0.0) {
+        // The lines of the whole record overrule the sections.
+        if (lines.frequency > 0.0 && !agrees && (lines.explained >= 0.3 || lines.confidence > 0.5)) out.certain = false;
+        if (out.steady && agrees && in_range && lines.is_sharp) {
+            out.frequency = out.low = out.high = lines.frequency;
+            out.deviation = lines.deviation;
+        }
+    } else if (in_range && lines.confidence > 0.5) {
+        out.frequency = out.low = out.high = lines.frequency;
+        out.steady = true;
+        out.confidence = lines.confidence;
+    }
+    const auto add_rival = [&](double frequency, double score) {
+        if (frequency > 0.0 && !alike(frequency, out.frequency, 0.03) &&
+            std::ranges::none_of(out.rivals, [&](const HarmonicSum& one) { return alike(one.frequency, frequency, 0.03); }))
+            out.rivals.insert(out.rivals.begin(), {frequency, score});
+    };
+    std::erase_if(out.rivals, [&](const HarmonicSum& one) { return alike(one.frequency, out.frequency, 0.03); });
+    if (out.frequency > 0.0 && !out.certain) {
+        if (out.rivals.empty()) add_rival(lines.rival, std::clamp(lines.rival_score / std::max(lines.score, 1e-9), 0.0, 1.0));
+        add_rival(lines.frequency, lines.confidence);
+    }
+    if (out.rivals.size() > 3) out.rivals.resize(3);
+    out.periods = out.frequency * seconds;
     return out;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fundamental frequency of a vibration, the one estimator of all analyses: harmonic sums of short sections, joined to a path over time, beside the harmonic sum of
-// the spectrum of the whole record.
+// Fundamental frequency of a vibration, the one estimator of all analyses: the lines of the whole record, which decide
+// where they are steady; otherwise harmonic sums of short sections, joined to a path over time.
 #pragma once
 
 #include "dsp/signal/spectrum/harmonic_sum.hpp"
+#include "dsp/signal/spectrum/steady_fundamental.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <array>
@@ -15,22 +16,28 @@
 namespace tactus::signal {
 
 /// Hz: the range that is searched unless a caller knows better.
-inline constexpr double lowest_fundamental = 20.0, highest_fundamental = 500.0;
+inline constexpr double lowest_fundamental = 5.0, highest_fundamental = 1000.0;
 
 struct FundamentalEstimate {
     double frequency = 0.0;  ///< Hz; 0: not periodic
-    double confidence = 0.0;  ///< 0 … 1; uncertain below `certain`
+    /// 0 … 1. Of a steady rate, the probability that it is right; of a path, the mean score of its sections.
+    double confidence = 0.0;
+    /// Wrong for at most about 1 % of machines. A rate whose half the record does not resolve is never certain.
+    bool certain = false;
     bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
     double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path
+    /// Hz: standard deviation of a steady rate (Cramér–Rao bound in the measured noise); 0: unknown.
+    double deviation = 0.0;
+    double periods = 0.0;  ///< number of periods in the record
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
-    static constexpr double certain =
-        0.25;  // of 200 noisy saws, 97 % of the right ones reach it and none of the wrong ones
+    static constexpr double sure = 0.98;   ///< least confidence of a steady rate that is certain
+    static constexpr double path = 0.32;   ///< that of a path of at least four sections: of 200 noisy saws 91 % are certain and none is wrong
     static constexpr double heard = 0.16;  // below it, there is no fundamental
-    bool is_certain() const { return frequency > 0.0 && confidence >= certain; }
+    bool is_certain() const { return frequency > 0.0 && certain; }
 };
 
-/// Estimates the fundamental of a record that comes in pieces, in a memory of about 100 bytes per half second.
+/// Estimates the fundamental of a record that comes in pieces, in a memory of about 100 bytes per half second beside that of the steady lines.
 class FundamentalStream {
 public:
     /// `frames`: length of the record; an estimate is enough.
@@ -43,6 +50,7 @@ public:
     FundamentalEstimate estimate() const;
 
 private:
+    FundamentalEstimate along_path() const;
     static constexpr std::size_t most_candidates = 6;
     struct Section {
         std::array<HarmonicSum, most_candidates> candidates{};
@@ -55,7 +63,9 @@ private:
     void end_section();
     Path best_path() const;
 
-    double lowest_, highest_;
+    double lowest_, highest_, highest_moving_, rate_;
+    std::size_t pushed_ = 0;
+    SteadyFundamentalStream steady_;
     WelchStream<double> whole_, section_, fresh_section_;
     std::size_t section_length_, in_section_ = 0;
     std::vector<Section> sections_;

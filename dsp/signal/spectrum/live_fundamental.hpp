@@ -8,7 +8,7 @@ namespace tactus::signal {
 
 struct LiveFundamental {
     double frequency = 0.0;   ///< Hz; 0: not periodic
-    double confidence = 0.0;  ///< 0 … 1; uncertain below FundamentalEstimate::certain
+    double confidence = 0.0;  ///< 0 … 1; uncertain below 0.25
 };
 
 /// Wait-free, does not allocate. A rate that changes while the spectrum is averaged smears its lines, and is missed.

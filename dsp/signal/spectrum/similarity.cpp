@@ -47,15 +47,18 @@ Block standardised(const Block& samples) {
     return out;
 }
 
-/// Projection coefficient of the output on the reference.
+/// Projection coefficient of the output on the reference. A silent reference has none: it is like a silent
+/// output, and like no other.
 template <class Block>
 double likeness(const Block& reference, const Block& output) {
-    double product = 0.0, power = 0.0;
+    double product = 0.0, power = 0.0, other = 0.0;
     for (std::size_t k = 0; k < reference.size(); ++k) {
         product += reference[k] * output[k];
         power += reference[k] * reference[k];
+        other += output[k] * output[k];
     }
-    return product / (power + 2.2e-16);
+    if (!(power > 0.0)) return other > 0.0 ? 0.0 : 1.0;
+    return product / power;
 }
 
 WaveformSimilarity similarity_of(std::span<const double> reference, std::span<const double> output) {
@@ -177,7 +180,7 @@ void WaveformSimilarity::push(std::span<const double> reference, std::span<const
 double WaveformSimilarity::st_sim() const {
     if (blocks_ == 0 || temporal_ <= 0.0) return 0.0;
     const auto count = static_cast<double>(blocks_);
-    return std::pow(temporal_ / count, 2.0 / 3.0) * std::cbrt(spectral_ / count);
+    return std::min(1.0, std::pow(temporal_ / count, 2.0 / 3.0) * std::cbrt(spectral_ / count));
 }
 
 double WaveformSimilarity::spqi() const { return blocks_ > 0 ? quality_ / static_cast<double>(blocks_) : 0.0; }

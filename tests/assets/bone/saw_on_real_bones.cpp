@@ -138,7 +138,7 @@ Cycle burr_cycle(const Place& place, bool running, double depth, const Vec3& asi
     const auto ticks = static_cast<int>(seconds * 1000.0);
     for (int n = 0; n <= ticks; ++n) {
         const Pose pose{place_at(place.site, static_cast<double>(n) / ticks, depth, 4e-3, aside), teeth_down};
-        ledger.add(pose.position, burr.step(read, pose, running, 1000.0, 1e-3, {}).wrench.force);
+        ledger.add(pose.position, burr.step(read, pose, {running, 1000.0, 1e-3}, {}).wrench.force);
         burr.fill(path.emplace_back(), pose, running);
         if (n % 17 != 16) continue;
         read = bone.publish();

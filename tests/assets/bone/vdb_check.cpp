@@ -11,6 +11,7 @@
 #include "tests/support/bone_files.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -43,9 +44,12 @@ std::string bone_bytes(const TemporaryFolder& folder, std::uint32_t packing) {
     return repacked(bone::read_sealed(folder / "whole.vdb"), packing);
 }
 
+/// The message of load_bones, or nothing. Writes a file only if OpenVDB would read it.
 std::string refusal(const TemporaryFolder& folder, const std::string& bytes) {
-    file::write_whole_file(folder / "mutant.vdb", sealed(bytes));
     try {
+        std::string checked = bytes;
+        bone::check_vdb(checked, "mutant.vdb");
+        file::write_whole_file(folder / "mutant.vdb", sealed(bytes));
         bone::load_bones(folder / "mutant.vdb");
     } catch (const Error& error) {
         return error.what();
@@ -82,19 +86,26 @@ TEST_CASE("a chunk of a bone file that is not as long as its node is refused, pa
     const TemporaryFolder folder;
     for (const std::uint32_t packing : {1u, 3u, 4u, 6u}) {
         const std::string bytes = bone_bytes(folder, packing);
-        const std::size_t first_tree = bytes.find("Tree_float_5_4_3");
         int sizes = 0;
-        // All places at which a number might be the size of a chunk.
-        for (std::size_t at = first_tree + 16; at + 8 <= bytes.size(); ++at) {
-            const auto old = number_at<std::int64_t>(bytes, at);
-            if (old == 0 || old > 150000 || old < -150000 || (old > 0 && old % 256 == 0)) continue;
-            for (const std::int64_t size :
-                 {std::int64_t{-1} << 20, std::int64_t{1} << 20, -old - 4, old + 4, INT64_MIN, INT64_MAX}) {
-                CAPTURE(packing, at, old, size);
-                // Other numbers than sizes may be anything; what counts is that OpenVDB is not reached with a wrong one.
-                const std::string said = refusal(folder, with_number(bytes, at, size));
-                sizes += said.find("chunk") != std::string::npos;
+        for (std::size_t grid = bytes.find("Tree_float_5_4_3"); grid != std::string::npos;) {
+            // Chunks are in trees, which begin behind the transform.
+            const std::size_t next = bytes.find("Tree_float_5_4_3", grid + 1);
+            const std::size_t tree = bytes.find("ScaleMap", grid) + 8 + 120;
+            // All places at which a number might be the size of a chunk; a negative one is that of whole floats.
+            for (std::size_t at = tree; at + 8 <= std::min(next, bytes.size()); ++at) {
+                const auto old = number_at<std::int64_t>(bytes, at);
+                if (old == 0 || old > 150000 || old < -150000 || (old > 0 && old % 256 == 0) ||
+                    old % 4 < 0)
+                    continue;
+                for (const std::int64_t size :
+                     {std::int64_t{-1} << 20, std::int64_t{1} << 20, -old - 4, old + 4, INT64_MIN, INT64_MAX}) {
+                    CAPTURE(packing, at, old, size);
+                    // Other numbers than sizes may be anything; what counts is that OpenVDB is not reached with a wrong one.
+                    const std::string said = refusal(folder, with_number(bytes, at, size));
+                    sizes += said.find("chunk") != std::string::npos;
+                }
             }
+            grid = next;
         }
         CAPTURE(packing);
         CHECK(sizes >= 12);

@@ -2,10 +2,12 @@
 #include "assets/sound/sound.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -84,18 +86,26 @@ TEST_CASE("an unfinished sound leaves no file, and until it is finished the old 
     CHECK_FALSE(std::filesystem::exists(folder / "a.wav.part"));
 }
 
-TEST_CASE("a sound that lost its tail is refused, WAV or FLAC") {
+TEST_CASE("a FLAC that lost its tail is refused, a WAV is read up to the cut") {
     const TemporaryFolder folder;
-    for (const auto& [name, format] :
-         {std::pair{"a.wav", sound::SoundFormat::float_wav}, std::pair{"a.flac", sound::SoundFormat::flac}}) {
-        write(folder / name, ramp_samples(48000), 1, format);
-        const auto size = std::filesystem::file_size(folder / name);
-        for (const auto kept : {size - 1, size - 1000, size / 2, size / 10}) {
-            write(folder / name, ramp_samples(48000), 1, format);
-            std::filesystem::resize_file(folder / name, kept);
-            INFO(name << " of " << size << " bytes cut to " << kept);
-            CHECK_THROWS_AS(sound::load_sound(folder / name), Error);
-        }
+    const std::vector<float> whole = ramp_samples(48000);
+    write(folder / "a.wav", whole);
+    const auto size = std::filesystem::file_size(folder / "a.wav"), head = size - whole.size() * sizeof(float);
+    for (const auto kept : {size - 1, size - 1000, size / 2, size / 10}) {
+        write(folder / "a.wav", whole);
+        std::filesystem::resize_file(folder / "a.wav", kept);
+        INFO("a.wav of " << size << " bytes cut to " << kept);
+        const sound::Sound read = sound::load_sound(folder / "a.wav");
+        CHECK(read.frames == (kept - head) / sizeof(float));
+        CHECK(std::equal(read.samples.begin(), read.samples.end(), whole.begin()));
+    }
+    write(folder / "a.flac", whole, 1, sound::SoundFormat::flac);
+    const auto packed = std::filesystem::file_size(folder / "a.flac");
+    for (const auto kept : {packed - 1, packed - 1000, packed / 2, packed / 10}) {
+        write(folder / "a.flac", whole, 1, sound::SoundFormat::flac);
+        std::filesystem::resize_file(folder / "a.flac", kept);
+        INFO("a.flac of " << packed << " bytes cut to " << kept);
+        CHECK_THROWS_AS(sound::load_sound(folder / "a.flac"), Error);
     }
 }
 
@@ -111,7 +121,7 @@ TEST_CASE("what is no sound is refused with its name") {
     CHECK_THROWS_WITH(sound::load_sound(folder / "nan.wav"), ContainsSubstring("NaN"));
 }
 
-TEST_CASE("a header that promises more than the file holds is refused without the memory it asks for") {
+TEST_CASE("of a wave whose header promises more than the file holds, the samples that are there are read") {
     const TemporaryFolder folder;
     write(folder / "a.wav", ramp_samples(1000));
     std::string bytes = file::read_whole_file(folder / "a.wav");
@@ -121,7 +131,7 @@ TEST_CASE("a header that promises more than the file holds is refused without th
     std::memcpy(bytes.data() + data + 4, &claim, 4);
     std::memcpy(bytes.data() + 4, &claim, 4);
     file::write_whole_file(folder / "a.wav", bytes);
-    CHECK_THROWS_AS(sound::load_sound(folder / "a.wav"), Error);
+    CHECK(sound::load_sound(folder / "a.wav").samples == ramp_samples(1000));
 }
 
 TEST_CASE("a full disk and a missing folder are errors, not lost sounds") {
@@ -161,4 +171,38 @@ TEST_CASE("a header with a rate, or a number of samples, that cannot be is refus
     file.close();
     CHECK_THROWS_WITH(sound::load_sound(folder / "a.flac"),
                       Catch::Matchers::ContainsSubstring("more than a file of its size can hold"));
+}
+
+TEST_CASE("a WAV of the length from which on it is RF64 comes back bit for bit, and a shorter one stays a WAV") {
+    const TemporaryFolder folder;
+    const std::vector<float> samples = ramp_samples(9600);
+    const auto name_of = [](const std::filesystem::path& path) { return file::read_whole_file(path).substr(0, 4); };
+    for (const std::uint64_t from : {std::uint64_t{1000}, std::uint64_t{38'000}, std::uint64_t{39'000}}) {
+        sound::SoundWriter writer(folder / "a.wav", 2, 3000, sound::SoundFormat::float_wav, "in N", from);
+        writer.write(samples.data(), 4800);
+        writer.finish();
+        INFO(from);
+        const bool is_long = std::filesystem::file_size(folder / "a.wav") >= from;
+        CHECK(name_of(folder / "a.wav") == (is_long ? "RF64" : "RIFF"));
+        const sound::Sound sound = sound::load_sound(folder / "a.wav");
+        CHECK(sound.rate == 3000);
+        CHECK(sound.channels == 2);
+        CHECK(sound.samples == samples);
+        if (from == 39'000) CHECK_FALSE(is_long);
+    }
+}
+
+TEST_CASE("sounds of 2 and of 5 GiB are RF64 and read back whole", "[.large]") {
+    const TemporaryFolder folder;
+    const std::vector<float> silence(1 << 22, 0.25f);
+    for (const std::int64_t pieces : {129, 320}) {
+        sound::SoundWriter writer(folder / "a.wav", 1, 48000);
+        for (std::int64_t i = 0; i < pieces; ++i) writer.write(silence.data(), silence.size());
+        writer.finish();
+        std::string name(4, ' ');
+        std::ifstream(folder / "a.wav", std::ios::binary).read(name.data(), 4);
+        CHECK(name == "RF64");
+        sound::SoundReader reader(folder / "a.wav");
+        CHECK(static_cast<std::int64_t>(reader.frames()) == pieces * static_cast<std::int64_t>(silence.size()));
+    }
 }

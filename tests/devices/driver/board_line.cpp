@@ -97,7 +97,7 @@ TEST_CASE("torques do not wait in a slow line: a board at 115200 baud gives a ne
         const auto device = open_peer(*board);
         REQUIRE(waits_for_valid(*device));
         std::vector<std::int64_t> took;
-        for (int i = 0; i < 11; ++i) {
+        for (int i = 0; i < 5; ++i) {
             const double wanted = i % 2 == 0 ? 0.3 : -0.3;
             const std::int64_t begin = steady_ns();
             // For long enough that a line which is told too often would be full.

@@ -43,10 +43,11 @@ public:
 struct PeerKind {
     std::string driver;
     std::function<std::unique_ptr<Peer>()> make;
+    bool has_line = false;  ///< a terminal or a socket, which the kernel serves in its own time
 };
 
-/// Every driver of a device that pushes.
-const std::vector<PeerKind>& peer_kinds();
+/// Every driver of a device that pushes: those with a line, or those without.
+std::vector<PeerKind> peer_kinds(bool has_line);
 
 /// Options as a patch gives them.
 Options options_of(std::vector<OptionText> given);

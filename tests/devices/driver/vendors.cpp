@@ -11,6 +11,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/skip.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <dlfcn.h>
 
@@ -98,7 +99,8 @@ TEST_CASE("what the library says of a device is known without opening it") {
     CHECK(haptic::is_real_driver("touch"));
 }
 
-TEST_CASE("Force Dimension: enabled before any force, the device's watchdog set, closed in the end", "[live]") {
+TEST_CASE("Force Dimension: enabled before any force, the device's watchdog set, closed in the end", "[virtual]") {
+    const VirtualClock clock;
     const auto peer = make_dhd_peer();
     {
         const auto device = open_peer(*peer);
@@ -122,7 +124,8 @@ TEST_CASE("Force Dimension: enabled before any force, the device's watchdog set,
     CHECK_THAT(unknown->info().name, ContainsSubstring("unknown type 999"));
 }
 
-TEST_CASE("a device that is not calibrated has no pose and no force until it is", "[live]") {
+TEST_CASE("a device that is not calibrated has no pose and no force until it is", "[virtual]") {
+    const VirtualClock clock;
     for (const PeerKind& kind : {PeerKind{"force_dimension", make_dhd_peer}, {"touch", make_hd_peer}}) {
         CAPTURE(kind.driver);
         const auto peer = kind.make();
@@ -142,7 +145,8 @@ TEST_CASE("a device that is not calibrated has no pose and no force until it is"
     }
 }
 
-TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that do not pile up", "[live]") {
+TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that do not pile up", "[virtual]") {
+    const VirtualClock clock;
     const auto peer = make_hd_peer();
     tell(*peer, "fake_needs_update");
     {
@@ -163,7 +167,8 @@ TEST_CASE("OpenHaptics: units of limits, calibration by the library, errors that
 }
 
 TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one that was confirmed gives all",
-          "[live]") {
+          "[virtual]") {
+    const VirtualClock clock;
     const OwnConfig config;
     const auto peer = make_dhd_peer();
     driver::Opened opened;
@@ -196,7 +201,8 @@ TEST_CASE("a device whose pushes nobody confirmed gives 0.5 N and no torque, one
     CHECK_THAT(error_of([&] { driver::confirm("test", opened); }), ContainsSubstring("devices.json is damaged"));
 }
 
-TEST_CASE("a device that comes back as another one is not used", "[live]") {
+TEST_CASE("a device that comes back as another one is not used", "[virtual]") {
+    const VirtualClock clock;
     const auto peer = make_dhd_peer();
     const auto device = open_peer(*peer);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
@@ -234,7 +240,8 @@ TEST_CASE("a vendor's library reads its numbers with points, whatever language t
     for (const char* name : {"LOCPATH", "LC_ALL", "TACTUS_DEVICE_HOST"}) ::unsetenv(name);
 }
 
-TEST_CASE("a device that does not open in time names its step", "[live]") {
+TEST_CASE("a device that does not open in time names its step", "[virtual]") {
+    const VirtualClock clock;
     const auto peer = make_dhd_peer();
     peer->hang(true);
     const std::string said = error_of([&] {

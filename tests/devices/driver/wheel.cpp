@@ -7,6 +7,7 @@
 #include "tests/devices/driver/event_peer.hpp"
 #include "tests/devices/hosted/with_host.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -149,7 +150,8 @@ TEST_CASE("a joystick with force feedback is not taken for a wheel unless it is 
 }
 
 TEST_CASE("a wheel whose driver hangs gives no force after a tenth of a second, and one that is pushed goes on",
-          "[live]") {
+          "[virtual]") {
+    const VirtualClock clock;
     Rig rig;
     rig.open();
     for (int i = 0; i < 150; ++i) {
@@ -213,7 +215,8 @@ TEST_CASE("events that the system lost are asked for anew") {
     CHECK(sample.pose.position.x == Approx(0.14 * 5.0 * std::numbers::pi * 300.0 / 2000.0));
 }
 
-TEST_CASE("a wheel that refuses forces is lost, one that refuses once is not") {
+TEST_CASE("a wheel that refuses forces is lost, one that refuses once is not", "[virtual]") {
+    const VirtualClock clock;
     Rig rig;
     rig.open();
     rig.events.refuses = true;

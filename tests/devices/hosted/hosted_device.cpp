@@ -55,7 +55,7 @@ TEST_CASE("a driver in a process of its own gives samples and takes forces", "[l
     CHECK(host.leaves_nothing());
 }
 
-TEST_CASE("what a device states of its delay has that of its process in it, once", "[live]") {
+TEST_CASE("what a device states of its delay has that of its process in it, once") {
     const WatchedHost host;
     const auto device = host.open();
     // The process looks four times in a tick, and both a sample and a force wait for it once.
@@ -71,7 +71,7 @@ TEST_CASE("a hand at the window has no process of its own") {
     CHECK(error_of([&] { hosted::open_placed(request, as_named); }).find("p.toml:9") == 0);
 }
 
-TEST_CASE("acquire and commit of a device with a process of its own call no system and allocate nothing", "[live]") {
+TEST_CASE("acquire and commit of a device with a process of its own call no system and allocate nothing") {
     const WatchedHost host;
     const auto device = host.open();
     device->acquire(0.0);
@@ -85,7 +85,7 @@ TEST_CASE("acquire and commit of a device with a process of its own call no syst
     CHECK(seen.describe() == "none");
 }
 
-TEST_CASE("a device's process has no descriptor of the engine", "[live]") {
+TEST_CASE("a device's process has no descriptor of the engine") {
     const WatchedHost host;
     const std::string secret = host.path() + "-open";
     const int file = ::open(secret.c_str(), O_CREAT | O_RDWR, 0600);  // a library may forget to close it on exec
@@ -113,7 +113,7 @@ TEST_CASE("a sample that is no pose is not valid, and a force that is no number 
     for (const ForceLog::Entry& entry : host.log->entries()) REQUIRE(std::isfinite(entry.force));
 }
 
-TEST_CASE("the error of a driver in a process of its own is that of the driver", "[live]") {
+TEST_CASE("the error of a driver in a process of its own is that of the driver") {
     const WatchedHost host;
     ::setenv("TACTUS_DEVICE_HOST", (std::filesystem::path(command()).parent_path() / "tactus-device-host").c_str(), 1);
     for (const OptionText& wrong : {OptionText{"mas", "1 kg", {"p.toml", 9, 1}},
@@ -131,7 +131,7 @@ TEST_CASE("the error of a driver in a process of its own is that of the driver",
     CHECK(host.leaves_nothing());
 }
 
-TEST_CASE("a driver in a process of its own finds the files of its patch", "[live]") {
+TEST_CASE("a driver in a process of its own finds the files of its patch") {
     const WatchedHost host;
     ::setenv("TACTUS_DEVICE_HOST", (std::filesystem::path(command()).parent_path() / "tactus-device-host").c_str(), 1);
     const std::string script = host.path() + "-script";

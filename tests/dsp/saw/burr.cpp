@@ -34,7 +34,7 @@ struct Milling {
 
     saw::BurrContact step(const Vec3& at) {
         const Pose pose{at, teeth_down};
-        const saw::BurrContact contact = burr.step(read, pose, running, 1000.0, 1.0 / rate, law);
+        const saw::BurrContact contact = burr.step(read, pose, {running, 1000.0, 1.0 / rate}, law);
         burr.fill(path.emplace_back(), pose, running);
         if (++ticks * 60.0 >= (carved + 1) * rate) {
             ++carved;

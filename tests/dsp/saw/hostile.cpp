@@ -23,7 +23,7 @@ const std::vector<Pose>& hostile_poses() {
         {Vec3(nan_value, 0.0, 0.0), teeth_down},     {Vec3(0.0, infinite, 0.0), teeth_down},
         {Vec3(0.0, 0.0, -1e300), teeth_down},        {Vec3(0.0), Quat(0.0, 0.0, 0.0, 0.0)},
         {Vec3(0.0), Quat(nan_value, 0.0, 0.0, 1.0)}, {Vec3(0.0), Quat(1e200, 0.0, 0.0, 0.0)},
-        {Vec3(5.0, -3.0, 900.0), teeth_down},        {Vec3(0.0, 0.0, -0.004), Quat(2.0, 0.0, 0.0, 0.0)},
+        {Vec3(0.0, 0.0, -0.004), Quat(2.0, 0.0, 0.0, 0.0)},
     };
     return all;
 }
@@ -77,7 +77,7 @@ TEST_CASE("a burr in soft bone is finite, and bone without density does not hold
         for (int n = 0; n < 400; ++n) {
             const double z = 0.0025 - 0.01e-3 * n;
             const saw::BurrContact now =
-                burr.step(bone->current(), {Vec3(0.0, 0.0, z), teeth_down}, true, 1000.0, 1e-3, {});
+                burr.step(bone->current(), {Vec3(0.0, 0.0, z), teeth_down}, {true, 1000.0, 1e-3}, {});
             REQUIRE(is_sane(now.wrench));
             most = std::max(most, now.load);
             feed = std::max(feed, now.feed);
@@ -116,7 +116,7 @@ TEST_CASE("poses that are none give no force, and the blade lets go of the bone"
             CAPTURE(hostile.position.x, hostile.position.z, hostile.orientation.w);
             CHECK(is_sane(now.wrench));
             CHECK(glm::length(now.wrench.force) < 1e-9);
-            const saw::BurrContact ball = burr.step(sawing.read, hostile, true, 1000.0, 1e-3, {});
+            const saw::BurrContact ball = burr.step(sawing.read, hostile, {true, 1000.0, 1e-3}, {});
             CHECK(glm::length(ball.wrench.force) < 1e-9);
         }
         // Nothing is left of it.
@@ -124,6 +124,20 @@ TEST_CASE("poses that are none give no force, and the blade lets go of the bone"
         CHECK(glm::length(after.wrench.force) == 0.0);
         CHECK(std::isfinite(sawing.removed));
     }
+}
+
+TEST_CASE("a pose far from all bone lets the force fade within 100 ms") {
+    const auto bone = bone_block({.voxel = 0.33e-3});
+    Sawing sawing(*bone);
+    Pushing hand;
+    hand.push(sawing, 5.0, 0.3);
+    double last = 6.0;
+    for (int n = 0; n < 120; ++n) {
+        const double force = glm::length(sawing.step({Vec3(5.0, -3.0, 900.0), teeth_down}).wrench.force);
+        REQUIRE(force <= last);
+        last = force;
+    }
+    CHECK(last == 0.0);
 }
 
 TEST_CASE("ticks without length, rates that are none and a bone without samples are harmless") {
@@ -148,6 +162,6 @@ TEST_CASE("ticks without length, rates that are none and a bone without samples 
     for (int n = 0; n < 5; ++n) {
         const Pose pose{Vec3(0.0, 0.0, -1e-4 * n), teeth_down};
         CHECK(glm::length(blade.step(none, pose, {true, 228.0, 1e-3}, {}).wrench.force) == 0.0);
-        CHECK(glm::length(burr.step(none, pose, true, 1000.0, 1e-3, {}).wrench.force) == 0.0);
+        CHECK(glm::length(burr.step(none, pose, {true, 1000.0, 1e-3}, {}).wrench.force) == 0.0);
     }
 }

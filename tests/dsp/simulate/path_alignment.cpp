@@ -29,7 +29,7 @@ TEST_CASE("an aligned recording goes deepest where it is told to, upright there,
         CHECK(std::abs(samples[i].pose.orientation.w) == Approx(1.0));
         CHECK(samples[i].time == before[i].time);
     }
-    CHECK(deepest == Approx(0.009).margin(0.001));
+    CHECK(deepest == Approx(0.009).margin(1e-9));
     std::vector<simulate::TrajectorySample> none;
     simulate::align_to_rest(none, feed, 0.01);
     CHECK(none.empty());

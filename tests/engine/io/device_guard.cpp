@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/core/clock.hpp"
 #include "engine/io/device_guard.hpp"
 
+#include "dsp/core/clock.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>

@@ -6,6 +6,7 @@
 #include "graph/patch/patch.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -224,7 +225,8 @@ TEST_CASE("an observer that begins late, or sleeps until its ring is full, has t
     CHECK(holds_the_same(*bone, editor.current()));
 }
 
-TEST_CASE("a live run goes on alike under an observer that comes, goes and reads while values change", "[live]") {
+TEST_CASE("a live run goes on alike under an observer that comes, goes and reads while values change", "[virtual]") {
+    const VirtualClock clock;
     observe::Observer observer;
     run::EngineOptions options;
     options.seconds = 1.0;

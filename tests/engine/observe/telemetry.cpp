@@ -5,6 +5,7 @@
 #include "tests/engine/played_device.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -47,11 +48,12 @@ TEST_CASE("of two hands of a group the larger force is told, whichever comes las
 
 namespace {
 
-/// Skips of the 1 kHz group by cause, when its tick 300 lasts 50 ms: `busy` computing, else waiting in the driver.
+/// Skips of the 1 kHz group by cause, when its tick 300 lasts 15 ms: `busy` computing, else waiting in the driver. A
+/// longer one would lose its real-time priority.
 std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
     Performance performance;
     performance.acquire = [busy](std::int64_t count, double, const Wrench&) {
-        if (!busy && count == 300) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        if (!busy && count == 300) std::this_thread::sleep_for(std::chrono::milliseconds(15));
         DeviceSample sample;
         sample.counter = count;
         sample.valid = true;
@@ -61,7 +63,7 @@ std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
     const std::string patch =
         PatchText{
             {{"hand", "device_input", "1 kHz", {{"device", "slow"}}},
-             {"plant", "planted", "1 kHz", {{"fault", busy ? "stall" : "none"}, {"at", "300"}, {"stall", "50 ms"}}}},
+             {"plant", "planted", "1 kHz", {{"fault", busy ? "stall" : "none"}, {"at", "300"}, {"stall", "15 ms"}}}},
             {"hand.pose -> plant.pose"},
             "[devices.slow]\ndriver = \"slow\"\n"}
             .toml();
@@ -81,16 +83,11 @@ std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
 
 }  // namespace
 
-TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still", "[live]") {
-    // On a machine that is busy with other things a computing thread may stand still as well: three tries.
-    const auto most = [](bool busy, observe::LateCause cause) {
-        std::int64_t skips = 0;
-        for (int i = 0; i < 3 && skips < 40; ++i)
-            skips = std::max(skips, skips_after(busy)[static_cast<std::size_t>(cause)]);
-        return skips;
-    };
-    CHECK(most(true, observe::LateCause::ran_long) >= 40);
-    CHECK(most(false, observe::LateCause::preempted) >= 40);
+TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still",
+          "[virtual]") {
+    const VirtualClock clock;
+    CHECK(skips_after(true)[static_cast<std::size_t>(observe::LateCause::ran_long)] >= 40);
+    CHECK(skips_after(false)[static_cast<std::size_t>(observe::LateCause::preempted)] >= 40);
 }
 
 TEST_CASE("nodes are timed in one call of 64, and told by name") {

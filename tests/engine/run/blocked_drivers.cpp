@@ -4,6 +4,7 @@
 #include "tests/engine/live_case.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +17,8 @@ using namespace tactus::test;
 
 TEST_CASE(
     "a driver that blocks when the guard speaks to it disarms the guard of no other device, nor the end of the run",
-    "[live]") {
+    "[virtual]") {
+    const VirtualClock clock;
     WatchedHand &left = watched_hand("left"), &right = watched_hand("right");
     PatchText patch;
     add_hand(patch, "left");
@@ -40,7 +42,8 @@ TEST_CASE(
     left.blocks = WatchedHand::Blocks::never;
 }
 
-TEST_CASE("a driver that never comes back keeps neither the other hand's force nor the run", "[live]") {
+TEST_CASE("a driver that never comes back keeps neither the other hand's force nor the run", "[virtual]") {
+    const VirtualClock clock;
     for (const auto blocks : {WatchedHand::Blocks::in_acquire, WatchedHand::Blocks::in_commit}) {
         WatchedHand &left = watched_hand("left"), &right = watched_hand("right");
         PatchText patch;
@@ -68,45 +71,44 @@ TEST_CASE("a driver that never comes back keeps neither the other hand's force n
     }
 }
 
-TEST_CASE("a driver that comes back late from a commit is faded, not cut, and comes in anew", "[live]") {
+TEST_CASE("a driver that comes back late from a commit is faded, not cut, and comes in anew", "[virtual]") {
+    const VirtualClock clock;
     PatchText patch;
     add_hand(patch, "left");
-    for (int attempt = 1;; ++attempt) {
-        WatchedHand& hand = watched_hand("left");
-        double before = 0.0;
-        std::int64_t blocked = 0;
-        const auto block = [&](run::Engine&) {
-            before = hand.force();
-            hand.blocks = WatchedHand::Blocks::in_commit;
-        };
-        const auto unblock = [&](run::Engine&) {
-            if (blocked == 0 && hand.is_blocked) {
-                blocked = steady_now();
-                hand.blocks = WatchedHand::Blocks::never;
-            }
-            return blocked != 0 && ms_between(blocked, steady_now()) > 200.0;
-        };
-        const LiveOutcome o = run_case({patch.toml(), 30.0, block, unblock}, hand);
-        if ((before != 2.0 || o.faults.size() > 1) && attempt < attempts) continue;
-        const auto given = hand.given();
-        double largest = 0.0, last = 0.0;
-        for (std::size_t i = 1; i < given.size(); ++i) {
-            if (given[i].ns < o.done_ns || given[i].ns > o.stopped_ns) continue;
-            // Nobody fades in less than 10 ms.
-            largest = std::max(largest, (given[i - 1].force_N - given[i].force_N) /
-                                            std::max(ms_between(given[i - 1].ns, given[i].ns), 1.0));
-            last = given[i].force_N;
+    WatchedHand& hand = watched_hand("left");
+    double before = 0.0;
+    std::int64_t blocked = 0;
+    const auto block = [&](run::Engine&) {
+        before = hand.force();
+        hand.blocks = WatchedHand::Blocks::in_commit;
+    };
+    const auto unblock = [&](run::Engine&) {
+        if (blocked == 0 && hand.is_blocked) {
+            blocked = steady_now();
+            hand.blocks = WatchedHand::Blocks::never;
         }
-        CHECK(largest > 0.1);
-        CHECK(largest < 0.3);
-        CHECK(last == 0.0);
-        REQUIRE(o.faults.size() == 1);
-        CHECK(o.faults[0] == describe(control::Fault::late_commit));
-        break;
+        return blocked != 0 && ms_between(blocked, steady_now()) > 200.0;
+    };
+    const LiveOutcome o = run_case({patch.toml(), 30.0, block, unblock}, hand);
+    CHECK(before == 2.0);
+    const auto given = hand.given();
+    double largest = 0.0, last = 0.0;
+    for (std::size_t i = 1; i < given.size(); ++i) {
+        if (given[i].ns < o.done_ns || given[i].ns > o.stopped_ns) continue;
+        // Nobody fades in less than 10 ms.
+        largest = std::max(largest, (given[i - 1].force_N - given[i].force_N) /
+                                        std::max(ms_between(given[i - 1].ns, given[i].ns), 1.0));
+        last = given[i].force_N;
     }
+    CHECK(largest > 0.1);
+    CHECK(largest < 0.3);
+    CHECK(last == 0.0);
+    REQUIRE(o.faults.size() == 1);
+    CHECK(o.faults[0] == describe(control::Fault::late_commit));
 }
 
-TEST_CASE("a driver that never opens keeps neither the end of the run nor the hands that are there", "[live]") {
+TEST_CASE("a driver that never opens keeps neither the end of the run nor the hands that are there", "[virtual]") {
+    const VirtualClock clock;
     WatchedHand &left = watched_hand("left"), &right = watched_hand("right");
     PatchText plain, more;
     add_hand(plain, "left");

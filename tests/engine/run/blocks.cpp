@@ -4,6 +4,7 @@
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -222,7 +223,8 @@ TEST_CASE("groups that tick faster than the system wakes a thread leave most of 
 }
 
 TEST_CASE("what came too late between two audio groups is repeated from the log, whatever blocks and threads",
-          "[live]") {
+          "[virtual][slow]") {
+    const VirtualClock clock;
     const PatchText text{{{"a", "loop", "one", {}},
                           {"x", "chaos", "one", {}},
                           {"b", "loop", "two", {}},

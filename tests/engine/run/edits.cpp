@@ -3,10 +3,15 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/times.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <fmt/format.h>
 
+#include <malloc.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdlib>
 #include <map>
 
@@ -104,7 +109,8 @@ TEST_CASE("edits may follow each other faster than values travel", "[slow]") {
     CHECK(hashes_of(edited(0), edits, 3, 480, true, 0.4) == reference);
 }
 
-TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[live]") {
+TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[virtual][slow]") {
+    const VirtualClock clock;
     // TACTUS_STORM=2000 makes it a long one.
     const char* asked = std::getenv("TACTUS_STORM");
     const std::int64_t storm = asked ? std::atoll(asked) : 40;
@@ -147,7 +153,8 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a run that ends before the first tick of a group that an edit made has its hashes again", "[live]") {
+TEST_CASE("a run that ends before the first tick of a group that an edit made has its hashes again", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("unborn");
     std::string more = with(four_rates(), "wires = [\n", "wires = [\n  \"a.out -> late.in\",\n");
     more += "[nodes.late]\ntype = \"chaos\"\nrate = \"10 Hz\"\n";
@@ -184,7 +191,8 @@ TEST_CASE("a run that ends before the first tick of a group that an edit made ha
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[live]") {
+TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("set");
     run::Engine::PortHashes live_hashes;
     Flicks asked_at = 0, holds_at = 0;
@@ -220,7 +228,8 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("setting a parameter of a nested sub-patch sets all that it stands for", "[live]") {
+TEST_CASE("setting a parameter of a nested sub-patch sets all that it stands for", "[virtual]") {
+    const VirtualClock clock;
     const std::string parts = R"(
 [[parts]]
 path = "two.toml"
@@ -277,7 +286,58 @@ p = { type = "probe", rate = "1 kHz" }
     CHECK(factors() == std::vector{9.0, 9.0});
 }
 
-TEST_CASE("an edit that cannot be made leaves the old plan running", "[live]") {
+TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay", "[virtual][slow]") {
+    const VirtualClock clock;
+    const std::string plain = four_rates();
+    // A group of another rate in each edit, which the next one drops.
+    const auto with_group = [&](int edit) {
+        constexpr std::array rates{120, 125, 150, 250, 400};
+        return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n",
+                                   rates[static_cast<std::size_t>(edit % 5)]);
+    };
+    const auto in_use = [] {
+        const auto info = ::mallinfo2();
+        return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
+    };
+    constexpr int early = 20, late = 60;
+    run::EngineOptions options;
+    options.seconds = 60.0;
+    options.live = true;
+    run::Engine engine(compile_text(plain), options);
+    std::atomic<bool> stop{false};
+    run::LiveOptions live;
+    live.stop = &stop;
+    int made = 0;
+    bool is_waiting = false;
+    std::int64_t early_bytes = 0, late_bytes = 0;
+    live.watch = [&] {
+        if (is_waiting || !engine.is_settled()) return;
+        if (made == early) early_bytes = in_use();
+        if (made == late) {
+            late_bytes = in_use();
+            stop = true;
+            return;
+        }
+        is_waiting = true;
+        engine.edit([&, edit = made] { return compile_text(with_group(edit)); },
+                    [&](const run::EditOutcome& outcome) {
+                        CHECK_FALSE(outcome.error);
+                        ++made;
+                        is_waiting = false;
+                    });
+    };
+    engine.run_live(live);
+    CHECK(made == late);
+    CHECK(late_bytes - early_bytes < 150'000);  // 48 kB an edit would be 1.9 MB
+    std::int64_t ticks = 0;
+    for (const auto& group : engine.groups())
+        if (group->is_over() && group->plan->name.find("Hz") != std::string::npos) ticks += group->telemetry.ticks;
+    CHECK(ticks > 0);
+    CHECK(engine.groups().size() < 15);
+}
+
+TEST_CASE("an edit that cannot be made leaves the old plan running", "[virtual]") {
+    const VirtualClock clock;
     run::EngineOptions options;
     options.seconds = 0.4;
     options.live = true;

@@ -8,6 +8,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/skip.hpp"
 #include "tests/support/times.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -460,7 +461,8 @@ TEST_CASE("what finds no room because the reader stands still is counted, and it
 }
 
 TEST_CASE("a live run with events is repeated bit by bit, also when groups stand still for longer than rings hold",
-          "[live]") {
+          "[virtual][slow]") {
+    const VirtualClock clock;
     PatchText text = around();
     text.nodes.push_back({"source", "chaos", "1 kHz", {}});
     for (const auto& [name, rate] : {std::pair{"quick", "1 kHz"}, {"loudly", "48 kHz"}, {"slowly", "150 Hz"}}) {

@@ -5,6 +5,7 @@
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/times.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -221,19 +222,14 @@ static std::int64_t commits_on_the_way(const std::filesystem::path& folder, run:
                                  [](const auto& given) { return given.force_N > 2.5 && given.force_N < 15.5; });
 }
 
-TEST_CASE("a stiffness that is set while the patch runs comes in slowly, and the take repeats it", "[live]") {
-    // A machine that stands still in one of the runs makes the watchdog take the force away, and the hand, which rests in
-    // the wall, gets none until the end.
-    std::int64_t on_the_way = 0;
-    for (int run = 0; run < 5 && on_the_way == 0; ++run) {
-        const auto folder = scratch("slow-set");
-        run::Engine::PortHashes live_hashes;
-        on_the_way = commits_on_the_way(folder, live_hashes);
-        const Repetition again = repeat(folder, 2);
-        CHECK_FALSE(again.difference);
-        CHECK(again.hashes == live_hashes);
-        std::filesystem::remove_all(folder);
-    }
+TEST_CASE("a stiffness that is set while the patch runs comes in slowly, and the take repeats it", "[virtual]") {
+    const VirtualClock clock;
+    const auto folder = scratch("slow-set");
+    run::Engine::PortHashes live_hashes;
     // 14 ticks by the limit of the slew.
-    CHECK(on_the_way > 40);
+    CHECK(commits_on_the_way(folder, live_hashes) > 40);
+    const Repetition again = repeat(folder, 2);
+    CHECK_FALSE(again.difference);
+    CHECK(again.hashes == live_hashes);
+    std::filesystem::remove_all(folder);
 }

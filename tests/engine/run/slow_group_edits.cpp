@@ -6,6 +6,7 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +29,8 @@ std::string with_slow_group(int edit) {
 
 }  // namespace
 
-TEST_CASE("edits do not wait for a slow group, and the take repeats them", "[live]") {
+TEST_CASE("edits do not wait for a slow group, and the take repeats them", "[virtual]") {
+    const VirtualClock clock;
     const auto folder = scratch("slow-group");
     constexpr int edits = 3;
     run::Engine::PortHashes live_hashes;
@@ -83,7 +85,8 @@ TEST_CASE("a log in which plans took over before an activation was left out is f
                                                   record(take::TimingKind::plan, 4, 2, 0),
                                                   record(take::TimingKind::skipped, 4, 0, 3)};
     run::DecisionLog log(0);
-    run::ReplayedDecisions decisions(log, records, {});
+    const run::ReplayedChanges none;
+    run::ReplayedDecisions decisions(log, take::GroupRecords(records), none);
     build::GroupProgram first, second;
     first.plan_number = 1;
     second.plan_number = 2;

@@ -5,6 +5,7 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <filesystem>
 
@@ -63,7 +64,8 @@ TEST_CASE("an edit that opens a device is judged by what that device states") {
     CHECK_NOTHROW(engine.schedule(compile_text(with_right("0.9 N/mm")), 1));
 }
 
-TEST_CASE("an edit that makes a stiffness be felt more lowers one that was set while the patch ran", "[live]") {
+TEST_CASE("an edit that makes a stiffness be felt more lowers one that was set while the patch ran", "[virtual]") {
+    const VirtualClock clock;
     state_stiffness();
     const auto folder = scratch("limit-edit");
     run::Engine::PortHashes live_hashes;

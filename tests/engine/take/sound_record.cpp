@@ -35,8 +35,10 @@ TEST_CASE("a record of the log keeps every bit of its samples, through a file, t
     }
     const take::TimingLog log = take::TimingLog::load(file);
     std::filesystem::remove(file);
-    REQUIRE(log.groups.at(0).size() == 1);
-    const auto back = take::unpack_sound(log.groups[0][0].sample);
+    REQUIRE(log.groups.at(0).records == 1);
+    take::GroupRecords records(log, 0);
+    REQUIRE(records.at(0));
+    const auto back = take::unpack_sound(records.at(0)->sample);
     for (int i = 0; i < take::sound_record_samples; ++i)
         CHECK(std::bit_cast<std::uint32_t>(back[static_cast<std::size_t>(i)]) ==
               std::bit_cast<std::uint32_t>(samples[i]));

@@ -94,12 +94,12 @@ TEST_CASE("a stiffness beyond what a hand alone damps is unknown on a device tha
 }
 
 TEST_CASE("the delay of the device counts in the loop, half of it at each end") {
-    const Compiled c =
-        compiled("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" +
-                 a_node("in", "device_input", "1 kHz", "device = \"left\"\n") +
-                 a_node("out", "device_output", "1 kHz", "device = \"right\"\n") + a_node("wall", "stiff"));
+    Compiled c = compiled("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand + a_node("wall", "stiff"));
     INFO(c.said);
     REQUIRE(c.plan);
+    // The nodes of this catalogue have no option 'device'.
+    for (patch::PatchNode& node : c.plan->patch.nodes)
+        if (node.name != "wall") node.settings.push_back({"device", node.name == "in" ? "left" : "right", {}, {}});
     const auto loops = analyse::force_loops(*c.plan, [](const std::string& name) {
         return DeviceInfo{.name = name, .damping = 3.5, .delay = name == "left" ? 0.5e-3 : 1.5e-3};
     });

@@ -35,6 +35,20 @@ TEST_CASE("a fault that comes by a wire holds a gripper until its source goes on
     CHECK(gripper.port().state == ForceState::on);
 }
 
+TEST_CASE("a gripper holds while a value that its motors depend on is overdue") {
+    Gripper gripper;
+    gripper.node.device_feed = [](std::int64_t k, DevicePort& port) {
+        port.overdue = k >= 100 && k < 150 ? Fault::late_value : Fault::none;
+    };
+    gripper.node.prepare();
+    gripper.node.run(120);
+    CHECK(gripper.port().motors.speed[0] == 0.0);
+    CHECK(gripper.port().fault == Fault::late_value);
+    gripper.node.run(60);
+    CHECK(gripper.port().motors.speed[0] == Approx(0.01));
+    CHECK(gripper.port().fault == Fault::none);
+}
+
 TEST_CASE("a gripper's own fault waits for a person") {
     Gripper gripper;
     gripper.node.feed<double>("finger_speed",

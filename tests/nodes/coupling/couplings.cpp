@@ -153,6 +153,40 @@ TEST_CASE("direct rendering scales all points together to what the hand can feel
     CHECK(direct.last<Wrench>("wrench").force.z == Approx(0.4).epsilon(0.02));
 }
 
+TEST_CASE("direct rendering of a saturated contact keeps the force of its onset") {
+    for (const char* stiffness : {"0 N/mm", "10 N/mm"})
+        for (const double speed : {1.0, 50.0}) {  // mm/s
+            NodeHarness contact("voxmap_contact", test::servo), direct("direct_coupling", test::servo);
+            contact.set("held", "1").set("saturation", "0.3 mm").set("point_stiffness", stiffness);
+            contact.feed("scene", coupled_scene());
+            const auto depth = [speed](std::int64_t k) {
+                return std::min(1e-3 * speed * static_cast<double>(k), 0.8) - 0.1;
+            };
+            contact.feed<Pose>("pose", [&](std::int64_t k) {
+                return Pose{{0.0, 0.0, (5.0 - depth(k)) * mm}, {1, 0, 0, 0}};
+            });
+            contact.prepare();
+            contact.run(900);
+            const auto forces = contact.values<Wrench>("wrench");
+            const auto stiffnesses = contact.values<double>("stiffness");
+            direct.feed<Wrench>("contact", [&](std::int64_t k) { return forces[static_cast<std::size_t>(k)]; });
+            direct.feed<double>("contact_stiffness",
+                                [&](std::int64_t k) { return stiffnesses[static_cast<std::size_t>(k)]; });
+            direct.prepare();
+            direct.run(900);
+            double last = 0.0;
+            for (const Wrench& felt : direct.values<Wrench>("wrench")) {
+                const double force = glm::length(felt.force);
+                CAPTURE(stiffness, speed, last, force);
+                // 0.8 N/mm along all of the way, and what the blend of the surface adds.
+                REQUIRE(std::abs(force - last) < 0.8 * 1e-3 * speed + 0.03);
+                REQUIRE(force < 0.8 * 0.8);
+                last = force;
+            }
+            CHECK(last > 0.05);
+        }
+}
+
 TEST_CASE("a proxy node stops at the table, on its field and on its triangles") {
     for (const char* type : {"point_proxy", "sphere_proxy"})
         for (const char* surface : {"field", "triangles"}) {

@@ -52,6 +52,57 @@ TEST_CASE("device_input holds the last good pose, and lets go of the trigger, wh
     CHECK(node.values<bool>("trigger")[8]);
 }
 
+TEST_CASE("a sample that freezes the pose at device_input is a fault at device_output, whichever number is bad") {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinite, -infinite})
+        for (int number = 0; number < 13; ++number) {
+            CAPTURE(bad, number);
+            const auto feed = [&](std::int64_t k, DevicePort& port) {
+                port.sample = sample_at(0.0, k);
+                if (k < 500) return;
+                DeviceSample& s = port.sample;
+                double* const numbers[13] = {&s.pose.position.x,    &s.pose.position.y,    &s.pose.position.z,
+                                             &s.pose.orientation.w, &s.pose.orientation.x, &s.pose.orientation.y,
+                                             &s.pose.orientation.z, &s.twist.linear.x,     &s.twist.linear.y,
+                                             &s.twist.linear.z,     &s.twist.angular.x,    &s.twist.angular.y,
+                                             &s.twist.angular.z};
+                *numbers[number] = bad;
+            };
+            NodeHarness input("device_input", test::servo), output("device_output", test::servo);
+            input.device_feed = output.device_feed = feed;
+            output.feed<Wrench>("wrench",
+                                [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{2.0, 0.0, 0.0}, {}}; });
+            input.prepare();
+            output.prepare();
+            input.run(511);
+            output.run(511);
+            CHECK_FALSE(input.last<bool>("valid"));
+            CHECK(output.values<Wrench>("applied")[499].force.x == Approx(2.0));
+            CHECK(output.last<Wrench>("applied").force.x == 0.0);
+            CHECK(output.host.devices.at("")->fault == control::Fault::invalid_input);
+        }
+}
+
+TEST_CASE("a value that is overdue fades the force within 10 ms, and it comes back as after a late tick") {
+    for (const control::Fault fault : {control::Fault::late_value, control::Fault::old_world}) {
+        NodeHarness node("device_output", test::servo);
+        node.device_feed = [&](std::int64_t k, DevicePort& port) {
+            port.sample = sample_at(0.0, k);
+            port.overdue = k >= 500 && k < 700 ? fault : control::Fault::none;
+        };
+        node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{2.0, 0.0, 0.0}, {}}; });
+        node.prepare();
+        node.run(600);
+        CHECK(node.values<Wrench>("applied")[499].force.x == Approx(2.0));
+        CHECK(node.values<Wrench>("applied")[509].force.x == 0.0);
+        CHECK(node.host.devices.at("")->fault == fault);
+        node.run(2000);
+        const auto applied = node.values<Wrench>("applied");
+        for (std::size_t k = 510; k < 1690; ++k) REQUIRE(applied[k].force.x == 0.0);
+        CHECK(node.last<Wrench>("applied").force.x == Approx(2.0));
+    }
+}
+
 TEST_CASE("device_output bounds what reaches the hand and tells what it was asked for") {
     NodeHarness node("device_output", test::servo);
     node.set("max_force", "6 N");

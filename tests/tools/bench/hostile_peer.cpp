@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drivers under the attacks of `tactus bench peers`: what comes out is a pose or none, and no call waits.
-#include "dsp/core/clock.hpp"
 #include "tools/bench/hostile_peer.hpp"
 
 #include "devices/haptic/catalogue.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
 

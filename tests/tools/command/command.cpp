@@ -215,7 +215,7 @@ TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits 
     }
 }
 
-TEST_CASE("a live run's log repeats it to the bit", "[live]") {
+TEST_CASE("a live run's log repeats it to the bit", "[slow]") {
     const Folder folder;
     const std::string log = (folder.path / "timing.log").string();
     const Outcome live = folder.tactus("run saw-training --seconds 1 --dilate 2 --json --out " +

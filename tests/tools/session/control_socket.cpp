@@ -56,7 +56,7 @@ const std::string half_patch = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kH
 
 }  // namespace
 
-TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, and its rights stay", "[live]") {
+TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, and its rights stay") {
     const Runtime runtime;
     const fs::path documents = runtime.folder.path / "documents";
     fs::create_directories(documents / "letters");
@@ -125,7 +125,7 @@ TEST_CASE("a new folder is for its user only, whatever its path's length") {
     CHECK(fs::is_socket(deep / "tactus" / session::ControlFolder::name_of(::getpid())));
 }
 
-TEST_CASE("a run that is stopped keeps its socket while another begins and ends", "[live]") {
+TEST_CASE("a run that is stopped keeps its socket while another begins and ends", "[slow]") {
     const Runtime runtime;
     const Folder& folder = runtime.folder;
     const std::string file = folder.write("p.toml", half_patch).string();
@@ -142,7 +142,7 @@ TEST_CASE("a run that is stopped keeps its socket while another begins and ends"
     CHECK(run.stop(SIGINT) == 0);
 }
 
-TEST_CASE("a run without a folder for its socket says so and runs", "[live]") {
+TEST_CASE("a run without a folder for its socket says so and runs") {
     const Runtime runtime;
     runtime.make(0777);
     const std::string file = runtime.folder.write("p.toml", half_patch).string();

@@ -132,7 +132,7 @@ TEST_CASE("a replayed take writes the files that its run wrote, to the byte") {
           json::parse(slurp(folder.path / "out/summary.json"))["output_hash"]);
 }
 
-TEST_CASE("the take of a run that was killed writes the results that the run did not", "[live]") {
+TEST_CASE("the take of a run that was killed writes the results that the run did not", "[slow]") {
     const Folder folder;
     folder.write("touch.toml", heard);
     const fs::path take = folder.path / "take", out = folder.path / "out";

@@ -62,7 +62,7 @@ bool is_sanitized() {
 }  // namespace
 
 TEST_CASE("on a disk that gets full, a render and a run keep every whole row and sample and go on to their end",
-          "[live]") {
+          "[slow]") {
     if (is_sanitized()) return;
     const Folder folder;
     folder.write("p.toml", recording_patch);
@@ -184,7 +184,7 @@ TEST_CASE("a take that finds no room repeats the run as far as it goes", "[live]
     }
 }
 
-TEST_CASE("a run with 300 outputs is recorded whole where it may open 256 files", "[live]") {
+TEST_CASE("a run with 300 outputs is recorded whole where it may open 256 files", "[slow]") {
     const Folder folder;
     std::string patch = "title = \"many\"\n";
     for (int i = 0; i < 300; ++i)

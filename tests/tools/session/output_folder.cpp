@@ -26,7 +26,7 @@ const std::string live = " --audio none --no-edits ";
 
 }  // namespace
 
-TEST_CASE("a folder that holds results is refused, and written over when that is asked for", "[live]") {
+TEST_CASE("a folder that holds results is refused, and written over when that is asked for", "[slow]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     for (const std::string verb : {"render", "run --audio none --no-edits"}) {
@@ -77,7 +77,7 @@ TEST_CASE("runs at the same time have folders of their own, and a link leads to 
     CHECK(slurp(folder.path / "p-run-latest") == "mine");
 }
 
-TEST_CASE("a folder that another run writes to is refused, even to be written over", "[live]") {
+TEST_CASE("a folder that another run writes to is refused, even to be written over", "[slow]") {
     const Folder folder;
     const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
     Run run(folder, file + live + "--out " + out);
@@ -92,7 +92,7 @@ TEST_CASE("a folder that another run writes to is refused, even to be written ov
     CHECK(fs::exists(out + "/summary.json"));
 }
 
-TEST_CASE("a recording cannot have the name of a file that the run itself writes", "[live]") {
+TEST_CASE("a recording cannot have the name of a file that the run itself writes", "[slow]") {
     const Folder folder;
     for (const char* name : {"summary.json", "bone.vdb", "bone.png", "take.json", "timing.log", "events.jsonl",
                              "result.json", "patch-0.toml", "streams", "journal-1", "sound.wav.part"}) {

@@ -32,7 +32,7 @@ void is_complete(const fs::path& out) {
 
 }  // namespace
 
-TEST_CASE("a run ends in order with SIGHUP as with SIGTERM", "[live]") {
+TEST_CASE("a run ends in order with SIGHUP as with SIGTERM", "[slow]") {
     for (const int signal : {SIGHUP, SIGTERM}) {
         const Folder folder;
         const std::string file = folder.write("p.toml", recording_patch).string();
@@ -45,7 +45,7 @@ TEST_CASE("a run ends in order with SIGHUP as with SIGTERM", "[live]") {
     }
 }
 
-TEST_CASE("a run that was told to ignore SIGHUP, as by nohup, ignores it", "[live]") {
+TEST_CASE("a run that was told to ignore SIGHUP, as by nohup, ignores it", "[slow]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     const Outcome ran = shell(folder,
@@ -75,7 +75,7 @@ TEST_CASE("a render that is asked to end keeps what it has computed and says how
     }
 }
 
-TEST_CASE("a closed terminal or pipe does not end a run", "[live]") {
+TEST_CASE("a closed terminal or pipe does not end a run", "[slow]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     // Nobody reads either of them when the run speaks; the fault is one that it tells at once.

@@ -3,6 +3,7 @@
 #include "engine/take/take_reader.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/virtual_clock.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/load_plan.hpp"
@@ -229,7 +230,8 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
 }
 
 TEST_CASE("a run follows its patch to another file: what is saved there counts and new sub-patches are found there",
-          "[live]") {
+          "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder, elsewhere;
     Workbench bench(choice_in(folder));
     bench.run();
@@ -257,7 +259,8 @@ TEST_CASE("a run follows its patch to another file: what is saved there counts a
 }
 
 TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands",
-          "[live]") {
+          "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder;
     Workbench bench(choice_in(folder));
     bench.run();
@@ -289,7 +292,8 @@ TEST_CASE("edits at the bench reach the run: parameters as such, all else as a n
 }
 
 TEST_CASE("a file saved elsewhere is taken over by what runs, parameters that were turned among it, and can be undone",
-          "[live]") {
+          "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder;
     const RunChoice choice = choice_in(folder);
     Workbench bench(choice);
@@ -299,8 +303,8 @@ TEST_CASE("a file saved elsewhere is taken over by what runs, parameters that we
         return bench.status();
     };
     REQUIRE(come_about([&] { return status()->time > 0.1; }));
-    // Turned in the window, then written back from outside: the run must hear of it, though the patch it began with says
-    // the same as the file does now.
+    // Turned in the window, then written back from outside: the run must hear of it, though the patch it began with
+    // says the same as the file does now.
     REQUIRE(bench.set("level", "number", "0.9"));
     const auto loudness = [&] {
         bench.observer()->watch("level.value", observe::Watch::latest);
@@ -429,7 +433,8 @@ TEST_CASE("two windows on one file: who saves second is told, and both texts are
     REQUIRE(come_about([&] { return first.tend(), first.editor().text() == of_second; }));
 }
 
-TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[live]") {
+TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder;
     Workbench bench(choice_in(folder));
     CHECK(bench.take().empty());
@@ -474,7 +479,8 @@ TEST_CASE("record pressed while a patch runs leaves the run alone and makes a ta
     CHECK(bench.is_recording());
 }
 
-TEST_CASE("an output that two look at stays looked at when one of them turns away", "[live]") {
+TEST_CASE("an output that two look at stays looked at when one of them turns away", "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder;
     Workbench bench(choice_in(folder));
     bench.run();

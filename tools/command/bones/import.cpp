@@ -59,6 +59,7 @@ file::Json json_of(const bone::ImportSummary& s) {
             {"density", {{"min", s.density.min}, {"max", s.density.max}, {"mean", s.density.mean}}},
             {"metal_mm3", s.metal_mm3},
             {"components", s.components},
+            {"components_kept", s.components_kept},
             {"threshold", threshold_json(s)},
             {"narrowest_kerf_mm", study::narrowest_kerf_mm(s.voxel_mm)},
             {"points", s.points},

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string_view>
 
 namespace tactus::command {
 
@@ -41,8 +42,29 @@ Json region_json(const study::RegisteredRegion& region) {
     return json;
 }
 
+std::string_view verdict_text(fit::RegistrationVerdict verdict) {
+    switch (verdict) {
+        case fit::RegistrationVerdict::fit: return "fit";
+        case fit::RegistrationVerdict::ambiguous: return "ambiguous";
+        case fit::RegistrationVerdict::none: break;
+    }
+    return "none";
+}
+
+/// Degrees between two poses.
+double angle_between(const Pose& a, const Pose& b) {
+    return study::motion_between(a, b, Vec3(0.0)).angle_deg;
+}
+
 Json json_of(const study::RegisteredSurface& found, bool region) {
     Json json = json_of(found.registration, found.pose);
+    if (found.judged) {
+        json["verdict"] = verdict_text(found.judged->verdict);
+        json["rms_mm"] = found.judged->score * 1e3;
+        json["rivals"] = Json::array();
+        for (const fit::JudgedRegistration::Rival& rival : found.judged->rivals)
+            json["rivals"].push_back({{"pose", pose_json<Json>(rival.pose)}, {"rms_mm", rival.score * 1e3}});
+    }
     if (found.plane) {
         json["plane_normal"] = {found.plane->normal.x, found.plane->normal.y, found.plane->normal.z};
         json["plane_offset_mm"] = found.plane->offset * 1e3;
@@ -60,22 +82,43 @@ void print_region(const study::RegisteredRegion& region) {
         1e3 * region.plain_away.distance, region.plain_away.angle_deg, region.plain_median * 1e3);
 }
 
+void print_verdict(const fit::JudgedRegistration& judged) {
+    switch (judged.verdict) {
+        case fit::RegistrationVerdict::fit:
+            fmt::print("verdict: fit; rms {:.2f} mm, ", judged.score * 1e3);
+            if (judged.rivals.empty()) fmt::print("no other pose was found\n");
+            else fmt::print("the next best pose {:.2f} mm\n", judged.rivals.front().score * 1e3);
+            return;
+        case fit::RegistrationVerdict::ambiguous:
+            fmt::print("verdict: ambiguous; rms {:.2f} mm. Other poses fit about as well:\n", judged.score * 1e3);
+            for (const fit::JudgedRegistration::Rival& rival : judged.rivals)
+                fmt::print("  rotated by {:.1f}° against it, rms {:.2f} mm\n", angle_between(judged.best.pose, rival.pose),
+                           rival.score * 1e3);
+            return;
+        case fit::RegistrationVerdict::none:
+            fmt::print("verdict: none; no pose brings the surfaces together (rms {:.2f} mm at the best)\n",
+                       judged.score * 1e3);
+    }
+}
+
 int register_surfaces(const RegisterChoice& choice) {
     study::RegisterSettings settings = choice.settings;
     settings.away = choice.away * 1e-3;
     settings.gap = choice.gap * 1e-3;
     settings.margin = choice.margin * 1e-3;
     const study::RegisteredSurface found = study::register_files(settings);
+    const bool is_fit = !found.judged || found.judged->verdict == fit::RegistrationVerdict::fit;
     if (choice.json) {
         fmt::print("{}\n", json_of(found, settings.region).dump(2));
-        return done;
+        return is_fit ? done : answer_is_no;
     }
     const fit::Registration& r = found.registration;
     fmt::print("median distance {:.2f} mm (before {:.2f} mm), 90 % within {:.2f} mm\n", r.median * 1e3, r.before * 1e3,
                r.p90 * 1e3);
+    if (found.judged) print_verdict(*found.judged);
     if (found.region) print_region(*found.region);
     else if (settings.region) fmt::print("no part is displaced\n");
-    return done;
+    return is_fit ? done : answer_is_no;
 }
 
 Action declare_register(VerbOptions& verb) {
@@ -84,7 +127,7 @@ Action declare_register(VerbOptions& verb) {
     verb.add("moving", settings.moving, "bone file or mesh, which need not be closed").required();
     verb.add("fixed", settings.fixed, "bone file or mesh to register to").required();
     verb.flag("--mirror", settings.mirror, "the moving surface is from the other side of the body");
-    verb.flag("--anywhere", settings.anywhere, "start from any position (default: from the position in the files)");
+    verb.flag("--anywhere", settings.anywhere, "the position in the files means nothing (default: of poses that fit equally well, the nearest to it is taken)");
     verb.flag("--region", settings.region,
               "also find a part that is displaced against the rest, and register it separately");
     verb.add("--away", choice->away, "distance above which a point counts as displaced, mm")

@@ -56,7 +56,7 @@ DeviceSample hold(ThreadedDevice& device, const Wrench& force, std::int64_t for_
     std::int64_t next = steady_ns();
     for (const std::int64_t end = next + for_ns; next < end;) {
         device.commit(force);
-        if (const DeviceSample sample = device.acquire(1e-3); sample.valid) good = sample;
+        if (const DeviceSample sample = device.acquire(1e-3); is_good(sample)) good = sample;
         sleep_until(next += ms);
     }
     return good;

@@ -4,6 +4,7 @@
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/check_rows.hpp"
+#include "tools/command/run/check_schedule.hpp"
 #include "tools/command/run/check_text.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
@@ -61,6 +62,15 @@ std::vector<study::ZWidthCurve> z_width_of(const io::EngineHost& host) {
     });
 }
 
+/// Of a patch that has no problems.
+compile::Plan plan_again(const session::PatchChoice& patch, compile::AssetCache& assets) {
+    patch::Problems problems;
+    std::optional<compile::Plan> plan = session::read_plan(patch, problems);
+    if (plan) assets.load(*plan, problems);
+    if (!plan || !problems.empty()) throw Error("the patch has changed");
+    return std::move(*plan);
+}
+
 int check(const CheckChoice& choice) {
     patch::Problems problems;
     compile::AssetCache assets;
@@ -81,6 +91,10 @@ int check(const CheckChoice& choice) {
             json["device_classes"] = classes_json(study::class_verdicts(loops));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
+            const std::vector<double> costs = measured_costs([&] { return plan_again(choice.patch, assets); });
+            json["schedule"] = schedule_json(engine.plan(), costs);
+            for (std::string& warning : schedule_warnings(engine.plan(), costs))
+                json["warnings"].push_back(std::move(warning));
             for (const std::string& node : analyse::unstated_laws(engine.plan()))
                 json["warnings"].push_back(fmt::format(
                     "'{}' shapes a force by a law that check cannot judge; keep its slope below what the path may feel",

@@ -3,6 +3,7 @@
 
 #include "assets/file/json.hpp"
 #include "tools/command/run/check_rows.hpp"
+#include "tools/command/run/check_schedule.hpp"
 #include "tools/counted.hpp"
 
 #include <fmt/format.h>
@@ -114,6 +115,7 @@ void print_plan(const Json& json) {
     for (const Json& group : json["groups"])
         fmt::print("{:>10}  latency {:.4g} ms  {}\n", group["name"].get<std::string>(),
                    group["latency_ms"].get<double>(), counted(group["nodes"].size(), "node"));
+    if (json.contains("schedule")) print_schedule(json["schedule"]);
     if (json.contains("processes")) print_processes(json["processes"]);
     if (json["paths"].empty()) {
         if (json.contains("sound")) print_sound(json["sound"]);

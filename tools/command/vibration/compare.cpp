@@ -207,9 +207,9 @@ Action declare_compare(VerbOptions& verb) {
     verb.add("--touch", choice->touch, "quantity of the threshold of touch")
         .shows_default()
         .one_of({"displacement", "acceleration", "none"});
-    verb.add("--max-delay", settings.longest_delay, "greatest delay searched, s")
+    verb.add("--max-delay", settings.longest_delay,
+             "greatest delay searched, s (default: any at which 1 s and a quarter of the shorter record overlap)")
         .unit("s")
-        .shows_default()
         .range(0.001, 100.0);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return compare(*choice); };

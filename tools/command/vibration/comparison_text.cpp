@@ -61,7 +61,12 @@ Json to_json(const ComparedPair& o) {
               {"only_in_output", lines_json(c.lines.only_in_output, order_base)},
               {"level_gap_db", o.level_gap_db},
               {"verdict", o.verdict.passed() ? "pass" : "fail"},
+              {"verdict_scope", o.verdict.words()},
               {"failed", o.verdict.failed()},
+              {"course_db", or_null(c.course_db)},
+              {"statistics", c.statistics ? Json{{"deviation", c.statistics->deviation}, {"worst", c.statistics->worst}} : Json()},
+              {"kurtosis", {{"reference", c.reference_kurtosis}, {"output", c.output_kurtosis}}},
+              {"power_in_band", {{"reference", c.reference_inside}, {"output", c.output_inside}}},
               {"not_judged", o.verdict.not_judged},
               {"in_both", lines_json(c.lines.in_both, c.reference_hz)},
               {"third_octave_rms_db", c.third_octave_rms_db},
@@ -119,6 +124,7 @@ void print(const ComparedPair& o) {
                std::abs(c.gain_db) < 0.5
                    ? ""
                    : fmt::format(", {:.1f} dB {}", std::abs(c.gain_db), c.gain_db > 0.0 ? "softer" : "louder"));
+    fmt::print("  {}\n", o.verdict.words());
     for (const bool passed : {false, true})
         for (const Judged& score : o.verdict.scores)
             if (score.passed == passed)

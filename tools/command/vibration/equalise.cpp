@@ -66,6 +66,8 @@ int equalise(const EqualiseChoice& choice) {
                   {"unit", equaliser.unit},
                   {"deviation_before_db", flat.before_db},
                   {"deviation_after_db", flat.after_db},
+                  {"deviation_after_hz", flat.after_hz},
+                  {"loudest_sine", {{"hz", flat.loudest_hz}, {"peak", flat.loudest}}},
                   {"greatest_boost", {{"hz", flat.boost_hz}, {"db", flat.boost_db}}},
                   {"actuator", std::string(actuator.name)},
                   {"voltage_limit_v", actuator.voltage_limit},
@@ -81,15 +83,14 @@ int equalise(const EqualiseChoice& choice) {
     }
     fmt::print("{}: {} phase, {} taps at {:g} Hz, adds {:.2f} ms\n", choice.out.string(), choice.kind,
                equaliser.taps.size(), equaliser.rate, 1e3 * equaliser.delay);
-    fmt::print("  deviation    from {:g} to {:g} Hz: {:.1f} dB without it, {:.1f} dB with it\n", equaliser.lowest,
-               equaliser.highest, flat.before_db, flat.after_db);
+    fmt::print("  deviation    from {:g} to {:g} Hz: {:.1f} dB without it, {:.1f} dB with it, at {:.0f} Hz\n",
+               equaliser.lowest, equaliser.highest, flat.before_db, flat.after_db, flat.after_hz);
     fmt::print("  boost        {:.1f} dB at most, at {:.0f} Hz\n", flat.boost_db, flat.boost_hz);
-    const auto softest = std::ranges::min_element(made.flat.bands, {}, &study::Flatness::Band::loudest);
     fmt::print(
         "  limits       {}: {:g} V and {:g} A through {:g} ohm; the loudest sine is {:.3g}{}{} peak at {:.0f} Hz, "
         "where it is weakest\n",
-        actuator.name, actuator.voltage_limit, actuator.current_limit, actuator.resistance, softest->loudest,
-        made.unit.empty() ? "" : " ", made.unit.substr(0, made.unit.find(" per ")), softest->hz);
+        actuator.name, actuator.voltage_limit, actuator.current_limit, actuator.resistance, flat.loudest,
+        made.unit.empty() ? "" : " ", made.unit.substr(0, made.unit.find(" per ")), flat.loudest_hz);
     if (made.programme) {
         print_headroom("as recorded ", made.programme->plain, made.limit);
         print_headroom("equalised   ", made.programme->equalised, made.limit);

@@ -50,9 +50,34 @@ Json minutes_json(double value, double acceleration) {
     return std::isfinite(minutes) ? Json(minutes) : Json(nullptr);
 }
 
-std::string reached(double value, double acceleration) {
-    const double minutes = signal::time_to_reach(value, acceleration) / 60.0;
-    return minutes <= 1440.0 ? fmt::format("after {:.0f} min", minutes) : "not within a day";
+std::string reached(double value, const Operation& one) {
+    const double minutes = signal::time_to_reach(value, one.total()) / 60.0;
+    if (minutes > 1440.0) return one.is_lower_bound() ? "cannot be judged" : "not within a day";
+    return fmt::format("after {}{:.0f} min", one.is_lower_bound() ? "at most " : "", minutes);
+}
+
+const char* verdict_name(study::ExposureVerdict verdict) {
+    switch (verdict) {
+        case study::ExposureVerdict::below_action: return "below_action";
+        case study::ExposureVerdict::above_action: return "above_action";
+        case study::ExposureVerdict::above_limit: return "above_limit";
+        case study::ExposureVerdict::at_least_above_action: return "at_least_above_action";
+        case study::ExposureVerdict::cannot_be_judged: break;
+    }
+    return "cannot_be_judged";
+}
+
+std::string verdict_text(double a8, bool is_lower_bound) {
+    const std::string value = fmt::format("A(8) {}{} m/s^2: ", is_lower_bound ? "at least " : "", plain(a8, 3));
+    switch (study::judge_exposure(a8, is_lower_bound)) {
+        case study::ExposureVerdict::below_action: return value + "below the action value, 2.5";
+        case study::ExposureVerdict::above_action: return value + "above the action value, 2.5";
+        case study::ExposureVerdict::above_limit: return value + "above the limit value, 5";
+        case study::ExposureVerdict::at_least_above_action:
+            return value + "above the action value, 2.5; whether the limit value, 5, is kept cannot be judged";
+        case study::ExposureVerdict::cannot_be_judged: break;
+    }
+    return value + "cannot be judged; axes, frequencies or peaks are missing in the record";
 }
 
 Json operation_json(const Operation& one) {
@@ -112,8 +137,8 @@ void print_operation(const Operation& one) {
         fmt::print("  axis {}: a_hw {} m/s^2 rms, by transform of the record (by filter {})\n", one.axes[i],
                    plain(one.weighted[i]), plain(one.filtered[i]));
     if (one.three_axes) fmt::print("  a_hv {} m/s^2\n", plain(one.total(), 3));
-    fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one.total()),
-               reached(signal::limit_value, one.total()));
+    fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one),
+               reached(signal::limit_value, one));
     for (const std::string& note : one.notes) fmt::print("  {}\n", note);
 }
 
@@ -128,9 +153,8 @@ void print_table(const std::vector<Operation>& operations) {
             fmt::print(
                 "{:<{}}  {:>9}  {:>9}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, plain(one.total(), 3),
                 plain(signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), 3),
-                one.duration / 60.0, reached(signal::action_value, one.total()),
-                reached(signal::limit_value, one.total()),
-                one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
+                one.duration / 60.0, reached(signal::action_value, one), reached(signal::limit_value, one),
+                one.is_lower_bound() || !one.calibrated ? "  (see --table)" : "");
 }
 
 int exposure(const ExposureChoice& choice) {
@@ -155,12 +179,15 @@ int exposure(const ExposureChoice& choice) {
     std::optional<double> a8;
     if (!bad) a8 = study::exposure_of_day(operations);
     const double day = a8.value_or(0.0);
+    const bool is_bound = std::ranges::any_of(operations, &Operation::is_lower_bound);
     if (choice.json) {
         Json json{{"a8", a8 ? Json(day) : Json()}, {"operations", Json::array()}};
         for (std::size_t i = 0; i < files.size(); ++i)
             json["operations"].push_back(failures[i].empty()
                                              ? operation_json(operations[i])
                                              : Json{{"file", files[i].string()}, {"error", failures[i]}});
+        json["lower_bound"] = is_bound;
+        json["verdict"] = a8 ? Json(verdict_name(study::judge_exposure(day, is_bound))) : Json();
         json["years_to_white_fingers"] = day > 0.0 ? Json(signal::years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
@@ -169,11 +196,7 @@ int exposure(const ExposureChoice& choice) {
     else
         for (const Operation& one : operations)
             if (!one.file.empty()) print_operation(one);
-    if (a8)
-        fmt::print("A(8) {} m/s^2: {}\n", plain(day, 3),
-                   day > signal::limit_value    ? "above the limit value, 5"
-                   : day > signal::action_value ? "above the action value, 2.5"
-                                                : "below the action value, 2.5");
+    if (a8) fmt::print("{}\n", verdict_text(day, is_bound));
     else
         fmt::print(
             "no A(8) of the day: {}\n",

@@ -9,6 +9,7 @@ Json calibration_json(const sound::Calibration& calibration) {
     Json json{{"known", calibration.known}, {"factor", calibration.factor}, {"unit", calibration.unit}};
     json["from"] = calibration.source.empty() ? Json() : Json(calibration.source);
     if (!calibration.remark.empty()) json["remark"] = calibration.remark;
+    if (!calibration.file_note.empty()) json["file_note"] = calibration.file_note;
     return json;
 }
 

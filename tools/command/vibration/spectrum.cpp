@@ -26,7 +26,7 @@ namespace html = picture::html;
 struct SpectrumChoice : RecordChoice {
     SpectrumWords words;
     std::string envelope;              // LOW:HIGH in Hz
-    std::string fundamental = "20:500";  // LOW:HIGH in Hz
+    std::string fundamental = "5:1000";  // LOW:HIGH in Hz
     std::string band;                  // LOW:HIGH in Hz, of plots
     std::vector<std::string> marks;
     std::optional<std::size_t> segment;

@@ -51,6 +51,8 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
                {{"certain", r.fundamental.is_certain()},
                 {"steady", r.fundamental.steady},
                 {"range_hz", {r.fundamental.low, r.fundamental.high}},
+                {"deviation_hz", number_or_null(r.fundamental.deviation)},
+                {"periods", r.fundamental.periods},
                 {"rivals", Json::array()}}},
               {"harmonics", Json::array()},
               {"peaks", Json::array()},

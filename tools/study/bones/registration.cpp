@@ -68,8 +68,9 @@ RegisteredSurface register_files(const RegisterSettings& settings) {
         return found;
     }
     const fit::RegistrationSettings whole{.by_parts = settings.region};
-    found.registration = settings.anywhere ? fit::register_from_anywhere(moving, fixed, target, whole)
-                                           : fit::register_surface(moving, target, {}, whole);
+    const Pose in_files;
+    found.judged = fit::search_registration(moving, fixed, target, settings.anywhere ? nullptr : &in_files, whole);
+    found.registration = found.judged->best;
     found.pose = found.registration.pose;
     if (settings.region) found.region = register_region(moving, found.registration, target, settings);
     return found;

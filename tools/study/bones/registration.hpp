@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/fit/registration/mirror.hpp"
+#include "dsp/fit/registration/registration.hpp"
 #include "tools/study/bones/surface_file.hpp"
 
 #include <cstddef>
@@ -15,7 +16,7 @@ struct RegisterSettings {
     std::filesystem::path moving, fixed;              ///< bone files or meshes, which need not be closed
     double away = 1.5e-3, gap = 3e-3, margin = 2e-3;  ///< m, for a displaced region
     bool mirror = false;                              ///< the moving surface is from the other side of the body
-    bool anywhere = false;  ///< start from any position; false: from the position in the files
+    bool anywhere = false;  ///< the position in the files means nothing; false: it is preferred to one that fits equally well
     bool region = false;  ///< also find a displaced part
 };
 
@@ -32,6 +33,7 @@ struct RegisteredRegion {
 struct RegisteredSurface {
     fit::Registration registration;
     Pose pose;
+    std::optional<fit::JudgedRegistration> judged;  ///< of the whole; none with `mirror`
     std::optional<fit::MirrorPlane> plane;  ///< with `mirror`
     std::optional<RegisteredRegion> region;
 };

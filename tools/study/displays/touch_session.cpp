@@ -32,7 +32,7 @@ DeviceSample TipReader::read() {
     const DeviceSample seen = tracker_->acquire(elapsed);
     tracker_->commit({});
     tracked_.reset();
-    if (seen.valid && is_valid(seen.pose)) tracked_ = seen.pose.position;
+    if (is_good(seen)) tracked_ = seen.pose.position;
     return sample;
 }
 
@@ -52,7 +52,7 @@ Touched TipReader::touch(const std::function<bool()>& is_asked, const std::funct
     for (int n = 0; n < held; ++n) {
         const DeviceSample sample = read();
         was_pressed_ = sample.valid && (sample.buttons & button_trigger) != 0;
-        if (!sample.valid || !is_valid(sample.pose) || sample.counter == last_counter_) continue;
+        if (!is_good(sample) || sample.counter == last_counter_) continue;
         last_counter_ = sample.counter;
         tips.push_back(sample.pose.apply(tip_));
         if (tracked_) tracked.push_back(*tracked_);

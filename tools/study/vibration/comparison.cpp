@@ -151,6 +151,11 @@ ComparedPair compare_files(const CompareSettings& settings) {
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("judged from {:.0f} to {:.0f} Hz: what both can be trusted in",
                                       o.comparison.lowest, o.comparison.highest));
+    for (const auto& [name, inside] : {std::pair("reference", o.comparison.reference_inside),
+                                       std::pair("output", o.comparison.output_inside)})
+        if (inside > 0.0 && inside < 0.9)
+            o.notes.push_back(fmt::format("{:.0f} % of the power of the {} lies outside of {:.0f} to {:.0f} Hz and is not judged",
+                                          100.0 * (1.0 - inside), name, o.comparison.lowest, o.comparison.highest));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

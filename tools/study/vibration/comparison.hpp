@@ -8,6 +8,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,7 +30,7 @@ struct CompareSettings {
     std::string actuator;                              ///< actuator whose limits define the level gap; empty: none
     double mass = 0.3;                                 ///< moving mass, kg
     double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
-    double longest_delay = 2.0;                        ///< s
+    double longest_delay = std::numeric_limits<double>::infinity();  ///< s
     std::optional<int> channel;                        ///< of both, from 1; 0: the mean of all; none: by `axes`
     Axes axes = Axes::strongest;
     std::array<table::LogSelection, 2> logs;  ///< columns of the reference and the output if they are CSV

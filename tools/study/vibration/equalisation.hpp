@@ -7,6 +7,7 @@
 #include "dsp/vibration/headroom.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,12 +23,18 @@ struct EqualiseSettings {
     double scale = 1.0;                          ///< units of the response's input per unit of the signal file
 };
 
-/// Flatness of actuator and equaliser within the band, by third octaves.
+/// Flatness of actuator and equaliser within the band. Extremes are those of a grid that resolves the narrowest feature
+/// of both, not of the bands' centres: a notch lies between two of these.
 struct Flatness {
     double before_db = 0.0, after_db = 0.0;  ///< greatest deviation from the mean gain, dB
-    double boost_db = -400.0, boost_hz = 0.0;
+    double after_hz = 0.0;                   ///< where `after_db` is reached
+    double boost_db = -400.0, boost_hz = 0.0;  ///< greatest gain of the filter, at any frequency
+    double loudest = std::numeric_limits<double>::infinity();  ///< peak of the loudest sine at the weakest frequency
+    double loudest_hz = 0.0;
     struct Band {
-        double hz, filter_db, loudest;  ///< `loudest`: greatest peak output of a sine there
+        double hz;         ///< centre of the third octave
+        double filter_db;  ///< greatest gain of the filter in it
+        double loudest;    ///< peak of the loudest sine at its weakest frequency
     };
     std::vector<Band> bands;
 };

@@ -70,6 +70,7 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
         out.filtered.push_back(records[i].by_filter());
         const std::size_t clipped =
             std::max(levels[i].clipped(), reader.log() ? reader.log()->at_limit[chosen[i]] : std::size_t{0});
+        out.clipped += clipped;
         if (clipped > 0)
             out.notes.push_back(
                 fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(), clipped));
@@ -90,6 +91,13 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     const double minutes = static_cast<double>(count) / out.rate / 60.0;
     if (minutes < 1.0) out.notes.push_back("the standard requires at least one minute of measurement in total");
     return out;
+}
+
+ExposureVerdict judge_exposure(double a8, bool is_lower_bound) noexcept {
+    if (a8 > signal::limit_value) return ExposureVerdict::above_limit;
+    if (a8 > signal::action_value)
+        return is_lower_bound ? ExposureVerdict::at_least_above_action : ExposureVerdict::above_action;
+    return is_lower_bound ? ExposureVerdict::cannot_be_judged : ExposureVerdict::below_action;
 }
 
 std::optional<double> exposure_of_day(std::span<const ExposureOperation> operations) {

@@ -33,9 +33,16 @@ struct ExposureOperation {
     std::vector<std::string> notes;
 
     double total() const { return signal::vibration_total(weighted); }
-    /// True when axes or a part of the band are missing: values are then lower bounds.
-    bool is_lower_bound() const { return band_high < 1250.0 || !three_axes; }
+    std::size_t clipped = 0;  ///< samples
+
+    /// True when axes or a part of the band are missing or samples are clipped: values are then lower bounds.
+    bool is_lower_bound() const { return band_high < 1250.0 || !three_axes || clipped > 0; }
 };
+
+/// What the exposure of a day shows. A lower bound can exceed a value, but never shows that one is kept.
+enum class ExposureVerdict { below_action, above_action, above_limit, at_least_above_action, cannot_be_judged };
+
+ExposureVerdict judge_exposure(double a8, bool is_lower_bound) noexcept;
 
 /// Evaluates a record with the axes as channels. `duration`: contact time per day, s. Calls `progress` with the
 /// fraction done. Throws Error.

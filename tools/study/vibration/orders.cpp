@@ -78,6 +78,8 @@ signal::Rotation rotation_of_ridge(sound::RecordReader& reader, std::size_t chan
             const double beyond = found.steady ? 1.4 : 1.3;
             ridge_settings.lowest = found.low / beyond;
             ridge_settings.highest = found.high * beyond;
+            // A frame holds enough periods to resolve neighbouring orders.
+            ridge_settings.frame = std::max(ridge_settings.frame, 8.0 / ridge_settings.lowest);
         }
     }
     // A lower sample rate holds all the orders that are tracked.

@@ -23,6 +23,7 @@ sound::RecordReader open_record(const std::filesystem::path& file, const RecordS
 std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
                                     double rate) {
     std::vector<std::string> lines;
+    if (!calibration.file_note.empty()) lines.push_back(calibration.file_note);
     if (log) {
         lines.push_back("read as: " + table::describe(log->form));
         const std::string steps =

@@ -45,6 +45,14 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
     if (report.lines.effective_segments < 4.0)
         warnings.push_back(fmt::format("short: only {} segments; noise levels are uncertain by {:.1f} dB",
                                        report.lines.segments, 4.34 * report.lines.relative_deviation()));
+    if (const signal::FundamentalEstimate& found = report.fundamental; found.frequency > 0.0 && !found.is_certain()) {
+        const std::string periods = fmt::format("the record has {:.0f} periods", found.periods);
+        warnings.push_back(found.rivals.empty()
+                               ? fmt::format("cannot tell whether {:.1f} Hz is the fundamental or a multiple of it: {}",
+                                             found.frequency, periods)
+                               : fmt::format("cannot tell {:.1f} from {:.1f} Hz: {}", found.frequency,
+                                             found.rivals.front().frequency, periods));
+    }
     if (report.fundamental.frequency > 0.0 && !report.fundamental.steady)
         warnings.push_back(
             fmt::format("the rate varies from {:.1f} to {:.1f} Hz: lines are smeared; use 'tactus orders'",

@@ -23,7 +23,7 @@ struct SpectrumSettings {
     bool is_density = true;                            ///< unit²/Hz; otherwise unit²
     std::optional<std::size_t> segment;                ///< samples; none: about 0.75 s
     double overlap = 0.5;                              ///< fraction of a segment
-    std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, search range
+    std::pair<double, double> fundamental{signal::lowest_fundamental, signal::highest_fundamental};  ///< Hz, search range
     std::optional<std::pair<double, double>> envelope;   ///< Hz, band for envelope analysis
     std::vector<Mark> marks;
     int orders = 10;

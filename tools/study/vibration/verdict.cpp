@@ -11,6 +11,7 @@ namespace tactus::study {
 namespace {
 
 constexpr double coherent = 0.5;
+constexpr double most_course_db = 3.0;  // rms of the level difference over time of what are copies
 
 std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double least_db) {
     std::vector<signal::SpectralLine> out;
@@ -28,6 +29,14 @@ std::vector<std::string> Verdict::failed() const {
     for (const Judged& score : scores)
         if (!score.passed) names.push_back(score.name);
     return names;
+}
+
+std::string Verdict::words() const {
+    const std::string band = fmt::format("{:.0f} to {:.0f} Hz", lowest, highest);
+    if (!passed()) return fmt::format("Not the same vibration, {}", band);
+    if (time.empty()) return fmt::format("Same mean spectrum, {}; time is not judged", band);
+    return fmt::format("Same mean spectrum and {}, {}{}", time, band,
+                       time == "statistics" ? "; order in time is not judged" : "");
 }
 
 Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thresholds& limits) {
@@ -60,6 +69,16 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM", high);
     add("spqi", c.spqi, limits.spqi, true, "SPQI", high);
     add("coherence_mean", c.coherence_mean, limits.coherence_mean, true, "coherence", high);
+    verdict.lowest = c.lowest;
+    verdict.highest = high;
+    if (c.course_db) {
+        add("course_db", c.course_db, most_course_db, false, "rms of the level difference over time, dB", high);
+        verdict.time = "course over time";
+    } else if (c.statistics) {
+        add("statistics", c.statistics->deviation, 1.0, false,
+            fmt::format("worst statistic over time ({}), in units of its tolerance", c.statistics->worst).c_str(), high);
+        verdict.time = "statistics";
+    }
     add("level_gap_db", level_gap_db, limits.level_gap_db, false, "softer than the reference, dB", high);
 
     double strongest = -1e9;

@@ -23,7 +23,12 @@ struct Verdict {
     std::vector<std::string> not_judged;        ///< scores with a threshold but without a value
     std::vector<signal::SpectralLine> added, missing;           ///< lines that cause a failure
 
+    std::string time;  ///< what a pass says of time: "course over time", "statistics"; empty: nothing
+    double lowest = 0.0, highest = 0.0;  ///< Hz: the band that was judged
+
     bool passed() const;
+    /// The verdict with its scope, such as "Same mean spectrum and course over time, 40 to 1000 Hz".
+    std::string words() const;
     std::vector<std::string> failed() const;
 };
 

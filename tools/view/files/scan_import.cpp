@@ -3,10 +3,9 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
+#include "tools/study/beside.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <string_view>
@@ -40,9 +39,7 @@ void ScanImport::begin(const bone::ImportOptions& options, const fs::path& out) 
 }
 
 ScanImport::Result ScanImport::import(const bone::ImportOptions& options, const fs::path& out) {
-    // A run goes first. On Linux the priority is a value of the thread.
-    constexpr int nice = 10;
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
+    study::let_others_go_first();
     const StopScope scope([this] { return stops_.load(); });
     try {
         std::error_code ignored;

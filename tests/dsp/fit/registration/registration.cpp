@@ -223,3 +223,61 @@ TEST_CASE("plain registration of points stops short along a smooth surface, that
     CHECK(points.to_surface > surface.median);
     CHECK_THROWS_AS(fit::register_points({}, target, {}), Error);
 }
+
+namespace {
+
+/// A closed cylinder with rounded ends, 40 mm long; `bump`: height of a lump on one side near one end, m.
+std::vector<contact::SurfacePoint> bar_points(int rows, double bump) {
+    const auto at = [&](double u, double z) {
+        const double end = std::max(0.0, std::abs(z) - 14.0 * mm) / (6.0 * mm);
+        const double r = 4.0 * mm * std::sqrt(std::max(0.0, 1.0 - end * end));
+        const double swell = bump * std::exp(-std::pow((z - 8.0 * mm) / (4.0 * mm), 2.0)) * std::max(0.0, std::cos(u));
+        return Vec3((r + swell) * std::cos(u), (r + swell) * std::sin(u), z);
+    };
+    std::vector<contact::SurfacePoint> points;
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < rows / 2; ++j) {
+            const double z = (-19.5 + 39.0 * (i + 0.5) / rows) * mm, u = 2.0 * std::numbers::pi * j / (rows / 2), h = 1e-5;
+            const Vec3 across = glm::cross(at(u + h, z) - at(u - h, z), at(u, z + h) - at(u, z - h));
+            points.push_back({at(u, z), glm::normalize(across), 1e-6, 0});
+        }
+    return points;
+}
+
+}  // namespace
+
+TEST_CASE("a search from the position in the files finds every pose, and says when another fits as well", "[slow]") {
+    const auto fixed = lump_points(40), moving = lump_points(33, 0.2);
+    const fit::RegistrationTarget target(fixed);
+    const Pose start;
+    const Random random{9};
+    for (std::uint64_t n = 0; n < 4; ++n) {
+        const Vec3 axis = glm::normalize(Vec3(random.normal(3 * n), random.normal(3 * n + 1), random.normal(3 * n + 2)));
+        const Pose truth{Vec3(5.0, -10.0 * double(n), 3.0) * mm, rotation_by(axis * (0.5 * std::numbers::pi + 0.5 * double(n)))};
+        // Another person's: a little larger.
+        auto other = moved(moving, truth.inverse());
+        if (n % 2 == 1)
+            for (contact::SurfacePoint& p : other) p.position *= 1.03;
+        const fit::JudgedRegistration found = fit::search_registration(other, fixed, target, &start);
+        CAPTURE(n, found.score, found.rivals.empty() ? 0.0 : found.rivals.front().score);
+        CHECK(found.verdict == fit::RegistrationVerdict::fit);
+        CHECK(off(found.best.pose, truth) < (n % 2 == 1 ? 6.0 : 0.2) * mm);
+    }
+}
+
+TEST_CASE("a bar without a mark is ambiguous, one with a lump is not, whatever end comes first", "[slow]") {
+    const Pose turn{Vec3(0.0, 0.0, 0.0), rotation_by({std::numbers::pi, 0.0, 0.0})}, start;
+    for (const double bump : {0.0, 2.0 * mm}) {
+        const auto fixed = bar_points(40, bump), moving = moved(bar_points(34, bump), turn.inverse());
+        const fit::JudgedRegistration found =
+            fit::search_registration(moving, fixed, fit::RegistrationTarget(fixed), &start);
+        CAPTURE(bump, found.score, found.rivals.empty() ? 0.0 : found.rivals.front().score);
+        if (bump == 0.0) {
+            CHECK(found.verdict == fit::RegistrationVerdict::ambiguous);
+            CHECK_FALSE(found.rivals.empty());
+        } else {
+            CHECK(found.verdict == fit::RegistrationVerdict::fit);
+            CHECK(off(found.best.pose, turn) < 0.3 * mm);
+        }
+    }
+}

@@ -6,6 +6,10 @@
 #include "tests/dsp/vibration/plant.hpp"
 #include "tests/support/catch.hpp"
 
+#include <limits>
+#include <tuple>
+#include <vector>
+
 using namespace tactus;
 
 namespace {
@@ -94,4 +98,38 @@ TEST_CASE("a part of a loop is found in it, through a filter and across its end"
         const double off = std::abs(found - static_cast<double>(begin));
         CHECK(std::min(off, 8000.0 - off) <= 2.0);
     }
+}
+
+TEST_CASE("an exact excerpt correlates fully wherever it is, and a copy that is shifted by more than half of itself") {
+    std::vector<double> whole(80000);
+    const Random random{71};
+    double dull = 0.0;
+    for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = dull = 0.9 * dull + random.normal(i);
+    const auto part = [&](double from, double seconds) {
+        const auto start = whole.begin() + static_cast<std::ptrdiff_t>(from * aligned_rate);
+        return std::vector<double>(start, start + static_cast<std::ptrdiff_t>(seconds * aligned_rate));
+    };
+    for (const auto& [reference, output, delay] :
+         {std::tuple{part(0.0, 10.0), part(6.3, 1.5), -6.3}, std::tuple{part(8.1, 1.2), part(0.0, 10.0), 8.1},
+          std::tuple{part(0.0, 3.0), part(1.5, 3.0), -1.5}, std::tuple{part(2.2, 4.0), part(0.0, 4.0), 2.2}}) {
+        const signal::Alignment found =
+            signal::align_takes(reference, output, aligned_rate, 40.0, 1000.0, std::numeric_limits<double>::infinity());
+        CAPTURE(delay);
+        CHECK(found.significant);
+        CHECK(found.delay == Approx(delay).margin(1e-4));
+        CHECK(found.correlation > 0.999);
+    }
+}
+
+TEST_CASE("without a limit of the delay noise belongs to no other noise either") {
+    int alarms = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        std::vector<double> a(24000), b(16000);
+        const Random x{9000 + 2 * seed}, y{9001 + 2 * seed};
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] = x.normal(i);
+        for (std::size_t i = 0; i < b.size(); ++i) b[i] = y.normal(i);
+        alarms +=
+            signal::align_takes(a, b, aligned_rate, 40.0, 1000.0, std::numeric_limits<double>::infinity()).significant;
+    }
+    CHECK(alarms == 0);
 }

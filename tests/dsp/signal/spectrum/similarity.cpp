@@ -122,3 +122,18 @@ TEST_CASE("spectrograms agree for one course over time and not for another") {
     CHECK(signal::spectrogram_similarity(swell, other, record_rate, 40.0, 1000.0) == Approx(1.0));
     CHECK(signal::spectrogram_similarity(swell, later, record_rate, 40.0, 1000.0) < 0.7);
 }
+
+TEST_CASE("ST-SIM of a record with itself is 1, however much of it is silent, and never above 1") {
+    const Random random{31};
+    for (const double silent : {0.0, 0.3, 0.9}) {
+        std::vector<double> x(8192), y(8192);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            x[i] = static_cast<double>(i) < silent * static_cast<double>(x.size()) ? 0.0 : 0.3 * random.normal(i);
+            y[i] = x[i] + 0.01 * random.normal(i + 100000);
+        }
+        CAPTURE(silent);
+        CHECK(signal::st_sim(x, x) == Approx(1.0).margin(1e-9));
+        CHECK(signal::st_sim(x, y) <= 1.0);
+        CHECK(signal::st_sim(y, x) <= 1.0);
+    }
+}

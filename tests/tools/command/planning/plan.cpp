@@ -311,7 +311,7 @@ TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes ba
     CHECK(folder.tactus(again + folder.write("bad.json", "[]").string()).code == 2);
 }
 
-TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", "[live]") {
+TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", "[slow]") {
     const Boxes boxes;
     const std::string whole = slurp(boxes.plan);
     boxes.folder.write("metres.stl", box_stl(Vec3(0.0), Vec3(0.010, 0.012, 0.014), false));

@@ -88,7 +88,7 @@ TEST_CASE("a live case that is killed is on disk as far as it went, and opens wi
     CHECK(again.code == 0);
 }
 
-TEST_CASE("a live case and the same one on a virtual clock leave the same bytes of a plan", "[live]") {
+TEST_CASE("a live case and the same one on a virtual clock leave the same bytes of a plan", "[slow]") {
     const Folder folder;
     const std::string live = (folder.path / "live").string(), log = (folder.path / "log").string(),
                       virt = (folder.path / "virtual").string();

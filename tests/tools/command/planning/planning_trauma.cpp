@@ -77,13 +77,12 @@ double step_after(const std::vector<Vec3>& force, double time, double millisecon
     return most;
 }
 
-}  // namespace
-
-TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, the chain within 0.5 mm", "[slow]") {
+/// Renders the scripted case for so many seconds, in which the hand settles so many pieces and rests at least so often.
+void put_together(int seconds, std::size_t pieces, int rests) {
     const Folder folder;
     const fs::path out = folder.path / "out", take = folder.path / "take";
-    const Outcome run =
-        folder.tactus("render planning-trauma --seconds 90 --out " + out.string() + " --record " + take.string());
+    const Outcome run = folder.tactus("render planning-trauma --seconds " + std::to_string(seconds) + " --out " +
+                                      out.string() + " --record " + take.string());
     INFO(run.err);
     REQUIRE(run.code == 0);
     const json summary = json::parse(slurp(out / "summary.json"));
@@ -100,7 +99,7 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
             placed[step["fragments"][n].get<std::string>()] = pose_in(step["poses"][n]);
         ++settled[step["fragments"][0].get<std::string>()];
     }
-    CHECK(placed.size() == 11);
+    CHECK(placed.size() == pieces);
     double worst = 0.0, worst_turn = 0.0, chain = 0.0;
     for (const auto& [name, belongs] : truth()) {
         if (!placed.contains(name)) continue;
@@ -123,10 +122,10 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
     CHECK(summary["contact"]["limited_ticks"].get<double>() < 1e-3 * summary["force"]["ticks"].get<double>());
     const std::vector<Vec3> force = forces(out / "force.csv");
     const std::vector<HandLine> hand = hand_lines();
-    REQUIRE(force.size() == 90'000);
+    REQUIRE(force.size() == static_cast<std::size_t>(seconds) * 1000);
     double ripple = 0.0, taken = 0.0, led = 0.0;
     int stills = 0;
-    for (std::size_t n = 1; n < hand.size() && hand[n].time < 89.0; ++n) {
+    for (std::size_t n = 1; n < hand.size() && hand[n].time < seconds - 1.0; ++n) {
         const HandLine &last = hand[n - 1], &now = hand[n];
         if (last.has("trigger") != now.has("trigger")) taken = std::max(taken, step_after(force, now.time, 100.0));
         if (last.has("second")) led = std::max(led, step_after(force, last.time, (now.time - last.time) * 1e3));
@@ -136,7 +135,7 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
         for (std::size_t k = end - 100; k < end; ++k) ripple = std::max(ripple, glm::length(force[k] - force[end - 1]));
     }
     CAPTURE(ripple, taken, led, stills);
-    CHECK(stills > 50);
+    CHECK(stills >= rests);
     CHECK(ripple < 5e-3);
     CHECK(taken < 0.02);
     CHECK(led < 0.15);
@@ -152,4 +151,15 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
     const Outcome again = folder.tactus("replay " + take.string());
     INFO(again.out << again.err);
     CHECK(again.code == 0);
+}
+
+}  // namespace
+
+TEST_CASE("render planning-trauma: the first pieces within 0.3 mm and 0.5 degrees, the chain within 0.5 mm",
+          "[slow]") {
+    put_together(9, 2, 5);
+}
+
+TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, the chain within 0.5 mm", "[.][long]") {
+    put_together(90, 11, 51);
 }

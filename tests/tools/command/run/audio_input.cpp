@@ -2,6 +2,7 @@
 // Channels of a card that a patch hears: from a file, and from another client of a JACK server, which counts frames.
 #include "assets/sound/sound.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/tools/background_run.hpp"
 #include "tests/tools/jack_server.hpp"
 
 #include <nlohmann/json.hpp>
@@ -114,6 +115,16 @@ private:
     std::atomic<std::size_t> frames_{0};
 };
 
+std::uintmax_t bytes_in(const std::filesystem::path& folder) {
+    std::uintmax_t bytes = 0;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const auto size = entry.file_size(ignored);
+        if (!ignored) bytes += size;
+    }
+    return bytes;
+}
+
 /// False when this machine was too busy to play without a gap.
 bool echoes_every_frame(const Folder& folder, const std::string& file, int period) {
     Server server(folder, period);
@@ -195,10 +206,12 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
     CHECK(summary["sound"][0]["heard"]["channels"] == 2);
     const std::string take = (folder.path / "cut").string();
     there.reset();
-    const std::string killed = "timeout -s KILL 2 " + tactus::test::command() + " run " + file +
-                               " --seconds 20 --audio default --out " + (folder.path / "k").string() + " --record " +
-                               take + " >/dev/null 2>&1";
-    REQUIRE(std::system(killed.c_str()) != 0);
+    {
+        Run killed(folder, file + " --seconds 60 --audio default --out " + (folder.path / "k").string() + " --record " +
+                               take);
+        REQUIRE(wait_for([&] { return bytes_in(take) > 150'000; }));  // most of a second of what was heard
+        killed.stop(SIGKILL);
+    }
     server.end(SIGKILL);  // in order it would wait 100 s for the client that is gone
     const Outcome again = folder.tactus("replay " + take);
     INFO(again.out << again.err);

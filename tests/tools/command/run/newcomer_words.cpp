@@ -129,7 +129,7 @@ TEST_CASE("check tells the verdict of the patch's own device from what other dev
     CHECK_THAT(folder.tactus("check " + one).out, ContainsSubstring("  1 node\n"));
 }
 
-TEST_CASE("a live run does not state a speed", "[live]") {
+TEST_CASE("a live run does not state a speed") {
     const Folder folder;
     const std::string patch =
         folder.write("one.toml", "[nodes.only]\ntype = \"constant\"\nrate = \"100 Hz\"\n").string();

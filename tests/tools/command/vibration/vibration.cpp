@@ -256,7 +256,7 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
         "NaN");
     refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 160}), "trusted to 72 Hz only");
     const std::string bytes = slurp(good);
-    refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
+    refused(folder.write("cut.wav", bytes.substr(0, 40)), "empty");
 
     const auto passes = [&](const fs::path& file) {
         INFO(file);

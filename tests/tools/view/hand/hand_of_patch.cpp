@@ -4,6 +4,7 @@
 #include "devices/haptic/window_hand.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/virtual_clock.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/view/workbench.hpp"
 
@@ -84,7 +85,8 @@ TEST_CASE("a node without a device goes with the hand that the window takes wher
     CHECK(bench.choice().overrides.settings.empty());
 }
 
-TEST_CASE("the run begins again with the hand of the window", "[live]") {
+TEST_CASE("the run begins again with the hand of the window", "[virtual]") {
+    const test::VirtualClock clock;
     const Folder folder;
     ++haptic::window_hand().windows;
     RunChoice choice = choice_of(in_library("touch-sphere"));

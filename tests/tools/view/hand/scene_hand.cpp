@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // When the window begins to move the hand of a run.
-#include "dsp/core/clock.hpp"
 #include "tools/view/hand/scene_hand.hpp"
 
 #include "devices/haptic/window_hand.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/support/catch.hpp"
 
 #include <imgui.h>

@@ -40,7 +40,7 @@ void widen(reconstruct::Reconstruction& all) { all.flap.margin = 7e-3; }
 
 }  // namespace
 
-TEST_CASE("a change of a reconstruction keeps the steps that the run made while it was computed", "[live]") {
+TEST_CASE("a change of a reconstruction keeps the steps that the run made while it was computed", "[virtual][slow]") {
     std::atomic<bool> has_begun = false, may_end = false;
     FlapRig rig;
     rig.flap.change([&](reconstruct::Reconstruction& all) {
@@ -57,7 +57,7 @@ TEST_CASE("a change of a reconstruction keeps the steps that the run made while 
     rig.check_made();
 }
 
-TEST_CASE("a change of a reconstruction keeps the step that was asked for just before", "[live]") {
+TEST_CASE("a change of a reconstruction keeps the step that was asked for just before", "[virtual][slow]") {
     FlapRig rig;
     rig.run.press("lock", segment);
     rig.flap.change(widen);
@@ -65,7 +65,7 @@ TEST_CASE("a change of a reconstruction keeps the step that was asked for just b
     rig.check_made();
 }
 
-TEST_CASE("a change of a reconstruction waits for the end of a pause with the steps that wait", "[live]") {
+TEST_CASE("a change of a reconstruction waits for the end of a pause with the steps that wait", "[virtual][slow]") {
     FlapRig rig;
     REQUIRE(rig.pause(true));
     rig.run.press("lock", segment);
@@ -77,7 +77,7 @@ TEST_CASE("a change of a reconstruction waits for the end of a pause with the st
     rig.check_made();
 }
 
-TEST_CASE("undo of a change of the reconstruction reaches the nodes that have read it", "[live]") {
+TEST_CASE("undo of a change of the reconstruction reaches the nodes that have read it", "[virtual][slow]") {
     FlapRig rig;
     const double before = rig.flap.reconstruction()->flap.margin;
     REQUIRE(before != 7e-3);
@@ -100,7 +100,7 @@ TEST_CASE("undo of a change of the reconstruction reaches the nodes that have re
     CHECK(cases::state_of(cases::load_case_plan(rig.made)).reconstruction->flap.margin == 7e-3);
 }
 
-TEST_CASE("a change with which the patch cannot run is told and the run goes on without it", "[live]") {
+TEST_CASE("a change with which the patch cannot run is told and the run goes on without it", "[virtual][slow]") {
     FlapRig rig;
     const std::size_t sites = rig.flap.reconstruction()->flap.sites.size();
     rig.run.press("lock", segment);

@@ -9,7 +9,7 @@ using namespace tactus;
 using namespace tactus::test;
 using namespace tactus::view;
 
-TEST_CASE("commands that are given in a pause all take effect when the run goes on", "[live]") {
+TEST_CASE("commands that are given in a pause all take effect when the run goes on", "[virtual][slow]") {
     PlanRig rig("planning-trauma");
     const std::size_t before = rig.run.steps().size();
     REQUIRE(rig.pause(true));
@@ -31,7 +31,7 @@ TEST_CASE("commands that are given in a pause all take effect when the run goes 
     CHECK(rig.comes([&] { return !rig.is_locked(3) && !rig.is_locked(5); }, 600));
 }
 
-TEST_CASE("a run whose time goes slowly does each of several steps", "[live]") {
+TEST_CASE("a run whose time goes slowly does each of several steps", "[virtual][slow]") {
     PlanRig rig("planning-trauma", 20.0);
     rig.run.press("lock", 3);
     rig.run.press("lock", 5);
@@ -39,7 +39,7 @@ TEST_CASE("a run whose time goes slowly does each of several steps", "[live]") {
     CHECK(rig.is_locked(3));
 }
 
-TEST_CASE("an edit of the patch does not drop the commands that wait", "[live]") {
+TEST_CASE("an edit of the patch does not drop the commands that wait", "[virtual][slow]") {
     PlanRig rig("planning-trauma");
     for (const int fragment : {2, 3, 5}) rig.run.press("lock", fragment);
     rig.picture();
@@ -47,7 +47,8 @@ TEST_CASE("an edit of the patch does not drop the commands that wait", "[live]")
     CHECK(rig.comes([&] { return rig.is_locked(2) && rig.is_locked(3) && rig.is_locked(5); }, 600));
 }
 
-TEST_CASE("a button that is pressed elsewhere after a command does not mean the fragment of that command", "[live]") {
+TEST_CASE("a button that is pressed elsewhere after a command does not mean the fragment of that command",
+          "[virtual][slow]") {
     PlanRig rig("planning-trauma");
     rig.run.press("lock", 3);
     REQUIRE(rig.comes([&] { return rig.is_locked(3) && rig.run.is_settled(); }, 600));
@@ -56,7 +57,7 @@ TEST_CASE("a button that is pressed elsewhere after a command does not mean the 
     CHECK(rig.is_locked(3));
 }
 
-TEST_CASE("a plan that cannot be read is told once", "[live]") {
+TEST_CASE("a plan that cannot be read is told once", "[virtual][slow]") {
     PlanRig rig("planning-trauma");
     file::write_whole_file(rig.run.file(), "no plan");
     CaseRun other(rig.bench);

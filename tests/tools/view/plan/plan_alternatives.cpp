@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/core/clock.hpp"
 #include "tools/view/plan/plan_alternatives.hpp"
 
 #include "assets/cases/plan_file.hpp"
 #include "devices/haptic/window_hand.hpp"
+#include "dsp/core/clock.hpp"
 #include "tests/tools/view/plan/plan_rig.hpp"
 
 using namespace tactus;
@@ -31,7 +31,7 @@ struct Rig : PlanRig {
 
 }  // namespace
 
-TEST_CASE("another name for an alternative keeps the step that was asked for just before", "[live]") {
+TEST_CASE("another name for an alternative keeps the step that was asked for just before", "[virtual][slow]") {
     Rig rig;
     rig.run.press("lock", fragment);
     rig.alternatives.rename("main", "before");
@@ -42,7 +42,7 @@ TEST_CASE("another name for an alternative keeps the step that was asked for jus
     CHECK(rig.alternatives.take_changed().empty());
 }
 
-TEST_CASE("another name that is given in a pause waits for the steps that were asked for before", "[live]") {
+TEST_CASE("another name that is given in a pause waits for the steps that were asked for before", "[virtual][slow]") {
     Rig rig;
     REQUIRE(rig.pause(true));
     rig.run.press("lock", fragment);
@@ -54,7 +54,7 @@ TEST_CASE("another name that is given in a pause waits for the steps that were a
     CHECK(cases::state_of(cases::load_case_plan(rig.made)).arrangement.is_locked(fragment));
 }
 
-TEST_CASE("a run that is ended after another name was given does not begin again with it", "[live]") {
+TEST_CASE("a run that is ended after another name was given does not begin again with it", "[virtual][slow]") {
     Rig rig;
     rig.run.press("lock", fragment);
     rig.alternatives.rename("main", "before");
@@ -64,7 +64,8 @@ TEST_CASE("a run that is ended after another name was given does not begin again
     CHECK(rig.has_told("'main' keeps its name"));
 }
 
-TEST_CASE("who holds a fragment gives no other name before it is let go and where it is has become a step", "[live]") {
+TEST_CASE("who holds a fragment gives no other name before it is let go and where it is has become a step",
+          "[virtual][slow]") {
     ++haptic::window_hand().windows;
     Rig rig({"hand.device=mouse", "grasp.reach=1 m"});
     std::int64_t buttons = button_trigger;

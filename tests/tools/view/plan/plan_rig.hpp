@@ -4,6 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/virtual_clock.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/view/plan/case_run.hpp"
 
@@ -17,6 +18,7 @@
 namespace tactus::test {
 
 struct PlanRig {
+    VirtualClock clock;
     Folder folder;
     view::Workbench bench;
     view::CaseRun run{bench};

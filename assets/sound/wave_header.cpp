@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/wave_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+namespace tactus::sound {
+
+namespace {
+
+constexpr std::uint64_t max_kept = 1 << 20;  // bytes of a chunk that is kept
+
+std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
+    std::uint64_t number = 0;
+    for (std::size_t n = 0; n < size; ++n)
+        number |= std::uint64_t{static_cast<unsigned char>(bytes[at + n])} << (8 * n);
+    return number;
+}
+
+void put(std::string& out, std::uint64_t number, std::size_t size) {
+    for (std::size_t n = 0; n < size; ++n) out += static_cast<char>(number >> (8 * n) & 0xff);
+}
+
+void put_chunk(std::string& out, std::string_view name, std::string_view bytes) {
+    out += name;
+    put(out, bytes.size(), 4);
+    out += bytes;
+    if (bytes.size() % 2 != 0) out += '\0';
+}
+
+bool is_chunk_name(std::string_view name) {
+    return std::ranges::all_of(name, [](char c) { return c >= ' ' && c < 127; });
+}
+
+}  // namespace
+
+std::optional<WaveHeader> repaired_wave_header(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::error_code failure;
+    const std::uint64_t present = std::filesystem::file_size(path, failure);
+    std::string head(12, '\0');
+    if (failure || !file.read(head.data(), 12)) return std::nullopt;
+    const bool is_rf64 = head.starts_with("RF64") || head.starts_with("BW64");
+    if ((!head.starts_with("RIFF") && !is_rf64) || head.substr(8) != "WAVE") return std::nullopt;
+    const std::uint64_t stated = number_at(head, 4, 4);
+    const auto read = [&](std::uint64_t at, std::uint64_t size) {
+        std::string bytes(size, '\0');
+        file.clear();
+        file.seekg(static_cast<std::streamoff>(at));
+        file.read(bytes.data(), static_cast<std::streamsize>(size));
+        bytes.resize(static_cast<std::size_t>(file.gcount()));
+        return bytes;
+    };
+    std::string format, kept;
+    std::optional<std::uint64_t> start;
+    std::uint64_t size = 0, wanted = 0, long_size = 0;
+    bool is_before_format = false, is_wrong = !is_rf64 && stated + 8 > present;
+    for (std::uint64_t at = 12; at + 8 <= present;) {
+        const std::string chunk = read(at, 8);
+        const std::string_view name = std::string_view(chunk).substr(0, 4);
+        if (!is_chunk_name(name)) break;
+        const std::uint64_t length = number_at(chunk, 4, 4), left = present - at - 8;
+        if (name == "ds64" && length >= 16) long_size = number_at(read(at + 8, 16), 8, 8);
+        else if (name == "fmt " && length >= 16 && length <= std::min<std::uint64_t>(left, 4096)) format = read(at + 8, length);
+        else if (name == "data") {
+            start = at + 8;
+            is_before_format = format.empty();
+            wanted = is_rf64 && length >= 0x7fffffff ? long_size : length;
+            size = std::min(wanted, left);
+            // A recorder writes the size at the end of the recording.
+            bool is_unfinished = wanted > left;
+            if (wanted == 0 && left > 0) {
+                const std::string next = read(at + 8, 8);
+                is_unfinished = !(next.size() == 8 && is_chunk_name(next.substr(0, 4)) && number_at(next, 4, 4) + 8 <= left);
+            }
+            if (is_unfinished) {
+                size = left, is_wrong = true;
+                break;
+            }
+            at += 8 + wanted + wanted % 2;
+            if (!format.empty()) break;
+            continue;
+        } else if ((name == "LIST" || name == "bext") && length <= std::min(left, max_kept)) {
+            put_chunk(kept, name, read(at + 8, length));
+        }
+        at += 8 + length + length % 2;
+    }
+    if (!start || format.size() < 16 || size == 0) return std::nullopt;
+    if (!is_wrong && !is_before_format) return std::nullopt;
+    const std::uint64_t frame = std::max<std::uint64_t>(1, number_at(format, 12, 2));
+    size -= size % frame;
+    if (size == 0) return std::nullopt;
+
+    WaveHeader made;
+    made.start = *start;
+    made.size = size;
+    const bool is_long = size > 0xfffffff0u - kept.size() - format.size() - 64;
+    std::string body = "WAVE";
+    if (is_long) {
+        std::string sizes;
+        put(sizes, size + kept.size() + format.size() + 64, 8);
+        put(sizes, size, 8);
+        put(sizes, size / frame, 8);
+        put(sizes, 0, 4);
+        put_chunk(body, "ds64", sizes);
+    }
+    put_chunk(body, "fmt ", format);
+    body += kept;
+    body += "data";
+    put(body, is_long ? 0xffffffffu : size, 4);
+    made.bytes = is_long ? "RF64" : "RIFF";
+    put(made.bytes, is_long ? 0xffffffffu : body.size() + size, 4);
+    made.bytes += body;
+    const bool is_unknown = wanted == 0 || wanted >= 0x7fffff00;
+    made.note = is_before_format && !is_wrong ? std::string("the samples stand before their format in the file")
+                : size >= wanted && !is_unknown
+                    ? fmt::format("the header states {} bytes and the file has {}; all samples are there", stated + 8, present)
+                : is_unknown ? fmt::format("the recording was not finished: its header states no length; the {} bytes of "
+                                           "samples that the file has were read",
+                                           size)
+                             : fmt::format("the sound is cut short: the {} of {} bytes of samples that the file has were read",
+                                           size, wanted);
+    return made;
+}
+
+}  // namespace tactus::sound

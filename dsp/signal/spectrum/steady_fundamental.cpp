@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/steady_fundamental.hpp"
+
+#include "dsp/signal/spectrum/harmonic_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace tactus::signal {
+
+namespace {
+
+constexpr double needed_rate = 22000.0;           // Hz: orders are sought up to 0.36 of it
+constexpr std::size_t longest_segment = 1 << 18;  // thinned samples
+constexpr std::size_t most_kept = 1 << 19;
+constexpr std::size_t most_levels = 6;
+constexpr double shortest_segment = 0.04;  // s
+constexpr std::size_t most_tested = 40;    // lines
+constexpr std::size_t seed_lines = 12;          // lines that candidates are made of
+constexpr int most_divisions = 24;
+constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Hann window is four wide
+
+constexpr std::size_t floor_block = 32;  // bins
+
+struct NarrowLine {
+    double frequency, deviation;  // Hz
+    double power, floor;          // per bin
+    double weight;                // log-likelihood ratio to noise
+    bool is_hum;
+};
+
+struct NarrowLines {
+    std::vector<NarrowLine> found;  // heaviest first
+    double df = 0.0, all = 0.0;  // `all`: power above the noise, narrow or not
+    double threshold = 0.0;      // power over the noise
+    double segments = 1.0;
+    std::vector<double> floors;  // noise per block of bins
+};
+
+bool is_mains(double frequency, double reach) {
+    for (const double mains : {50.0, 60.0}) {
+        const double order = std::round(frequency / mains);
+        if (order >= 1.0 && order <= 12.0 && std::abs(frequency - order * mains) < reach + 4e-4 * frequency)
+            return true;
+    }
+    return false;
+}
+
+/// Quantile of the mean of K exponential powers (Wilson and Hilferty 1931) at `z` standard deviations.
+double power_quantile(double segments, double z) {
+    const double part = 1.0 / (9.0 * std::max(1.0, segments));
+    return std::pow(std::max(0.05, 1.0 - part + z * std::sqrt(part)), 3.0);
+}
+
+/// Greatest power of a Hann window `bins` away from a line, relative to the line.
+double side_lobe(double bins) {
+    const double d = std::abs(bins);
+    const double amplitude = 1.0 / (std::numbers::pi * d * (d * d - 1.0));
+    return amplitude * amplitude;
+}
+
+NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
+    NarrowLines out;
+    const std::vector<double>& p = spectrum.power;
+    out.df = spectrum.df;
+    out.segments = std::max(1.0, spectrum.effective_segments);
+    if (p.size() < 16) return out;
+    out.threshold = power_quantile(out.segments, 4.9);
+    const double low = power_quantile(out.segments, -0.52);
+    const auto last = static_cast<std::size_t>(std::min(top / spectrum.df, static_cast<double>(p.size()) - 4.0));
+    // Noise: the quantile of 30 % in blocks of 32 bins and their neighbours.
+    constexpr std::size_t block = floor_block;
+    std::vector<double>& floors = out.floors;
+    floors.resize(last / block + 1);
+    std::vector<double> near;
+    for (std::size_t i = 0; i < floors.size(); ++i) {
+        const std::size_t from = std::max<std::size_t>(2, i * block > block ? (i - 1) * block : 2),
+                          to = std::min(p.size() - 2, (i + 2) * block);
+        near.assign(p.begin() + static_cast<std::ptrdiff_t>(from), p.begin() + static_cast<std::ptrdiff_t>(std::max(to, from + 1)));
+        const auto quantile = near.begin() + static_cast<std::ptrdiff_t>(near.size() * 3 / 10);
+        std::nth_element(near.begin(), quantile, near.end());
+        floors[i] = std::max(*quantile / low, 1e-300);
+    }
+    double greatest = 0.0;
+    for (std::size_t k = 2; k <= last; ++k) {
+        const double floor = floors[std::min(k / block, floors.size() - 1)];
+        if (p[k] > out.threshold * floor) out.all += p[k] - floor;
+        greatest = std::max(greatest, p[k]);
+    }
+    for (std::size_t k = 2; k <= last; ++k) {
+        const double floor = floors[k / block];
+        if (!(p[k] > p[k - 1] && p[k] >= p[k + 1]) || p[k] < out.threshold * floor || p[k] < 1e-9 * greatest) continue;
+        double beside = 0.0;
+        bool is_lobe = false;
+        for (std::size_t d = 3; d <= 64; ++d) {
+            const double left = k > d + 1 ? p[k - d] : 0.0, right = k + d < p.size() ? p[k + d] : 0.0;
+            if (d <= 4) beside = std::max({beside, left, right});
+            is_lobe |= p[k] < 6.0 * side_lobe(static_cast<double>(d) - 0.5) * std::max(left, right);
+        }
+        if (is_lobe || beside > 0.3 * p[k]) continue;
+        const bool above = p[k + 1] > p[k - 1];
+        const double ratio = std::sqrt((above ? p[k + 1] : p[k - 1]) / p[k]);
+        const double shift = std::clamp((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 0.5);
+        const double snr = p[k] / floor;
+        NarrowLine line{};
+        line.frequency = (static_cast<double>(k) + (above ? shift : -shift)) * spectrum.df;
+        line.deviation = spectrum.df * ((is_sharp ? 0.01 : 0.1) + 0.6 / std::sqrt(snr * out.segments));
+        line.power = p[k] - floor;
+        line.floor = floor;
+        line.weight = out.segments * (snr - 1.0 - std::log(snr));
+        line.is_hum = is_mains(line.frequency, 3.0 * line.deviation);
+        out.found.push_back(line);
+    }
+    std::ranges::sort(out.found, [](const NarrowLine& a, const NarrowLine& b) { return a.weight > b.weight; });
+    return out;
+}
+
+struct GrownComb {
+    double frequency = 0.0, score = -1e9;
+    std::array<int, most_tested> order{};  // of each tested line; 0: none
+    std::size_t lines = 0;
+    int highest = 0, common = 0;
+    double power = 0.0;
+};
+
+/// Grows a comb order by order: each line that fits narrows the rate, and with it the reach of the next.
+GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation, bool with_hum) {
+    const std::size_t tested = std::min(lines.found.size(), most_tested);
+    std::array<std::size_t, most_tested> by_frequency{};
+    std::iota(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), 0u);
+    std::sort(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), [&](std::size_t a, std::size_t b) { return lines.found[a].frequency < lines.found[b].frequency; });
+    GrownComb out;
+    out.frequency = frequency;
+    double information = 1.0 / (deviation * deviation), weighted = frequency * information;
+    double score = 0.0;
+    for (std::size_t i = 0; i < tested; ++i) {
+        const std::size_t at = by_frequency[i];
+        const NarrowLine& line = lines.found[at];
+        const double order = std::round(line.frequency / out.frequency);
+        if (order < 1.0) continue;
+        const double reach = 3.0 * std::sqrt(line.deviation * line.deviation + order * order / information);
+        if (std::abs(line.frequency - order * out.frequency) > reach) continue;
+        const double gain = std::min(line.weight, std::log(out.frequency / (2.0 * reach)));
+        if (!(gain > 0.0)) continue;
+        out.order[at] = static_cast<int>(order);
+        out.common = std::gcd(out.common, out.order[at]);
+        out.highest = std::max(out.highest, out.order[at]);
+        ++out.lines;
+        out.power += line.power;
+        if (!line.is_hum || with_hum) score += gain;
+        const double more = order * order / (line.deviation * line.deviation);
+        weighted += line.frequency / order * more;
+        information += more;
+        out.frequency = weighted / information;
+    }
+    // An order that is missing up to the highest is less probable than one that is there.
+    out.score = score - 0.3 * static_cast<double>(out.highest - static_cast<int>(out.lines));
+    return out;
+}
+
+/// Log-likelihood ratio of the strongest bin where a rate of which `frequency` is a multiple would have further orders.
+double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double frequency, int highest, double top) {
+    const double unlikely = power_quantile(lines.segments, 3.7);
+    double strongest = 0.0;
+    for (int divisor = 2; divisor <= 5; ++divisor)
+        for (int order = 1; order < divisor * std::max(highest, 4); ++order) {
+            const double place = frequency * order / divisor;
+            if (order % divisor == 0 || place < 3.0 * lines.df || place > top) continue;
+            if (is_mains(place, 1.5 * lines.df) || frequency / divisor < bins_between * lines.df) continue;
+            const auto k = static_cast<std::size_t>(std::lround(place / lines.df));
+            if (k + 2 >= spectrum.power.size()) break;
+            const double power = std::max({spectrum.power[k - 1], spectrum.power[k], spectrum.power[k + 1]});
+            // The skirts of the orders beside it are no line.
+            double skirt = 0.0;
+            for (const NarrowLine& line : lines.found)
+                if (const double away = std::abs(line.frequency - place) / lines.df; away > 1.7)
+                    skirt = std::max(skirt, 8.0 * line.power * side_lobe(away - 1.0 > 1.5 ? away - 1.0 : 1.5));
+            const double snr = (power - skirt) / lines.floors[std::min(k / floor_block, lines.floors.size() - 1)];
+            if (snr > unlikely) strongest = std::max(strongest, lines.segments * (snr - 1.0 - std::log(snr)));
+        }
+    return strongest;
+}
+
+struct CombChoice {
+    GrownComb best, rival;
+    double score = -1e9;
+    const NarrowLines* lines = nullptr;
+    std::size_t level = 0;
+};
+
+CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, bool with_hum) {
+    CombChoice out;
+    out.lines = &lines;
+    std::vector<GrownComb> combs;
+    for (std::size_t i = 0; i < std::min(seed_lines, lines.found.size()); ++i)
+        for (int k = 1; k <= most_divisions; ++k) {
+            const double f = lines.found[i].frequency / k;
+            if (f < lowest || f > highest || f < bins_between * lines.df) continue;
+            combs.push_back(grow_comb(lines, f, lines.found[i].deviation / k, with_hum));
+        }
+    for (const GrownComb& one : combs)
+        if (one.common == 1 && one.score > out.best.score) out.best = one;
+    for (const GrownComb& one : combs)
+        if (one.score > out.rival.score && std::abs(one.frequency / out.best.frequency - 1.0) > 0.02) out.rival = one;
+    return out;
+}
+
+/// Probability that the rate is right: logistic regression on the 1,000 machines of seed_lines 0 to 999 of `tactus-bench fundamental`, which judges it on others.
+/// Where the regression would extrapolate it is 0: hum of the mains, fewer than half of the lines, fewer than 6 periods.
+double probability_of(const SteadyFundamental& one) {
+    if (!(one.explained >= 0.5) || one.periods < 6.0 || is_mains(one.frequency, 0.3)) return 0.0;
+    if (one.persistence < 0.5) return 0.0;
+    const double gap = std::clamp(one.score - one.rival_score, 0.0, 12.0);
+    const double missing = std::min(6.0, static_cast<double>(one.highest_order) - static_cast<double>(one.lines));
+    const double sum = -0.937 + 0.645 * gap - 0.871 * std::sqrt(gap) + 0.482 * std::min(std::log(one.periods), 5.0) +
+                       0.601 * std::min(static_cast<double>(one.lines), 6.0) + 0.167 * one.explained - 0.469 * 0.5 +
+                       1.01 * std::min(one.margin_db, 40.0) / 10.0 - 0.193 * one.persistence - 0.06 * missing -
+                       0.982 * std::min(std::log1p(one.between), 2.5) - 0.616 * std::min(std::log1p(one.foreign), 6.0);
+    return 1.0 / (1.0 + std::exp(-sum));
+}
+
+}  // namespace
+
+SteadyFundamentalStream::SteadyFundamentalStream(double rate, std::size_t frames, double lowest, double highest)
+    : lowest_(lowest),
+      highest_(highest),
+      factor_(static_cast<std::size_t>(std::max(1.0, std::floor(rate / needed_rate)))),
+      rate_(rate / static_cast<double>(factor_)) {
+    if (factor_ > 1) {
+        const auto count = 24 * factor_ + 1;
+        const double cut = 0.5 / static_cast<double>(factor_), middle = 0.5 * static_cast<double>(count - 1);
+        const std::vector<double> window = make_window(WindowKind::blackman, count, WindowSymmetry::symmetric);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double t = static_cast<double>(i) - middle, angle = 2.0 * std::numbers::pi * 0.94 * cut * t;
+            taps_.push_back(window[i] * (std::abs(angle) < 1e-12 ? 1.0 : std::sin(angle) / angle));
+            sum += taps_.back();
+        }
+        for (double& tap : taps_) tap /= sum;
+    }
+    const std::size_t thinned = std::max<std::size_t>(1, frames / factor_);
+    std::size_t segment = std::min(thinned, longest_segment);
+    // Lengths with three significant bits have small prime factors.
+    const std::size_t unit = std::max<std::size_t>(1, std::bit_floor(segment) / 4);
+    segment = segment / unit * unit;
+    for (std::size_t level = 0; level < most_levels; ++level, segment /= 4) {
+        if (level > 0 && (static_cast<double>(segment) < shortest_segment * rate_ || segment < 64)) break;
+        levels_.emplace_back(WelchSettings::hann(rate_, std::max<std::size_t>(segment, 4), segment / 2));
+    }
+    kept_.reserve(std::min(thinned + 1, most_kept));
+}
+
+void SteadyFundamentalStream::push_thinned(std::span<const double> samples) {
+    for (WelchStream<double>& level : levels_) level.push(samples);
+    if (keeps_) kept_.insert(kept_.end(), samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), most_kept - kept_.size())));
+}
+
+void SteadyFundamentalStream::push(std::span<const double> samples) {
+    if (factor_ == 1) return push_thinned(samples);
+    history_.insert(history_.end(), samples.begin(), samples.end());
+    thinned_.clear();
+    std::size_t at = phase_;
+    for (; at + taps_.size() <= history_.size(); at += factor_) {
+        const double* const x = history_.data() + at;
+        std::array<double, 4> sums{};
+        std::size_t i = 0;
+        for (; i + 4 <= taps_.size(); i += 4)
+            for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += taps_[i + lane] * x[i + lane];
+        double sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        for (; i < taps_.size(); ++i) sum += taps_[i] * x[i];
+        thinned_.push_back(sum);
+    }
+    const std::size_t drop = std::min(at, history_.size());
+    history_.erase(history_.begin(), history_.begin() + static_cast<std::ptrdiff_t>(drop));
+    phase_ = at - drop;
+    push_thinned(thinned_);
+}
+
+void SteadyFundamentalStream::gap() {
+    history_.clear();
+    phase_ = 0;
+    for (WelchStream<double>& level : levels_) level.forget_waiting();
+    keeps_ = kept_.empty();
+}
+
+SteadyFundamental SteadyFundamentalStream::estimate() const {
+    SteadyFundamental out;
+    const double top = factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_;
+    std::vector<NarrowLines> all(levels_.size());
+    CombChoice chosen;
+    for (const bool with_hum : {false, true}) {
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            if (!with_hum) all[i] = lines_of(levels_[i].spectrum(), top, i == 0);
+            CombChoice one = choose_comb(all[i], lowest_, highest_, with_hum);
+            if (one.best.lines == 0 || !(one.best.score > 0.0)) continue;
+            const double explained = one.best.power / std::max(all[i].all / 1.5, one.best.power);
+            one.score = one.best.score * explained;
+            one.level = i;
+            if (one.score > chosen.score) chosen = one;
+        }
+        if (chosen.score > 0.0) break;
+    }
+    if (!(chosen.score > 0.0)) return out;
+    const NarrowLines& lines = *chosen.lines;
+    const GrownComb& comb = chosen.best;
+    out.frequency = comb.frequency;
+    out.lines = comb.lines;
+    out.highest_order = comb.highest;
+    out.score = comb.score;
+    out.rival = chosen.rival.score > 0.0 ? chosen.rival.frequency : 0.0;
+    out.rival_score = std::max(0.0, chosen.rival.score);
+    out.is_sharp = chosen.level == 0;
+    out.lowest = std::max(lowest_, bins_between * lines.df);
+    out.periods = comb.frequency / lines.df;
+    out.explained = comb.power / std::max(lines.all / 1.5, comb.power);
+    const NarrowLine* strongest = nullptr;
+    std::vector<int> orders;
+    std::vector<double> others;
+    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) {
+        const NarrowLine& line = lines.found[i];
+        if (comb.order[i] == 0) {
+            if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
+            if (others.size() < 8) others.push_back(line.frequency);
+            continue;
+        }
+        if (!strongest || line.power > strongest->power) strongest = &line;
+        orders.push_back(comb.order[i]);
+    }
+    out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
+    out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
+    // The strongest order in eighths of the kept samples.
+    constexpr std::size_t eighths = 8;
+    const std::size_t part = kept_.size() / eighths;
+    double sum = 0.0, roots = 0.0;
+    for (std::size_t i = 0; i < eighths && part > 0; ++i) {
+        double re = 0.0, im = 0.0;
+        const double angle = 2.0 * std::numbers::pi * strongest->frequency / rate_;
+        double mean = 0.0;
+        for (std::size_t n = 0; n < part; ++n) mean += kept_[i * part + n];
+        mean /= static_cast<double>(part);
+        for (std::size_t n = 0; n < part; ++n) {
+            const double w = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(part));
+            const double x = w * (kept_[i * part + n] - mean), phase = angle * static_cast<double>(n);
+            re += x * std::cos(phase), im += x * std::sin(phase);
+        }
+        const double power = re * re + im * im;
+        sum += power, roots += std::sqrt(power);
+    }
+    out.persistence = sum > 0.0 ? roots * roots / (eighths * sum) : 0.0;
+    out.confidence = probability_of(out);
+    out.deviation = lines.df;
+    if (out.is_sharp && !kept_.empty()) {
+        const HarmonicFit fit = fit_harmonics(kept_, rate_, comb.frequency, orders, others);
+        if (std::abs(fit.frequency - comb.frequency) * comb.highest < lines.df) {
+            out.frequency = fit.frequency;
+            out.deviation = fit.deviation;
+        }
+    }
+    return out;
+}
+
+}  // namespace tactus::signal

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fundamental frequency of a steady vibration from the frequencies of its lines. The lines of the whole record are far narrower than those of short sections: whether
+// they are orders of one rate is a test of coincidences, and the rate is the least-squares fit of all orders to the samples.
+#pragma once
+
+#include "dsp/signal/spectrum/welch.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tactus::signal {
+
+struct SteadyFundamental {
+    double frequency = 0.0;  ///< Hz; 0: no line
+    double deviation = 0.0;  ///< Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise
+    double periods = 0.0;    ///< of the record, or of the segment where the lines are smeared beyond it
+    std::size_t lines = 0;   ///< orders that are present
+    int highest_order = 0;
+    double score = 0.0;      ///< log-likelihood that the lines are orders by more than chance
+    double rival = 0.0;      ///< Hz: the best other rate; 0: none
+    double rival_score = 0.0;
+    double explained = 0.0;  ///< fraction of the power of all lines
+    double between = 0.0;    ///< log-likelihood ratio of the strongest bin at an order of a half, third, … of the rate
+    double foreign = 0.0;    ///< log-likelihood ratio to noise of the strongest other line that is no hum
+    double margin_db = 0.0;  ///< level of the strongest order above the weakest line that would be found beside it
+    double persistence = 0.0;  ///< 1: the strongest order is equally strong throughout; 1/8: in one eighth only
+    double lowest = 0.0;       ///< Hz: lower rates are not resolved
+    bool is_sharp = false;     ///< the lines are as narrow as the longest segment resolves
+    /// Probability that the rate is right, and no multiple or fraction of it; see `FundamentalEstimate`.
+    double confidence = 0.0;
+};
+
+/// Estimates the fundamental of a steady record that comes in pieces, in constant memory (about 20 MB at most).
+class SteadyFundamentalStream {
+public:
+    /// `frames`: length of the record; an estimate is enough. Rates are sought from `lowest` to `highest` Hz. Allocates.
+    SteadyFundamentalStream(double rate, std::size_t frames, double lowest, double highest);
+
+    void push(std::span<const double> samples);
+    /// Marks a gap: no segment spans it.
+    void gap();
+    SteadyFundamental estimate() const;
+
+private:
+    void push_thinned(std::span<const double> samples);
+
+    double lowest_, highest_;
+    std::size_t factor_;  // of the reduction of the sample rate
+    double rate_;         // reduced
+    std::vector<double> taps_, history_, thinned_;
+    std::size_t phase_ = 0;
+    std::vector<WelchStream<double>> levels_;  // longest segments first
+    std::vector<double> kept_;                 // the first samples, up to a gap
+    bool keeps_ = true;
+};
+
+}  // namespace tactus::signal

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shared by the tools that cut bone.
+#pragma once
+
+#include "dsp/contact/contact_switch.hpp"
+#include "graph/node/node.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace tactus::nodes {
+
+inline constexpr const char* tool_waits = "the tool lies in bone and has no force until it is drawn out";
+inline constexpr const char* tool_released =
+    "the tool was released from the bone: its force fades, and it has force again once it is out of the bone";
+
+/// Share of the force that a patch asked for which the device was given, 0 to 1; 1 without both wires. A device that is
+/// weaker than the tool's force, or that has failed, renders a part of it or nothing.
+inline double rendered_share(const In<Wrench>& asked, const In<Wrench>& applied) noexcept {
+    if (!asked.connected || !applied.connected) return 1.0;
+    const double square = glm::dot(asked->force, asked->force);
+    if (!(square > 1e-12)) return 1.0;
+    const double share = glm::dot(applied->force, asked->force) / square;
+    return share > 0.0 ? std::min(share, 1.0) : 0.0;
+}
+
+/// A tick after a longer pause than this does not continue the motion before it.
+inline constexpr double longest_pause = 0.1;  // s
+
+struct ContactThreshold {
+    Param contact_on{"0.05 N", "0 N", "10 N", "contact begins above this force"};
+    Param contact_off{"0.02 N", "0 N", "10 N", "contact ends below this force"};
+    TACTUS_GROUP(contact_on, contact_off)
+
+    bool update(contact::ContactSwitch& now, double force) const noexcept {
+        return now.update(force, contact_on, std::min<double>(contact_off, contact_on));
+    }
+};
+
+}  // namespace tactus::nodes

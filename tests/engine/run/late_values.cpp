@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// A force fades when a value that it depends on is overdue, in whichever group that is computed.
+#include "engine/build/force_path.hpp"
+#include "engine/run/clock_decisions.hpp"
+#include "engine/run/group_runtime.hpp"
+#include "tests/engine/chaos.hpp"
+#include "tests/engine/live_case.hpp"
+#include "tests/engine/repeat.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/times.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+compile::PlanGroup group_at(const char* name, Flicks period) {
+    compile::PlanGroup group;
+    group.name = name;
+    group.period = group.latency = period;
+    return group;
+}
+
+/// A hand of 1 kHz on a spring in the group 'contact', which stands still for `stall` from 0.5 s on. A node 'fast' may lie
+/// between them.
+struct Stalled {
+    std::string stall = "300 ms", rate = "1 kHz";
+    bool passes_fast = false;
+
+    std::string toml() const {
+        PatchText patch;
+        patch.nodes = {{"hand", "device_input", "1 kHz", {{"device", "left"}}},
+                       {"out", "device_output", "1 kHz", {{"device", "left"}}}};
+        patch.wires = {"hand.pose -> plant.pose"};
+        if (passes_fast) {
+            patch.nodes.push_back({"fast", "gain", "2 kHz", {}});
+            patch.wires.insert(patch.wires.end(), {"plant.wrench -> fast.in", "fast.out -> out.wrench"});
+        } else patch.wires.emplace_back("plant.wrench -> out.wrench");
+        patch.extra = "[devices.left]\ndriver = \"left\"\n[groups.contact]\nrate = \"" + rate +
+                      "\"\n[nodes.plant]\ntype = \"planted\"\ngroup = \"contact\"\nfault = \"stall\"\nat = " +
+                      std::to_string(static_cast<int>(0.5 * parse_rate())) + "\nstall = \"" + stall + "\"\n";
+        return patch.toml();
+    }
+
+private:
+    double parse_rate() const { return rate == "1 kHz" ? 1000.0 : 500.0; }
+};
+
+struct FeltStall {
+    std::int64_t stalled_ns = 0;
+    LiveOutcome outcome;
+    std::vector<std::string> notices;
+    std::vector<io::DeviceFault> faults;
+};
+
+/// A live run of `seconds`; its log repeats it to the bit.
+FeltStall run_stalled(const std::string& toml, double seconds, WatchedHand& hand) {
+    FeltStall felt;
+    const auto acquire = hand.performance.acquire;
+    std::optional<DeviceSample> first;
+    hand.performance.acquire = [&](std::int64_t count, double elapsed, const Wrench& force) {
+        const DeviceSample sample = acquire(count, elapsed, force);
+        if (!first) first = sample;
+        if (felt.stalled_ns == 0 && hand.logical_s >= 0.5) felt.stalled_ns = steady_now();
+        return sample;
+    };
+    const auto log = scratch("late-values");
+    run::EngineOptions options;
+    options.seconds = seconds;
+    options.live = true;
+    run::Engine engine(compile_text(toml), options);
+    engine.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
+    hand.performance.acquire = acquire;
+    for (const auto& slot : engine.host().devices) felt.faults = slot->guard.faults();
+    felt.notices = engine.host().notices;
+    const take::TimingLog recorded = take::TimingLog::load(log);
+    const std::vector<io::RecordedDevice> devices{{"left", engine.host().devices.at(0)->port.info, *first}};
+    for (const int threads : {1, 3}) {
+        run::EngineOptions again;
+        again.seconds = seconds;
+        again.replay = &recorded;
+        again.devices = &devices;
+        run::Engine replay(compile_text(toml), again);
+        replay.render(threads);
+        CHECK(replay.port_hashes() == engine.port_hashes());
+        CHECK(replay.host().devices.at(0)->guard.faults().size() == felt.faults.size());
+    }
+    std::filesystem::remove(log);
+    return felt;
+}
+
+}  // namespace
+
+TEST_CASE("a value of force is overdue after 3 ms or one period, one of the world after 1 s") {
+    const Flicks period = 1 * ms;
+    run::GroupRuntime hand(group_at("hand", period), 0, 1);
+    run::DecisionLog log(0);
+    run::ChangeQueue changes;
+    const run::PauseWindow pause;
+    run::LiveDecisions decisions(log, period, changes, pause);
+    const build::DeviceSlot slot;
+    for (const Flicks source_period : {ms / 4, ms, 2 * ms, 16 * ms, 250 * ms})
+        for (const std::int64_t computed : {0, 1, 7, 1000}) {
+            CAPTURE(source_period, computed);
+            run::GroupRuntime source(group_at("source", source_period), 1, 1);
+            source.start_at(computed);
+            const Flicks limit = std::max(3 * ms, source_period);
+            const std::vector<build::ValueSource> sources{
+                {&source, source_period, limit, control::Fault::late_value, "force"},
+                {&source, source_period, flicks_per_second, control::Fault::old_world, "world"}};
+            const std::vector<build::ValueSource> world{sources[1]};
+            const Flicks due = computed * source_period + source_period;
+            const std::int64_t at = ceil_div(due + limit, period), old = ceil_div(due + flicks_per_second, period);
+            CHECK(decisions.overdue(slot, sources, at - 1) == -1);
+            CHECK(decisions.overdue(slot, sources, at) == 0);
+            CHECK(decisions.overdue(slot, world, old - 1) == -1);
+            CHECK(decisions.overdue(slot, world, old) == 0);
+        }
+}
+
+TEST_CASE("the sources of a force are the other groups on its path, those behind an input of the world apart") {
+    const std::string toml =
+        "wires = [\"hand.pose -> spring.device\", \"place.pose -> spring.object\", \"spring.wrench -> out.wrench\",\n"
+        "\"near.out -> place.in\", \"place.out -> ear.in\"]\n"
+        "[nodes.hand]\ntype = \"device_input\"\nrate = \"1 kHz\"\ndevice = \"simulated\"\n"
+        "[nodes.place]\ntype = \"chaos\"\nrate = \"60 Hz\"\n[nodes.near]\ntype = \"chaos\"\nrate = \"30 Hz\"\n"
+        "[nodes.ear]\ntype = \"probe\"\nrate = \"10 Hz\"\n[nodes.spring]\ntype = \"spring\"\nrate = \"500 Hz\"\n"
+        "[nodes.out]\ntype = \"device_output\"\nrate = \"1 kHz\"\ndevice = \"simulated\"\n";
+    run::EngineOptions options;
+    options.seconds = 0.1;
+    std::optional<compile::Plan> plan = compile_text(toml);
+    using compile::Criticality;
+    std::vector<Criticality> ranks;
+    for (const compile::PlanGroup& group : plan->groups) ranks.push_back(group.criticality);
+    CHECK(ranks == std::vector{Criticality::force_output, Criticality::force_value, Criticality::world_value,
+                               Criticality::world_value, Criticality::other});
+    CHECK(plan->groups[0].backlog == 0);
+    CHECK(plan->groups[1].backlog == 0);
+    CHECK(plan->groups[2].backlog > 0);
+    run::Engine engine(std::move(*plan), options);
+    std::vector<std::pair<std::string, control::Fault>> found;
+    for (const auto& group : engine.groups())
+        for (const auto& of_device : group->scheduled.front()->sources)
+            for (const build::ValueSource& source : of_device) found.emplace_back(source.name, source.fault);
+    CHECK(found == std::vector<std::pair<std::string, control::Fault>>{
+                       {"node 'spring' of the group '500 Hz'", control::Fault::late_value},
+                       {"node 'place' of the group '60 Hz'", control::Fault::old_world},
+                       {"node 'near' of the group '30 Hz'", control::Fault::old_world}});
+}
+
+TEST_CASE("a group on the force path that hangs takes the force away, and the fault names its node", "[live]") {
+    for (const Stalled& what : {Stalled{}, Stalled{"300 ms", "500 Hz", false}, Stalled{"300 ms", "1 kHz", true}}) {
+        CAPTURE(what.rate, what.passes_fast);
+        for (int attempt = 1;; ++attempt) {
+            WatchedHand& hand = watched_hand("left");
+            const FeltStall felt = run_stalled(what.toml(), 0.75, hand);
+            double before = hand.force_at(felt.stalled_ns);
+            const bool is_undisturbed =
+                felt.faults.size() == 1 && felt.faults[0].reason == control::Fault::late_value && before > 1.9;
+            if (attempt < attempts && !is_undisturbed) continue;
+            REQUIRE(felt.faults.size() == 1);
+            CHECK(before == Approx(2.0));
+            CHECK(hand.ms_to_zero(felt.stalled_ns) < prompt_ms);
+            CHECK(felt.faults[0].reason == control::Fault::late_value);
+            CHECK(felt.faults[0].text().find("'plant' of the group 'contact'") != std::string::npos);
+            break;
+        }
+    }
+}
+
+TEST_CASE("a group of the world that hangs is noted after 3 periods, and takes the force away after 1 s", "[live]") {
+    const auto text = [](const std::string& stall) {
+        return "wires = [\"hand.pose -> spring.device\", \"place.pose -> spring.object\",\n"
+               "\"spring.wrench -> out.wrench\", \"hand.pose -> plant.pose\"]\n[devices.left]\ndriver = \"left\"\n"
+               "[nodes.hand]\ntype = \"device_input\"\nrate = \"1 kHz\"\n"
+               "[nodes.place]\ntype = \"still\"\nrate = \"50 Hz\"\n"
+               "[nodes.plant]\ntype = \"planted\"\nrate = \"50 Hz\"\nfault = \"stall\"\nat = 25\nstall = \"" +
+               stall +
+               "\"\n[nodes.spring]\ntype = \"spring\"\nrate = \"1 kHz\"\nstiffness = \"1 N/mm\"\n"
+               "[nodes.out]\ntype = \"device_output\"\nrate = \"1 kHz\"\n";
+    };
+    for (const bool is_long : {false, true})
+        for (int attempt = 1;; ++attempt) {
+            CAPTURE(is_long);
+            WatchedHand& hand = watched_hand("left");
+            const FeltStall felt = run_stalled(text(is_long ? "1.2 s" : "300 ms"), is_long ? 1.75 : 0.9, hand);
+            const bool is_undisturbed =
+                is_long ? felt.faults.size() == 1 && felt.faults[0].reason == control::Fault::old_world
+                        : felt.faults.empty();
+            if (attempt < attempts && !is_undisturbed) continue;
+            CHECK(std::ranges::any_of(felt.notices, [](const std::string& notice) {
+                return notice.find("'place' of the group '50 Hz'") != std::string::npos;
+            }));
+            if (!is_long) {
+                CHECK(felt.faults.empty());
+                CHECK(hand.force_at(felt.stalled_ns + 300'000'000) == Approx(2.0));
+            } else {
+                REQUIRE(felt.faults.size() == 1);
+                CHECK(felt.faults[0].reason == control::Fault::old_world);
+                CHECK(hand.ms_to_zero(felt.stalled_ns) > 1000.0);
+                CHECK(hand.ms_to_zero(felt.stalled_ns) < 1060.0);
+            }
+            break;
+        }
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// What saw_blade and burr report beside their forces.
+#include "dsp/volume/bricks.hpp"
+#include "tests/dsp/saw/sawing.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <algorithm>
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+/// Down by 6 mm in 0.6 s, for 0.4 s there, out again, and at rest.
+Pose press(std::int64_t k) {
+    const double ms = static_cast<double>(k);
+    const double deep = std::clamp(ms / 600.0, 0.0, 1.0) - std::clamp((ms - 1000.0) / 600.0, 0.0, 1.0);
+    return {Vec3(0.0, 0.0, 5e-3 - 6e-3 * deep), teeth_down};
+}
+
+}  // namespace
+
+TEST_CASE("contact of a saw and a burr ends when they are out of the bone") {
+    for (const char* type : {"saw_blade", "burr"}) {
+        const auto bone = bone_block({.voxel = 0.5e-3});
+        NodeHarness node(type, servo);
+        node.disconnect_optional();
+        node.feed<Pose>("pose", press).feed("bone", bone->current());
+        node.prepare();
+        node.run(2500);
+        const auto touches = node.values<bool>("in_contact");
+        const auto force = node.values<Wrench>("wrench");
+        const auto last = static_cast<std::size_t>(std::ranges::find(touches.rbegin(), touches.rend(), true).base() -
+                                                   touches.begin());
+        CAPTURE(type, last);
+        CHECK(last > 1000);
+        CHECK(last < 1700);
+        for (std::size_t k = 1700; k < force.size(); ++k) REQUIRE(force[k].force == Vec3(0.0));
+        CHECK_FALSE(touches.front());
+    }
+}
+
+TEST_CASE("a tool cuts by the share of its force that the device was given") {
+    for (const char* type : {"saw_blade", "burr"})
+        for (const auto& [given, share] :
+             {std::pair{4.0, 1.0}, std::pair{3.0, 0.75}, std::pair{0.0, 0.0}, std::pair{-1.0, 0.0}, std::pair{9.0, 1.0}}) {
+            const auto bone = bone_block({.voxel = 0.5e-3});
+            NodeHarness node(type, servo);
+            node.disconnect_optional();
+            node.feed<Pose>("pose", press).feed("bone", bone->current());
+            node.connect("asked").connect("applied");
+            node.feed("asked", Wrench{{0.0, 0.0, 4.0}, {}}).feed("applied", Wrench{{0.0, 0.0, given}, {}});
+            node.prepare();
+            node.run(1000);
+            const auto feed = node.values<double>("feed");
+            CAPTURE(type, given);
+            CHECK(node.last<double>("rendered") == Approx(share));
+            CHECK((*std::ranges::max_element(feed) > 0.0) == (share > 0.0));
+        }
+}
+
+TEST_CASE("the forces on a device are scaled, and the forces that cut are not") {
+    for (const char* type : {"saw_blade", "burr"}) {
+        std::vector<double> force, load;
+        for (const char* scale : {"1", "0.25"}) {
+            const auto bone = bone_block({.voxel = 0.5e-3});
+            NodeHarness node(type, servo);
+            node.disconnect_optional();
+            node.feed<Pose>("pose", press).feed("bone", bone->current());
+            node.set("device_scale", scale);
+            node.prepare();
+            node.run(900);
+            force.push_back(node.last<Wrench>("wrench").force.z);
+            load.push_back(node.last<double>("load"));
+        }
+        CHECK(load[1] == load[0]);
+        CHECK(force[1] == Approx(0.25 * force[0]));
+    }
+}
+
+TEST_CASE("a tool that begins in bone says that it waits") {
+    for (const char* type : {"saw_blade", "burr"}) {
+        const auto bone = bone_block({.voxel = 0.5e-3});
+        NodeHarness node(type, servo);
+        node.disconnect_optional();
+        node.feed<Pose>("pose", [](std::int64_t k) {
+            return Pose{Vec3(0.0, 0.0, -3e-3 + 0.02e-3 * static_cast<double>(k)), teeth_down};
+        });
+        node.feed("bone", bone->current());
+        node.prepare();
+        node.run(800);
+        const auto waits = node.values<bool>("waiting");
+        CHECK(waits.front());
+        CHECK(waits[100]);
+        CHECK_FALSE(waits.back());
+    }
+}
+
+TEST_CASE("the input 'release' frees a tool over 100 ms") {
+    for (const char* type : {"saw_blade", "burr"}) {
+        const auto bone = bone_block({.voxel = 0.5e-3});
+        NodeHarness node(type, servo);
+        node.disconnect_optional();
+        node.connect("running").connect("release");
+        node.feed<Pose>("pose", press).feed("bone", bone->current()).feed("running", false);
+        node.feed<bool>("release", [](std::int64_t k) { return k >= 700 && k < 705; });
+        node.prepare();
+        node.run(950);
+        const auto force = node.values<Wrench>("wrench");
+        CAPTURE(type, force[699].force.z, force[750].force.z);
+        CHECK(force[699].force.z > 0.1);
+        CHECK(force[750].force.z == Approx(0.5 * force[699].force.z).epsilon(0.05));
+        CHECK(force[801].force == Vec3(0.0));
+        CHECK(force.back().force == Vec3(0.0));
+    }
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/exposure.hpp"
+
+#include "tests/support/catch.hpp"
+
+using namespace tactus;
+using study::ExposureVerdict;
+
+TEST_CASE("a lower bound of an exposure never gives a verdict that it is low enough") {
+    for (double a8 = 0.0; a8 < 8.0; a8 += 0.1) {
+        CAPTURE(a8);
+        const ExposureVerdict whole = study::judge_exposure(a8, false), bound = study::judge_exposure(a8, true);
+        CHECK(whole == (a8 > 5.0   ? ExposureVerdict::above_limit
+                        : a8 > 2.5 ? ExposureVerdict::above_action
+                                   : ExposureVerdict::below_action));
+        CHECK(bound == (a8 > 5.0   ? ExposureVerdict::above_limit
+                        : a8 > 2.5 ? ExposureVerdict::at_least_above_action
+                                   : ExposureVerdict::cannot_be_judged));
+    }
+}
+
+TEST_CASE("one axis of three, a band that ends at 100 Hz and a clipped record make a lower bound") {
+    study::ExposureOperation one;
+    one.three_axes = true;
+    CHECK_FALSE(one.is_lower_bound());
+    study::ExposureOperation axis = one, band = one, clipped = one;
+    axis.three_axes = false;
+    band.band_high = 100.0;
+    clipped.clipped = 1;
+    CHECK(axis.is_lower_bound());
+    CHECK(band.is_lower_bound());
+    CHECK(clipped.is_lower_bound());
+}
