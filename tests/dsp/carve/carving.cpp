@@ -271,3 +271,42 @@ TEST_CASE("samples that are not numbers are ignored") {
     carve::CarveCore c = saw();
     CHECK(carve_through(c, still, mixed).removed_m3 == 0.0);
 }
+
+TEST_CASE("a blade that is pulled away from the bone cuts as little as one without thrust") {
+    std::vector<double> volumes;
+    for (const double thrust : {0.0, -7.0}) {
+        DenseField field = block(Vec3(0.0), 600.0);
+        carve::CarveCore carver = saw();
+        auto path = stroke(above_bone, {0, -0.010, 0}, 0.5);
+        for (carve::CarveSample& sample : path) sample.thrust = thrust;
+        volumes.push_back(carve_through(carver, field, path).removed_m3);
+    }
+    CHECK(volumes[1] == volumes[0]);
+}
+
+TEST_CASE("a front cuts with its own kerf, and with no more than the kerf that the bone was prepared for") {
+    const auto removed = [](double kerf) {
+        DenseField field = block(Vec3(0.0), 600.0);
+        carve::CarveCore carver = saw();
+        std::vector<carve::CutFront> path;
+        for (int n = 0; n <= 40; ++n) {
+            carve::CutFront front;
+            front.pose = {{0.0, 0.001 - 0.0001 * n, 0.0}, downwards};
+            front.kerf = kerf;
+            front.pitch = 0.002;
+            front.count = 8;
+            front.running = 1;
+            for (std::size_t k = 0; k < 8; ++k) {
+                front.place(k, front.pose.apply({0.002 * (static_cast<double>(k) - 3.5), 0.0, 0.0}));
+                front.seated |= std::uint64_t{1} << k;
+                front.fresh |= std::uint64_t{n == 0} << k;
+            }
+            path.push_back(front);
+        }
+        return carver.update(field, std::span<const carve::CutFront>(path)).removed_m3;
+    };
+    const double widest = carve::CarveSettings{}.kerf, whole = removed(widest);
+    CHECK(whole > 1e-8);
+    CHECK(removed(0.6 * widest) == Approx(0.6 * whole).epsilon(0.05));
+    CHECK(removed(3.0 * widest) == whole);
+}

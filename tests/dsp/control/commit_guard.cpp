@@ -81,3 +81,11 @@ TEST_CASE("two threads never commit at the same time") {
     watchdog.join();
     CHECK(overlaps.load() == 0);
 }
+
+TEST_CASE("a device without a commit is not taken over, not even at once") {
+    control::CommitGuard guard;
+    Wrench out;
+    CHECK_FALSE(guard.poll(50 * ms, out, true));
+    CHECK_FALSE(guard.is_taken());
+    CHECK(guard.begin());
+}

@@ -249,3 +249,19 @@ TEST_CASE("a pose beyond all measure neither breaks the force nor blinds the cap
         CHECK(given < 5e-3);
     }
 }
+
+TEST_CASE("granted power that is not used within 20 ms lapses") {
+    control::EnergyCap cap;
+    cap.prepare({.period_s = 0.001});
+    const Wrench force{{0.0, 0.0, 9.0}, {}};
+    constexpr double granted_W = 1.0;
+    Pose hand;
+    for (int n = 0; n < 1000; ++n) cap.tick(force, force, hand, 0.001, granted_W, false);
+    // 9 N along 25 mm give 0.225 J in 50 ms.
+    for (int n = 0; n < 50; ++n) {
+        hand.position.z += 0.0005;
+        cap.tick(force, force, hand, 0.001, granted_W, false);
+    }
+    CHECK(cap.statistics().granted <= granted_W * (0.02 + 0.05) * 1.001);
+    CHECK(cap.statistics().granted >= granted_W * 0.02);
+}

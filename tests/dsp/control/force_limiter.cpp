@@ -181,3 +181,42 @@ TEST_CASE("a resting hand is not a stale device") {
     CHECK(rig.limiter.fault() == control::Fault::none);
     CHECK(rig.out.force.z == Approx(3.0));
 }
+
+TEST_CASE("a fade goes on from what another thread committed, and never grows again") {
+    Rig rig;
+    rig.engage();
+    rig.run(push, 50);
+    rig.limiter.fail(control::Fault::late_commit);
+    rig.run(push, 1);
+    const Wrench committed = rig.out * 0.25;
+    rig.limiter.start_from(committed);
+    double last = glm::length(committed.force), last_torque = glm::length(committed.torque);
+    for (int n = 0; n < 9; ++n) {
+        rig.run(push, 1);
+        CHECK(glm::length(rig.out.force) < last);
+        CHECK(glm::length(rig.out.torque) < last_torque);
+        last = glm::length(rig.out.force);
+        last_torque = glm::length(rig.out.torque);
+    }
+    CHECK(last == 0.0);
+}
+
+TEST_CASE("a torque that is large holds off the engagement as a force does") {
+    Rig rig;
+    rig.run({{}, {0.0, 2.0 * rig.limits.engage_torque, 0.0}}, 500);
+    CHECK_FALSE(rig.limiter.engaged());
+    CHECK(rig.max_torque == 0.0);
+}
+
+TEST_CASE("a slow recovery takes its own ramp where that is longer than the engagement's") {
+    Rig rig;
+    rig.engage();
+    rig.run(push, 50);
+    rig.limiter.fail(control::Fault::late_commit);
+    rig.run({}, 50);
+    rig.limiter.recover_slowly(0.5);
+    rig.run(push, 250);
+    CHECK(rig.out.force.z == Approx(4.0).epsilon(0.05));
+    rig.run(push, 300);
+    CHECK(rig.out.force.z == Approx(8.0));
+}
