@@ -5,6 +5,7 @@
 #include "assets/volume/dicom_elements.hpp"
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/dicom_message.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -21,7 +22,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -166,7 +166,7 @@ struct DicomReader::Process {
     }
 
     /// False when the process ended before the answer.
-    bool receive(void* to, std::size_t size, std::chrono::steady_clock::time_point until) {
+    bool receive(void* to, std::size_t size, std::int64_t until_ns) {
         auto* at = static_cast<char*>(to);
         while (size > 0) {
             pollfd ready{socket.get(), POLLIN, 0};
@@ -177,7 +177,7 @@ struct DicomReader::Process {
                     end();
                     throw;
                 }
-                if (std::chrono::steady_clock::now() > until) throw TooSlow();
+                if (steady_ns() > until_ns) throw TooSlow();
                 continue;
             }
             const ssize_t got = ::recv(socket.get(), at, size, 0);
@@ -212,15 +212,15 @@ struct DicomReader::Process {
         request.put(static_cast<std::uint64_t>(bytes ? bytes->size() : 0));
         send(request.bytes);
         const double longest = max_wait + static_cast<double>(file_size) / min_speed;
-        const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(static_cast<long>(1e3 * longest));
+        const std::int64_t until_ns = steady_ns() + static_cast<std::int64_t>(1e9 * longest);
         std::uint64_t size = 0;
         std::string reply;
         bool has_ended = false;
         try {
-            has_ended = !receive(&size, sizeof size, until) || size > (std::uint64_t{1} << 30);
+            has_ended = !receive(&size, sizeof size, until_ns) || size > (std::uint64_t{1} << 30);
             if (!has_ended) {
                 reply.resize(size);
-                has_ended = !receive(reply.data(), size, until);
+                has_ended = !receive(reply.data(), size, until_ns);
             }
         } catch (const TooSlow&) {
             end();

@@ -167,8 +167,11 @@ Wrench EnergyCap::tick(const Wrench& wanted, const Wrench& committed, const Pose
 Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& turned, const Wrench& wanted) noexcept {
     const Wrench acted = acting(), coming = under_way();
     double pending = 0.0;
-    const auto ahead = [&](const Vec3& force, const Vec3& last, const Vec3& impulse, const Motion& motion,
-                           double least) {
+    struct Side {
+        Start start;
+        double trust = 0.0, doubt = 0.0, yield = 0.0;
+    };
+    const auto side_of = [&](const Vec3& last, const Vec3& impulse, const Motion& motion, double least) {
         Start start{motion.velocity + motion.lag / hold_s_, last * (0.5 * hold_s_ / least), motion.fast};
         // What is under way acts first, as one force of that impulse over the delay.
         double trust = rest_J;
@@ -179,23 +182,40 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
             trust -= first.trusted;
         }
         start.gained += impulse / least;
-        Gift g = gift(force, start, hold_s_, hold_s_ / least, trust);
+        return Side{start, trust, motion.doubt, hold_s_ / least};
+    };
+    const Side force_side = side_of(acted.force, coming.force, moved, settings_.least_mass),
+               torque_side = side_of(acted.torque, coming.torque, turned, settings_.least_inertia);
+    const auto ahead = [&](const Vec3& force, const Side& side) {
+        Gift g = gift(force, side.start, hold_s_, side.yield, side.trust);
         // The speed of a fast hand is known to a step in its window.
-        if (g.all() > 0.0) g.along += glm::length(force) * motion.doubt;
+        if (g.all() > 0.0) g.along += glm::length(force) * side.doubt;
         return g;
     };
-    const Gift by_force = ahead(felt.force, acted.force, coming.force, moved, settings_.least_mass),
-               by_torque = ahead(felt.torque, acted.torque, coming.torque, turned, settings_.least_inertia);
+    const Gift by_force = ahead(felt.force, force_side), by_torque = ahead(felt.torque, torque_side);
     Gift both;
     for (const Gift& one : {by_force, by_torque})
-        if (one.all() > 0.0) both = {both.along + one.along, both.own + one.own, 0.0};
+        if (one.all() > 0.0) both = {both.along + one.along, both.own + one.own, both.trusted + one.trusted};
     const double available = std::max(0.0, stored_ + grant_ + damped_ - pending - reserve());
     Wrench out = felt;
     if (both.all() > available) {
-        // A hand that still moves against the force: the share s with s · along + s² · own = available. Otherwise less.
-        const double root = std::sqrt(both.along * both.along + 4.0 * both.own * available);
-        const double share =
-            both.along > 0.0 ? available / both.all() : std::min(1.0, (root - both.along) / (2.0 * both.own));
+        double share = 0.0;
+        if (both.trusted > 0.0) {
+            // A slow hand holds against the same energy whatever the force: there is no jump to zero where the trust ends.
+            double high = 1.0;
+            for (int n = 0; n < 24; ++n) {
+                const double middle = 0.5 * (share + high);
+                const bool fits = ahead(felt.force * middle, force_side).all() +
+                                      ahead(felt.torque * middle, torque_side).all() <= available;
+                (fits ? share : high) = middle;
+            }
+        } else if (both.along > 0.0) {
+            share = available / both.all();
+        } else {
+            // A hand that still moves against the force: the share s with s · along + s² · own = available.
+            const double root = std::sqrt(both.along * both.along + 4.0 * both.own * available);
+            share = std::min(1.0, (root - both.along) / (2.0 * both.own));
+        }
         if (by_force.all() > 0.0) out.force *= share, force_level_ *= share;
         if (by_torque.all() > 0.0) out.torque *= share, torque_level_ *= share;
         if (!std::isfinite(share)) {

@@ -31,6 +31,9 @@ inline std::int64_t boot_ns() noexcept { return detail::clock_ns(CLOCK_BOOTTIME)
 /// Processor time of the calling thread, ns. A system call.
 inline std::int64_t thread_ns() noexcept { return detail::clock_ns(CLOCK_THREAD_CPUTIME_ID); }
 
+/// Processor time of another thread of this process, by its clock (`pthread_getcpuclockid`), ns. A system call.
+inline std::int64_t thread_ns(clockid_t clock) noexcept { return detail::clock_ns(clock); }
+
 /// Until `steady_ns` is `when_ns`, or later by what the scheduler needs to wake the thread. Signals do not end it.
 inline void sleep_until(std::int64_t when_ns) noexcept {
     const timespec t{when_ns / 1'000'000'000, when_ns % 1'000'000'000};

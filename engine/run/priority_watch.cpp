@@ -68,10 +68,7 @@ void PriorityWatch::look(std::int64_t now_ns) noexcept {
         const Watched& one = watched_[i];
         loads_[i] = {};
         if (!one.is_used) continue;
-        timespec spent{};
-        clock_gettime(one.clock, &spent);
-        loads_[i] = {one.priority, one.busy_since->load(std::memory_order_relaxed),
-                     spent.tv_sec * 1'000'000'000LL + spent.tv_nsec};
+        loads_[i] = {one.priority, one.busy_since->load(std::memory_order_relaxed), thread_ns(one.clock)};
     }
     const std::vector<DemotionCause>& causes = demotions_.look(now_ns, loads_);
     for (std::size_t i = 0; i < watched_.size(); ++i) {

@@ -14,6 +14,8 @@ namespace tactus::test {
 
 /// How soon a force has to be gone.
 constexpr double prompt_ms = 20.0;
+/// Of a live case on a machine that others keep busy.
+constexpr int attempts = 5;
 
 /// The hand `left` on its spring, and two chaotic nodes that hear each other, one of them at `rate`.
 std::string with_slow_group(const std::string& rate);

@@ -157,16 +157,6 @@ TEST_CASE("every source file stands in a folder of its room") {
         }
 }
 
-TEST_CASE("at most twenty source files stand side by side") {
-    std::map<fs::path, int> count;
-    for (const auto room : rooms)
-        for (const fs::path& file : files_under(room, {".cpp"})) ++count[file.parent_path()];
-    for (const auto& [folder, files] : count) {
-        CAPTURE(folder.string());
-        CHECK(files <= 20);
-    }
-}
-
 TEST_CASE("below the nodes nobody knows a node type, a patch or a display file by its name") {
     // One-word names such as "scene" are words of the language as well.
     std::set<std::string> names;

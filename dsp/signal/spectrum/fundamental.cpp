@@ -219,6 +219,8 @@ FundamentalEstimate FundamentalStream::estimate() const {
             out.frequency = out.low = out.high = lines.frequency;
             out.deviation = lines.deviation;
         }
+        // Sections do not exclude a multiple or a fraction of the rate.
+        if (out.steady && !out.certain) out.confidence = std::min(out.confidence, std::max(0.5, lines.confidence));
     } else if (in_range && lines.confidence > 0.5) {
         out.frequency = out.low = out.high = lines.frequency;
         out.steady = true;

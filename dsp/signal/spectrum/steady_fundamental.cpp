@@ -25,6 +25,7 @@ constexpr int most_divisions = 24;
 constexpr double bins_between = 5.0;  // of neighbouring orders: a line of a Hann window is four wide
 
 constexpr std::size_t floor_block = 32;  // bins
+constexpr double explains_all = 0.9;  // fraction of the power
 
 struct NarrowLine {
     double frequency, deviation;  // Hz
@@ -212,7 +213,7 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
 /// Probability that the rate is right: logistic regression on the 1,000 machines of seed_lines 0 to 999 of `tactus-bench fundamental`, which judges it on others.
 /// Where the regression would extrapolate it is 0: hum of the mains, fewer than half of the lines, fewer than 6 periods.
 double probability_of(const SteadyFundamental& one) {
-    if (!(one.explained >= 0.5) || one.periods < 6.0 || is_mains(one.frequency, 0.3)) return 0.0;
+    if (!(one.explained >= 0.5) || one.periods < 6.0 || one.may_be_hum) return 0.0;
     if (one.persistence < 0.5) return 0.0;
     const double gap = std::clamp(one.score - one.rival_score, 0.0, 12.0);
     const double missing = std::min(6.0, static_cast<double>(one.highest_order) - static_cast<double>(one.lines));
@@ -301,6 +302,8 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
             one.score = one.best.score * explained;
             one.level = i;
             if (one.score > chosen.score) chosen = one;
+            // Shorter segments blur lines that longer ones resolve; they are for rates that wander.
+            if (explained >= explains_all) break;
         }
         if (chosen.score > 0.0) break;
     }
@@ -320,9 +323,14 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     const NarrowLine* strongest = nullptr;
     std::vector<int> orders;
     std::vector<double> others;
+    // Hum begins with the first or the second order of the mains: a machine at the third or a higher one is distinguished
+    // by the absence of other orders of the mains.
+    const bool is_first = std::min(std::abs(comb.frequency - 55.0), std::abs(comb.frequency - 110.0)) < 12.0;
+    bool has_hum = is_first;
     for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) {
         const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
+            has_hum |= line.is_hum;
             if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
             if (others.size() < 8) others.push_back(line.frequency);
             continue;
@@ -330,6 +338,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         if (!strongest || line.power > strongest->power) strongest = &line;
         orders.push_back(comb.order[i]);
     }
+    out.may_be_hum = has_hum && is_mains(comb.frequency, 0.3);
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     // The strongest order in eighths of the kept samples.

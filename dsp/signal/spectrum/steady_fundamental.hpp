@@ -26,6 +26,7 @@ struct SteadyFundamental {
     double margin_db = 0.0;  ///< level of the strongest order above the weakest line that would be found beside it
     double persistence = 0.0;  ///< 1: the strongest order is equally strong throughout; 1/8: in one eighth only
     double lowest = 0.0;       ///< Hz: lower rates are not resolved
+    bool may_be_hum = false;   ///< the rate is an order of the mains, and nothing excludes that its lines are hum
     bool is_sharp = false;     ///< the lines are as narrow as the longest segment resolves
     /// Probability that the rate is right, and no multiple or fraction of it; see `FundamentalEstimate`.
     double confidence = 0.0;

@@ -48,14 +48,15 @@ double largest_step(const std::vector<double>& forces) {
 }  // namespace
 
 TEST_CASE("a stiffness that an edit changes comes in over a tenth of a second") {
-    const std::vector<double> forces = rendered(on_spring("1 N/mm"), on_spring("8 N/mm"));
+    // The hand was placed in the body and has put nothing in: the energy cap trusts it with 12 N at rest.
+    const std::vector<double> forces = rendered(on_spring("1 N/mm"), on_spring("5 N/mm"));
     REQUIRE(forces.size() == 600);
     CHECK(forces[299] == Approx(2.0));
-    CHECK(forces[300] == Approx(2.0 + 0.14));
-    CHECK(forces[349] == Approx(2.0 + 50 * 0.14));
-    CHECK(forces[398] < 15.9);
-    for (std::size_t tick = 399; tick < 600; ++tick) REQUIRE(forces[tick] == 16.0);
-    CHECK(largest_step({forces.begin() + 290, forces.end()}) < 0.15);
+    CHECK(forces[300] == Approx(2.0 + 0.08));
+    CHECK(forces[349] == Approx(2.0 + 50 * 0.08));
+    CHECK(forces[398] < 9.95);
+    for (std::size_t tick = 399; tick < 600; ++tick) REQUIRE(forces[tick] == 10.0);
+    CHECK(largest_step({forces.begin() + 290, forces.end()}) < 0.09);
 }
 
 TEST_CASE("a parameter that no force depends on changes at once") {

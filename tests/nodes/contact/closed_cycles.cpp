@@ -322,6 +322,7 @@ const std::map<std::string, std::string>& without_contact() {
         {"vessel", "a rope that pulls; tests/nodes/planning drives it on simulated devices"},
         {"wrench_sum", "adds forces"},
         {"spring", "between two poses, without contact"},
+        {"hand_coupling", "a spring between two hands; tests/dsp/coupling drives it"},
     };
     return all;
 }

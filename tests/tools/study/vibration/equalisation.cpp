@@ -37,7 +37,7 @@ TEST_CASE("the boost and the loudest sine of an equaliser are those of all frequ
             CAPTURE(q);
             const study::Equalisation made = equalised(-20.0, q, 30.0, kind);
             // The notch has -20 dB at 283 Hz; the centres of the bands beside it are 251 and 316 Hz.
-            CHECK(made.flat.before_db > 18.0);
+            CHECK(made.flat.before_db > 17.0);
             CHECK(made.flat.loudest_hz == Approx(283.0).epsilon(0.01));
             double greatest = 0.0;
             for (double hz = 1.0; hz < 2400.0; hz += 0.37)
