@@ -151,7 +151,7 @@ TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and w
         DeviceSample sample = pressing(count);
         sample.counter = count < 500 || count > 700 ? count : 500;
         // It comes back pressing; only once it has let go do forces ramp in again.
-        if (count > 2000) sample.pose.position.z = count < 2300 ? rest : pressed;
+        if (count > 2000) sample.pose.position.z = count < 2300 ? rest : pressing(count - 2300).pose.position.z;
         return sample;
     });
     check_bounds(o);

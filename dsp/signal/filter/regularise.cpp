@@ -77,6 +77,9 @@ std::optional<std::vector<double>> without_rounding(std::span<const double> time
         if (usual->first > 0 && length > usual->first && length % usual->first == 0) multiples += count;
     if (20 * usual->second > 19 * (times.size() - 1) && usual->second + multiples == times.size() - 1)
         return std::nullopt;
+    // A clock whose step divides the mean step rounds all samples alike: other steps are jitter of the samples.
+    const double drift = std::abs(mean / step - std::round(mean / step)) * static_cast<double>(times.size() - 1);
+    if (drift < 2.0 && usual->second + 8 < times.size() - 1) return std::nullopt;
     std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
     const double gap = 5.0 * steps[steps.size() / 2];
     std::vector<double> even(times.begin(), times.end());

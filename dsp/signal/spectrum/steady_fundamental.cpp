@@ -188,7 +188,7 @@ double between_orders(const Spectrum& spectrum, const NarrowLines& lines, double
 
 struct CombChoice {
     GrownComb best, rival;
-    double score = -1e9;
+    double score = -1e9, explained = 0.0;
     const NarrowLines* lines = nullptr;
     std::size_t level = 0;
 };
@@ -203,6 +203,10 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
             if (f < lowest || f > highest || f < bins_between * lines.df) continue;
             combs.push_back(grow_comb(lines, f, lines.found[i].deviation / k, with_hum));
         }
+    // Coincidences among weak lines do not make up for a strong line that a comb leaves out.
+    double all = 0.0;
+    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) all += lines.found[i].power;
+    for (GrownComb& one : combs) one.score *= std::min(1.0, one.power / std::max(all, 1e-300));
     for (const GrownComb& one : combs)
         if (one.common == 1 && one.score > out.best.score) out.best = one;
     for (const GrownComb& one : combs)
@@ -293,19 +297,24 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     const double top = factor_ > 1 ? 0.38 * rate_ : 0.48 * rate_;
     std::vector<NarrowLines> all(levels_.size());
     CombChoice chosen;
+    // Shorter segments blur lines that longer ones resolve; they are for rates that wander.
+    all[0] = lines_of(levels_[0].spectrum(), top, true);
+    double narrow = 0.0;
+    for (const NarrowLine& line : all[0].found) narrow += line.power;
+    const std::size_t used = narrow >= explains_all * all[0].all / 1.5 && narrow > 0.0 ? 1 : levels_.size();
     for (const bool with_hum : {false, true}) {
-        for (std::size_t i = 0; i < levels_.size(); ++i) {
-            if (!with_hum) all[i] = lines_of(levels_[i].spectrum(), top, i == 0);
+        for (std::size_t i = 0; i < used; ++i) {
+            if (!with_hum && i > 0) all[i] = lines_of(levels_[i].spectrum(), top, false);
             CombChoice one = choose_comb(all[i], lowest_, highest_, with_hum);
             if (one.best.lines == 0 || !(one.best.score > 0.0)) continue;
             const double explained = one.best.power / std::max(all[i].all / 1.5, one.best.power);
             one.score = one.best.score * explained;
+            one.explained = explained;
             one.level = i;
             if (one.score > chosen.score) chosen = one;
-            // Shorter segments blur lines that longer ones resolve; they are for rates that wander.
-            if (explained >= explains_all) break;
         }
-        if (chosen.score > 0.0) break;
+        // Orders of the mains that hold most of the power are no hum beside a machine.
+        if (chosen.score > 0.0 && chosen.explained >= 0.5) break;
     }
     if (!(chosen.score > 0.0)) return out;
     const NarrowLines& lines = *chosen.lines;

@@ -276,7 +276,7 @@ TEST_CASE("a blade that is pulled away from the bone cuts as little as one witho
     std::vector<double> volumes;
     for (const double thrust : {0.0, -7.0}) {
         DenseField field = block(Vec3(0.0), 600.0);
-        carve::CarveCore carver = saw();
+        carve::CarveCore carver = saw({.force_exponent = 1.0});
         auto path = stroke(above_bone, {0, -0.010, 0}, 0.5);
         for (carve::CarveSample& sample : path) sample.thrust = thrust;
         volumes.push_back(carve_through(carver, field, path).removed_m3);

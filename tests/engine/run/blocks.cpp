@@ -11,6 +11,7 @@
 #include <atomic>
 #include <ctime>
 #include <filesystem>
+#include <optional>
 
 namespace tactus::test {
 
@@ -224,7 +225,7 @@ TEST_CASE("groups that tick faster than the system wakes a thread leave most of 
 
 TEST_CASE("what came too late between two audio groups is repeated from the log, whatever blocks and threads",
           "[virtual][slow]") {
-    const VirtualClock clock;
+    std::optional<VirtualClock> clock(std::in_place);
     const PatchText text{{{"a", "loop", "one", {}},
                           {"x", "chaos", "one", {}},
                           {"b", "loop", "two", {}},
@@ -247,6 +248,7 @@ TEST_CASE("what came too late between two audio groups is repeated from the log,
     std::int64_t late = 0;
     for (const auto& group : live.groups()) late += group->telemetry.misses + group->telemetry.skipped;
     CHECK(late > 0);
+    clock.reset();  // replays have no time of their own
     check_replays([&] { return plan_of(text); }, options.seconds, log, live.port_hashes());
     std::filesystem::remove(log);
 }
