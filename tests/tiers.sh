@@ -74,7 +74,7 @@ slice() {
     rooms=$(changed_rooms 2>/dev/null | paste -sd'|')
     cases_of "$preset" '^long$' | while IFS=$'\t' read -r number name; do
         printf '%s\t%s\t%s\n' "$(cksum <<<"$tree $name" | cut -d' ' -f1)" "$number" "$name"
-    done | sort -n | awk -F'\t' -v rooms="^(${rooms:-none}): " -v limit=$slice_seconds '
+    done | sort -n | awk -F'\t' -v rooms="^(${rooms:-none}):" -v limit=$slice_seconds '
         FNR == NR { if ($0 !~ /^#/) cost[$2] = $1; next }
         {
             seconds = $3 in cost ? cost[$3] : 10

@@ -36,7 +36,7 @@ std::string literal_at(const std::string& text, std::size_t& from) {
     return value;
 }
 
-/// Every TEST_CASE of the tree by "room: name".
+/// Every TEST_CASE of the tree by "room:name".
 std::map<std::string, CaseSource> cases_of_tree() {
     std::map<std::string, CaseSource> cases;
     const fs::path tests = tactus::test::source_folder() / "tests";
@@ -61,7 +61,7 @@ std::map<std::string, CaseSource> cases_of_tree() {
                 source.has_reason = source.has_reason || line.starts_with("// Costly: ");
                 end = start;
             }
-            cases[room + ": " + name] = source;
+            cases[room + ":" + name] = source;
         }
     }
     return cases;

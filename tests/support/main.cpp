@@ -45,7 +45,7 @@ void note_cost(const std::string& name) {
     if (!file) return;
     std::string room = program_invocation_short_name;  // test_dsp
     if (room.starts_with("test_")) room.erase(0, 5);
-    std::fprintf(file, "%.2f\t%s: %s\n", processor_seconds(), room.c_str(), name.c_str());
+    std::fprintf(file, "%.2f\t%s:%s\n", processor_seconds(), room.c_str(), name.c_str());
     std::fclose(file);
 }
 
