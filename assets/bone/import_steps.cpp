@@ -89,7 +89,7 @@ std::unique_ptr<volume::SliceReader> open_scan(const std::filesystem::path& path
 
 namespace {
 
-/// Fillings and implants are normal in jaws: the import goes on, and says how much there is.
+/// Fillings and implants are normal in jaws: the import continues and reports their amount.
 void note_metal(std::size_t samples, const Vec3& spacing, ImportSummary& summary) {
     if (samples == 0) return;
     summary.metal_mm3 = static_cast<double>(samples) * spacing.x * spacing.y * spacing.z / (mm * mm * mm);

@@ -31,7 +31,7 @@ namespace tactus::table {
 namespace {
 
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
-constexpr int most_trailer = 100;  // lines
+constexpr int max_trailer_lines = 100;  // lines
 constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {
@@ -57,7 +57,7 @@ public:
             if (is_first) choose();
             is_first = false;
             if (log_.form.trailer > 0 || is_statistic(fields_.front())) {
-                if (++log_.form.trailer > most_trailer)
+                if (++log_.form.trailer > max_trailer_lines)
                     fail_at(line_, 1, "rows follow below a row of statistics; cut the file there");
                 continue;
             }
@@ -123,11 +123,11 @@ private:
         std::string last;
         std::size_t changes;
     };
-    static constexpr std::size_t most_sources = 64;
+    static constexpr std::size_t max_sources = 64;
 
     void note_sources() {
         for (Source& source : sources_) {
-            if (source.rows.size() > most_sources || source.column >= fields_.size()) continue;
+            if (source.rows.size() > max_sources || source.column >= fields_.size()) continue;
             const std::string_view field = fields_[source.column];
             if (field.empty()) continue;
             const auto found = source.rows.find(field);
@@ -153,7 +153,7 @@ private:
     void check_sources() const {
         for (const Source& source : sources_) {
             const std::size_t values = source.rows.size();
-            if (values < 2 || values > most_sources || 2 * values > rows_) continue;
+            if (values < 2 || values > max_sources || 2 * values > rows_) continue;
             const bool is_named = is_source_name(shape_.names[source.column]);
             // Words that change all the time, in a column of any name.
             if (is_named || (values <= 8 && 5 * source.changes > rows_)) refuse_sources(source);
@@ -222,7 +222,7 @@ private:
         const int column = columns_.time ? static_cast<int>(fields_[*columns_.time].data() - line.data()) + 1 : 1;
         if (time < last)
             for (const Source& source : sources_)
-                if (source.changes > 0 && source.rows.size() <= most_sources &&
+                if (source.changes > 0 && source.rows.size() <= max_sources &&
                     (is_source_name(shape_.names[source.column]) || source.rows.size() <= 8))
                     refuse_sources(source);
         if (time < last)
