@@ -1,37 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where. It needs the targets tactus, tactus-bench and bundled_library.
 include(GNUInstallDirs)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME command)
 set(installed_library ${CMAKE_INSTALL_DATADIR}/tactus/library)
 
-# How the command in its folder comes to the library, wherever the whole is moved to.
-file(RELATIVE_PATH library_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/tactus/library)
-set_property(SOURCE tools/session/load_plan.cpp APPEND PROPERTY
-             COMPILE_DEFINITIONS TACTUS_INSTALLED_LIBRARY="${library_from_command}")
+# tactus_place(DEFINITION DESTINATION SOURCE ...): tells sources how a program, and how a library, comes from its folder to a
+# destination, wherever the whole is moved to (assets/file/part.hpp).
+function(tactus_place definition destination)
+  file(RELATIVE_PATH from_program ${CMAKE_INSTALL_FULL_BINDIR} ${destination})
+  file(RELATIVE_PATH from_library ${CMAKE_INSTALL_FULL_LIBDIR} ${destination})
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS ${definition}="${from_program}:${from_library}")
+endfunction()
 
+tactus_place(TACTUS_INSTALLED_LIBRARY ${CMAKE_INSTALL_FULL_DATADIR}/tactus tools/session/load_plan.cpp)
 install(TARGETS tactus tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Not for users to call: the command finds it from its own place.
-install(TARGETS tactus-device-host tactus-scan-decoder RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tactus)
-file(RELATIVE_PATH programs_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tactus)
-set_property(SOURCE devices/hosted/host_process.cpp assets/volume/dicom_reader.cpp APPEND PROPERTY
-             COMPILE_DEFINITIONS TACTUS_INSTALLED_PROGRAMS="${programs_from_command}")
+install(TARGETS tactus-device-host tactus-scan-decoder RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tactus COMPONENT common)
+tactus_place(TACTUS_INSTALLED_PROGRAMS ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tactus
+             devices/hosted/host_process.cpp assets/volume/dicom_reader.cpp)
 
-install(TARGETS tactus-openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus)
-file(RELATIVE_PATH modules_from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/tactus)
-set_property(SOURCE assets/file/module.cpp APPEND PROPERTY
-             COMPILE_DEFINITIONS TACTUS_INSTALLED_MODULES="${modules_from_command}")
+install(TARGETS tactus-openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus COMPONENT common)
+tactus_place(TACTUS_INSTALLED_MODULES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus assets/file/module.cpp)
 
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
-        FILES_MATCHING PATTERN "*.toml")
-install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} FILES_MATCHING PATTERN "*.png")
-install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples FILES_MATCHING PATTERN "*.toml")
+        COMPONENT common FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} COMPONENT common FILES_MATCHING PATTERN "*.png")
+install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples COMPONENT common FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.
 foreach(kind bones cases equalisers saw tasks)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/library/${kind} DESTINATION ${installed_library} PATTERN "saw-vibration.json" EXCLUDE)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/library/${kind} DESTINATION ${installed_library} COMPONENT common PATTERN "saw-vibration.json" EXCLUDE)
 endforeach()
 
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.toml")
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.toml")
 
 # Man pages and completions are there when the target `manuals` has been built.
 set(manuals ${CMAKE_BINARY_DIR}/manuals)

@@ -4,9 +4,8 @@
 
 namespace tactus::file {
 
-/// Address of `symbol` in a module of this program. Modules stay loaded. Looks in the folder of the program (or of the
-/// shared library that contains this function) and in the installed folder relative to it, not in the folders of the
-/// system's loader: a module belongs to one build of the program. Throws Error when the module is missing or cannot be
+/// Address of `symbol` in a module of this program. Modules stay loaded. Looks where find_part() does, not in the folders
+/// of the system's loader: a module belongs to one build of the program. Throws Error when the module is missing or cannot be
 /// loaded.
 void* load_module(const char* name, const char* symbol);
 

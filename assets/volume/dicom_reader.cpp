@@ -6,6 +6,7 @@
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/dicom_message.hpp"
 #include "dsp/core/clock.hpp"
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -47,18 +48,9 @@ constexpr double max_wait = 60.0;         // s, for a file of any size
 constexpr double min_speed = 100'000.0;  // bytes of a file per s
 constexpr std::uint64_t program_memory = std::uint64_t{1} << 29;  // of the program itself and its libraries
 
-/// Beside the command, or where it is installed.
 std::filesystem::path decoder_program() {
-    namespace fs = std::filesystem;
-    constexpr const char* name = "tactus-scan-decoder";
     if (const char* given = std::getenv("TACTUS_SCAN_DECODER"); given && *given) return given;
-    std::error_code failure;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", failure).parent_path();
-    const fs::path beside = folder / name, installed = (folder / TACTUS_INSTALLED_PROGRAMS / name).lexically_normal();
-    for (const fs::path& program : {beside, installed})
-        if (fs::exists(program, failure)) return program;
-    throw Error(fmt::format("the program that reads DICOM files is neither {} nor {}; build or install {}",
-                            beside.string(), installed.string(), name));
+    return file::find_part("the program that reads DICOM files", "tactus-scan-decoder", TACTUS_INSTALLED_PROGRAMS);
 }
 
 class Descriptor {

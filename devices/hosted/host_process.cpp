@@ -2,6 +2,7 @@
 #include "devices/hosted/host_process.hpp"
 
 #include "dsp/core/clock.hpp"
+#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -95,16 +96,8 @@ struct Attributes {
 }  // namespace
 
 fs::path host_program() {
-    constexpr const char* name = "tactus-device-host";
     if (const char* given = std::getenv("TACTUS_DEVICE_HOST"); given && *given) return given;
-    std::error_code failure;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", failure).parent_path();
-    const fs::path beside = folder / name;
-    const fs::path installed = (folder / TACTUS_INSTALLED_PROGRAMS / name).lexically_normal();
-    for (const fs::path& program : {beside, installed})
-        if (fs::exists(program, failure)) return program;
-    throw Error(fmt::format("the program that runs drivers is neither {} nor {}; build or install {}", beside.string(),
-                            installed.string(), name));
+    return file::find_part("the program that runs drivers", "tactus-device-host", TACTUS_INSTALLED_PROGRAMS);
 }
 
 HostProcess::HostProcess(const fs::path& program, int block, int socket) {

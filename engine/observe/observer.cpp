@@ -9,8 +9,8 @@ namespace tactus::observe {
 
 namespace {
 
-// Limit for one port that is watched without being read.
-constexpr std::size_t most_gathered = std::size_t{1} << 20;
+// Limit for one port of a live run that is watched without being read.
+constexpr std::size_t max_gathered = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -180,7 +180,8 @@ void Observer::gather(Reading& reading, const ObservedPort& port, const Observed
         const std::byte* value = piece.values.data() + reading.used_of_first * size;
         std::copy_n(value, size, reading.value.begin());
         reading.when = when;
-        if (how != Watch::every || port.type.columns.empty() || to.when.size() >= most_gathered) continue;
+        if (how != Watch::every || port.type.columns.empty()) continue;
+        if (pace_ == Pace::live && to.when.size() >= max_gathered) continue;
         to.when.push_back(when);
         to.columns.resize(to.columns.size() + to.per_value);
         port.type.to_columns(value, to.columns.data() + to.columns.size() - to.per_value);

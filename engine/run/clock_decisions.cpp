@@ -45,6 +45,10 @@ std::int64_t ClockDecisions::end_of_call(std::int64_t tick, std::int64_t until,
     return until;
 }
 
+bool OfflineDecisions::holds_off(std::int64_t tick, bool before) noexcept {
+    return pause_ ? pause_->holds_off(tick * period_, period_) : before;
+}
+
 LinkReading OfflineDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int) noexcept {
     const std::int64_t index = newest(link, producer, tick);
     return {index, is_late(link, index, producer.end.load(std::memory_order_relaxed) - 1, tick)};

@@ -34,10 +34,16 @@ private:
 /// The virtual clock: groups wait for each other.
 class OfflineDecisions final : public ClockDecisions {
 public:
-    using ClockDecisions::ClockDecisions;
+    /// `pause`: when forces are held off, because a parameter is set that cannot ramp; null: never.
+    OfflineDecisions(DecisionLog& log, Flicks period, ChangeQueue& changes, const PauseWindow* pause = nullptr)
+        : ClockDecisions(log, period, changes), pause_(pause) {}
 
+    bool holds_off(std::int64_t tick, bool before) noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     void commit(build::DeviceSlot& slot) noexcept override;
+
+private:
+    const PauseWindow* pause_;
 };
 
 /// Real time: nobody waits. A value that is not there is missed, one that finds no room is dropped.

@@ -6,6 +6,7 @@
 #include "engine/run/live_run.hpp"
 #include "graph/patch/sub_patch.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -89,6 +90,14 @@ void Engine::schedule_change(std::int64_t id, const std::string& node, const std
 
 void Engine::render(int threads, const std::function<void(double)>& progress) {
     parts_->offline.run(threads, progress);
+}
+
+void Engine::advance(Flicks until) {
+    Flicks& now = parts_->time.advanced;
+    if (now < 0)
+        for (const auto& group : groups()) group->decide_advanced(parts_->time.window);
+    parts_->offline.advance(until);
+    now = std::max(now, until);
 }
 
 void Engine::run_live(const LiveOptions& options) {

@@ -37,6 +37,13 @@ public:
     /// Runs to the end on `threads` threads; `progress` is told the fraction done; what it throws ends the run. Throws
     /// Error.
     void render(int threads, const std::function<void(double)>& progress = {});
+    /// Instead of `render`, any number of times with growing `until`: runs every activation before that logical time on
+    /// the calling thread, for a program that drives the patch from a loop of its own. The same bits as `render`, however
+    /// time is divided. Allocates, locks and waits for nothing while nothing is recorded and no observer watches every
+    /// value. Parameters may be `set` in between. Throws Error when the run cannot go on.
+    void advance(Flicks until);
+    /// After the last `advance`: the run ends there. Then `complete`.
+    void end_advance() { parts_->offline.complete(); }
     /// Runs in real time, one thread per group. An output that the disk has no room for ends, the run goes on. Throws
     /// Error. Engines run once.
     void run_live(const LiveOptions& options);
@@ -44,7 +51,7 @@ public:
     /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over. `told`
     /// hears of the outcome from the control thread. Edits wait for each other; of those that wait the last one counts.
     void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
-    /// While a live run goes on, from `watch`: sets a parameter, "0.8 N/mm", 3 ms ahead; one on which a force depends
+    /// While a live run goes on, from `watch`, or between two `advance`: sets a parameter, "0.8 N/mm", 3 ms ahead; one on which a force depends
     /// comes in from there, see param_ramps.hpp. Returns the logical time. Throws Error on unknown names, structural or driven parameters, and values out of range.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
     /// While a live run goes on, from `watch`: forces fade to zero at once and logical time stops, or it goes on and forces

@@ -29,6 +29,10 @@ void GroupRuntime::decide_live(const PauseWindow& pause) {
     decisions_ = std::make_unique<LiveDecisions>(log, plan->period, changes_, pause);
 }
 
+void GroupRuntime::decide_advanced(const PauseWindow& pause) {
+    decisions_ = std::make_unique<OfflineDecisions>(log, plan->period, changes_, &pause);
+}
+
 void GroupRuntime::replay(take::GroupRecords records, const ReplayedChanges& changes) {
     decisions_ = std::make_unique<ReplayedDecisions>(log, std::move(records), changes);
 }

@@ -77,6 +77,8 @@ public:
     // Control thread, before the group's thread starts.
     /// The clock decides in real time. `pause` must outlive the group's thread.
     void decide_live(const PauseWindow& pause);
+    /// On the virtual clock, with parameters that change while forces are held off; see Engine::advance.
+    void decide_advanced(const PauseWindow& pause);
     /// A log decides; see ReplayedDecisions.
     void replay(take::GroupRecords records, const ReplayedChanges& changes);
     void start_at(std::int64_t tick) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logical time of a live run, and when it stands still.
+// Logical time of a run while it goes on, and when it stands still.
 #pragma once
 
 #include "dsp/core/clock.hpp"
@@ -13,6 +13,7 @@ namespace tactus::run {
 struct LiveTime {
     RunClock clock;
     PauseWindow window;
+    Flicks advanced = -1;  ///< of a run that its caller advances: how far; −1: the clock of a live run says it
 };
 
 /// What one thread knows of it.
@@ -22,6 +23,7 @@ public:
 
     /// Logical time now: no group has begun an activation after it. 0 before the run. Wait-free.
     Flicks now() noexcept {
+        if (time_.advanced >= 0) return time_.advanced;
         has_line_ = time_.clock.try_get(line_) || has_line_;
         if (!has_line_) return 0;
         const Flicks stop = time_.window.stop.load(std::memory_order_acquire);

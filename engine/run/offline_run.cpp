@@ -10,10 +10,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <thread>
 #include <utility>
 
 namespace tactus::run {
+
+static constexpr Flicks never = std::numeric_limits<Flicks>::max();
 
 void OfflineRun::wake_others() {
     steps_.fetch_add(1, std::memory_order_release);
@@ -52,19 +55,31 @@ std::string OfflineRun::why_it_stands() const {
                        options_.replay ? "; the log of its timing does not fit the patch" : "");
 }
 
-GroupRuntime* OfflineRun::earliest_ready(const std::vector<GroupRuntime*>& mine, bool& all_finished) {
+GroupRuntime* OfflineRun::earliest_ready(const std::vector<GroupRuntime*>& mine, Flicks until, bool& all_finished) {
     // Earliest first: then one thread alone never has to wait.
     GroupRuntime* earliest = nullptr;
     all_finished = true;
+    const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
     for (GroupRuntime* group : mine) {
         // Room in channels of the plan before may have become free.
         if (!group->has_begun() && take_up(*group)) wake_others();
-        if (group->finished()) continue;
+        if (group->finished() || release(group) >= until) continue;
         all_finished = false;
-        const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
         if (group->ready() && (!earliest || release(group) < release(earliest))) earliest = group;
     }
     return earliest;
+}
+
+void OfflineRun::step(GroupRuntime& group, int frames) {
+    const std::int64_t before = steady_ns();
+    if (!group.has_begun()) group.begin_call(frames);
+    if (group.ready()) group.finish_call();
+    group.telemetry.execution.add(steady_ns() - before);
+    wake_others();
+    recorder_.drain_full();
+    if (options_.observer && options_.observer->wants_drain()) options_.observer->drain();
+    if (const auto* ring = group.log.ring; ring && ring->size() * 2 > ring->capacity())
+        recorder_.drain_journal(timeline_.groups());
 }
 
 void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed) {
@@ -74,7 +89,7 @@ void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed
     while (!stop_.load(std::memory_order_relaxed)) {
         const std::uint32_t seen = steps_.load(std::memory_order_acquire);
         bool all_finished = false;
-        GroupRuntime* const group = earliest_ready(mine, all_finished);
+        GroupRuntime* const group = earliest_ready(mine, never, all_finished);
         if (all_finished) break;
         if (!group) {
             await_step(seen);
@@ -83,15 +98,7 @@ void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed
         int frames = group->max_frames;
         if (options_.random_blocks)
             frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
-        const std::int64_t before = steady_ns();
-        if (!group->has_begun()) group->begin_call(frames);
-        if (group->ready()) group->finish_call();
-        group->telemetry.execution.add(steady_ns() - before);
-        wake_others();
-        recorder_.drain_full();
-        if (options_.observer && options_.observer->wants_drain()) options_.observer->drain();
-        if (const auto* ring = group->log.ring; ring && ring->size() * 2 > ring->capacity())
-            recorder_.drain_journal(timeline_.groups());
+        step(*group, frames);
     }
     const std::lock_guard lock(idle_lock_);
     --working_;
@@ -134,6 +141,20 @@ void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
     workers.clear();
     if (failure_) std::rethrow_exception(failure_);
     complete();
+}
+
+void OfflineRun::advance(Flicks until) {
+    if (advanced_.empty())
+        for (const auto& group : timeline_.groups()) advanced_.push_back(group.get());
+    for (;;) {
+        bool all_finished = false;
+        GroupRuntime* const group = earliest_ready(advanced_, until, all_finished);
+        if (all_finished) return;
+        if (!group) throw Error(why_it_stands());
+        const Flicks period = group->plan->period;
+        step(*group,
+             static_cast<int>(std::min<std::int64_t>(group->max_frames, ceil_div(until, period) - group->next())));
+    }
 }
 
 void OfflineRun::complete() {

@@ -23,19 +23,24 @@ public:
 
     /// Runs to the end on `threads` threads; see Engine::render.
     void run(int threads, const std::function<void(double)>& progress);
+    /// Runs every activation before `until` on the calling thread; see Engine::advance.
+    void advance(Flicks until);
+    /// The run is over: groups end where they are, and what they gave is written.
+    void complete();
     /// Any thread: ends the run soon.
     void stop();
 
 private:
     void work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);
-    /// The group of `mine` that is to run next; null: none is ready. `all_finished`: none will ever be.
-    GroupRuntime* earliest_ready(const std::vector<GroupRuntime*>& mine, bool& all_finished);
+    /// The group of `mine` that is to run next; null: none is ready. `all_finished`: none has an activation before `until`.
+    GroupRuntime* earliest_ready(const std::vector<GroupRuntime*>& mine, Flicks until, bool& all_finished);
+    /// Begins or ends a call of at most `frames` activations.
+    void step(GroupRuntime& group, int frames);
     void wake_others();
     /// Waits until something has changed since `steps_` was `seen`. Throws Error when nothing ever will, as with a log
     /// that does not fit the patch.
     void await_step(std::uint32_t seen);
     std::string why_it_stands() const;
-    void complete();
     void fail(std::exception_ptr error);
 
     const EngineOptions& options_;
@@ -47,6 +52,7 @@ private:
     std::size_t working_ = 0;  // threads that have groups left
     std::size_t idle_ = 0;  // of these, those that found no group ready while `steps_` was `idle_step_`
     std::uint32_t idle_step_ = 0;
+    std::vector<GroupRuntime*> advanced_;  // all groups, of `advance`
     std::mutex failure_lock_;
     std::exception_ptr failure_;  // the first one
 };

@@ -3,6 +3,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
+#include "assets/file/part.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
@@ -74,7 +75,7 @@ std::uint64_t hash_of_asset(const fs::path& path) {
 std::string build_identity() {
     static const std::string identity = [] {
         Hash hash;
-        file::add_file(hash, "/proc/self/exe");
+        file::add_file(hash, file::this_object());
         return fmt::format("{:016x}", hash.value());
     }();
     return identity;

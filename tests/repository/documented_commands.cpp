@@ -61,6 +61,22 @@ void check_dev_verb(const Line& line) {
     CHECK((words.size() > 1 && usage.find("\n  " + words[1] + " ") != std::string::npos));
 }
 
+/// Runs the Python of a page as one program, where numpy is installed.
+void run_python(const fs::path& page, const Folder& folder, const fs::path& built) {
+    std::string program;
+    for (const MarkdownBlock& block : blocks_of(page))
+        if (block.language == "python" && !block.remark("not run")) program += block.text + "\n";
+    if (program.empty() || std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) return;
+    folder.write("page.py", program);
+    const std::string command = "cd '" + folder.path.string() + "' && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" +
+                                (source_folder() / "tools/python").string() + "' TACTUS_SO='" +
+                                (built / "libtactus.so").string() + "' TACTUS_COMMAND='" + (built / "tactus").string() +
+                                "' /usr/bin/python3 page.py >.stdout 2>.stderr";
+    const int status = std::system(command.c_str());
+    CAPTURE(page.string(), slurp(folder.path / ".stdout"), slurp(folder.path / ".stderr"));
+    REQUIRE(status == 0);
+}
+
 /// Runs the blocks of one page in order, in one folder that looks like the root of a checkout after the build.
 void run_page(const fs::path& page) {
     const Folder folder;
@@ -90,6 +106,7 @@ void run_page(const fs::path& page) {
             REQUIRE(WEXITSTATUS(status) == promised_code(line.text));
         }
     }
+    run_python(page, folder, built);
 }
 
 /// The verb of "tactus plan snap …", with the second word where the verb has verbs of its own.

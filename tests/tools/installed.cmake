@@ -40,4 +40,22 @@ if(READELF)
     message(FATAL_ERROR "the command loads OpenVDB at its start:\n${dynamic}")
   endif()
 endif()
+# Programs with a patch inside are built with what was installed, and run.
+set(ENV{LD_LIBRARY_PATH} ${SCRATCH}/moved/${LIBDIR})
+foreach(example embed-c embed-cpp)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${EXAMPLES}/${example} -B ${SCRATCH}/${example} -DCMAKE_PREFIX_PATH=${SCRATCH}/moved
+                  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${SCRATCH}/${example} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  string(REPLACE "-" "_" program ${example})
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=TACTUS_LIBRARY ${SCRATCH}/${example}/${program}
+                  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+find_program(PKG_CONFIG pkg-config)
+if(PKG_CONFIG)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${SCRATCH}/moved/${LIBDIR}/pkgconfig ${PKG_CONFIG} --cflags --libs tactus
+                  OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT flags MATCHES "-ltactus")
+    message(FATAL_ERROR "pkg-config says: ${flags}")
+  endif()
+endif()
 file(REMOVE_RECURSE ${SCRATCH})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/load_plan.hpp"
 
+#include "assets/file/part.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/saw_fits.hpp"
@@ -21,26 +22,25 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The bundled library: beside the command in a build folder, otherwise at its installed place.
-fs::path library_of_command() {
+fs::path bundled_library() {
+    const std::vector<fs::path> places = file::places_of_part("library", TACTUS_INSTALLED_LIBRARY);
     std::error_code failure;
-    const fs::path self = fs::read_symlink("/proc/self/exe", failure);
-    if (failure) return "library";
-    const fs::path beside = self.parent_path() / "library";
-    const fs::path installed = (self.parent_path() / TACTUS_INSTALLED_LIBRARY).lexically_normal();
-    return !fs::is_directory(beside, failure) && fs::is_directory(installed, failure) ? installed : beside;
+    for (const fs::path& place : places)
+        if (fs::is_directory(place, failure)) return place;
+    return places.front();
 }
 
 }  // namespace
 
 fs::path library_folder() {
     if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
-    return library_of_command();
+    return bundled_library();
 }
 
 bool is_of_library(const fs::path& file) {
     std::error_code failure;
     const fs::path path = fs::weakly_canonical(fs::absolute(file), failure);
-    for (const fs::path& library : {library_folder(), library_of_command()}) {
+    for (const fs::path& library : {library_folder(), bundled_library()}) {
         const fs::path folder = fs::weakly_canonical(fs::absolute(library), failure);
         if (!folder.empty() && std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
     }

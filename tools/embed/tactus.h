@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Patches inside another program: a loop of its own that advances them, a game engine, a notebook. Plain C, so that C#,
+ * Python and Rust can call it. Link libtactus (pkg-config tactus, or find_package(Tactus)).
+ *
+ *     tactus_error error;
+ *     tactus_patch* patch = tactus_load("touch-sphere", &error);       // a file, or a name in the library
+ *     tactus_attach_hand(patch, "hand", NULL, &error);                 // its device is moved by this program
+ *     tactus_run* run = tactus_start(patch, NULL, &error);
+ *     int hand = tactus_find_hand(run, "hand", &error);
+ *     for (;;) {                                                       // the program's own loop, 1 kHz
+ *         tactus_move_hand(run, hand, &motion);
+ *         if (tactus_advance(run, 0.001, &error) != 0) break;          // error.text says why
+ *         double wrench[6];
+ *         tactus_hand_force(run, hand, wrench);
+ *     }
+ *
+ * Units are SI: m, rad, s, N, N·m. Functions that return int give 0 or an index, and −1 with `error` filled when they
+ * fail; those that return a pointer give NULL then. `error` may be NULL. A patch or a run is used by one thread at a time;
+ * a second one gets an error. tactus_move_hand, tactus_hand_force and tactus_newest may be called beside a live run from
+ * one other thread each. This header stays source compatible until 1.0. */
+#ifndef TACTUS_H
+#define TACTUS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tactus_patch tactus_patch;
+typedef struct tactus_run tactus_run;
+
+typedef struct tactus_error {
+    char text[2048];  /* whole sentences, with the place; of several errors all, one per line */
+    char file[512];   /* of the first: the file, or empty */
+    int line, column; /* in it, from 1; 0: unknown */
+} tactus_error;
+
+/* "0.1.0" */
+const char* tactus_version(void);
+
+/* Reads a patch file, or the patch with this name in the library. */
+tactus_patch* tactus_load(const char* name_or_path, tactus_error* error);
+/* The patch in `toml`; relative paths in it start at `folder` (NULL: the current one). */
+tactus_patch* tactus_parse(const char* toml, const char* folder, tactus_error* error);
+/* Before tactus_start: "blade.stiffness=0.5 N/mm", as --set of the command. */
+int tactus_configure(tactus_patch* patch, const char* setting, tactus_error* error);
+/* Before tactus_start: "bone=jaw.vdb", as --asset of the command. Files are read once and kept with the patch. */
+int tactus_use_asset(tactus_patch* patch, const char* asset, tactus_error* error);
+
+/* What a program says of the device that it moves. 0: none or unknown. */
+typedef struct tactus_device {
+    double max_force;  /* N; forces are limited to it */
+    double max_torque; /* N·m; 0: three degrees of freedom */
+    double damping;    /* N·s/m of the mechanism with a hand on it; it limits the stiffness that a patch may ask for */
+    double delay;      /* s from a motion to the force that answers it, outside of the patch */
+} tactus_device;
+/* The device [devices.NAME] of the patch is moved by tactus_move_hand instead of its driver. `device` NULL: an ideal one,
+ * which limits nothing. */
+int tactus_attach_hand(tactus_patch* patch, const char* name, const tactus_device* device, tactus_error* error);
+/* Runs that were started go on. */
+void tactus_free_patch(tactus_patch* patch);
+
+typedef struct tactus_options {
+    size_t size;        /* sizeof(tactus_options) */
+    double seconds;     /* of tactus_render and of a live run; 0: until tactus_finish */
+    uint64_t seed;      /* 0: the patch's */
+    const char* folder; /* where recordings, results and summary.json go, made if need be; NULL: nowhere */
+    const char* audio;  /* of a live run: "none" (also NULL), "default", "file", or a part of a card's name */
+    int live;           /* 1: runs in real time on threads of its own, from tactus_start on */
+    int threads;        /* of tactus_render; 0: as many as the machine has */
+} tactus_options;
+
+/* Compiles the patch (once for all runs with the same settings), loads its assets and prepares its nodes. Takes as long as
+ * that takes. `options` NULL: all 0. */
+tactus_run* tactus_start(tactus_patch* patch, const tactus_options* options, tactus_error* error);
+/* Runs every activation before the present logical time + `seconds`, on the calling thread, as fast as it can. Allocates
+ * and waits for nothing as long as there is no folder and tactus_output asked for no output with `every`. The same bits as
+ * tactus_render, however time is divided. Not for a live run. The caller's loop is on the force path: when it stops calling,
+ * the caller sees to it that the force ends. */
+int tactus_advance(tactus_run* run, double seconds, tactus_error* error);
+/* Instead of tactus_advance: the whole run, on several threads. */
+int tactus_render(tactus_run* run, tactus_error* error);
+/* Logical time, s: of what tactus_advance has run, or of a live run now. */
+double tactus_time(tactus_run* run);
+/* Sets a parameter, "0.8 N/mm", 3 ms ahead; one on which a force depends comes in gradually. Between two tactus_advance,
+ * or in a live run. */
+int tactus_set(tactus_run* run, const char* node_and_parameter, const char* value, tactus_error* error);
+
+/* The number of a hand that tactus_attach_hand attached. */
+int tactus_find_hand(tactus_run* run, const char* name, tactus_error* error);
+typedef struct tactus_motion {
+    double position[3];    /* m, device frame */
+    double orientation[4]; /* w, x, y, z; of length 1. All 0: not turned */
+    double velocity[3];    /* m/s */
+    double turning[3];     /* rad/s */
+    uint32_t buttons;      /* bit 0: the tool runs */
+    int invalid;           /* 1: the device does not know where it is: the force fades */
+} tactus_motion;
+/* Where the hand is from now on. In a live run a hand that was not moved for 20 ms counts as lost: the force fades. */
+void tactus_move_hand(tactus_run* run, int hand, const tactus_motion* motion);
+/* Force (N) and torque (N·m) on the hand, device frame, about the origin of its pose. */
+void tactus_hand_force(tactus_run* run, int hand, double wrench[6]);
+
+typedef struct tactus_output_info {
+    const char* type;         /* "number", "wrench", "signal" … */
+    const char* const* names; /* of its columns, "force.x" …; valid as long as the run */
+    int columns;
+    double rate; /* values per second */
+} tactus_output_info;
+/* The number of the output "node.port", to read it. `every` 1: all of its values are kept for tactus_fetch from now on; ask
+ * before the run begins. Outputs that hold a bone or a scene have no columns and are refused. */
+int tactus_output(tactus_run* run, const char* node_and_port, int every, tactus_output_info* info, tactus_error* error);
+/* The name of the output with this number among all that have columns, "node.port"; NULL behind the last one. Valid until the
+ * next call. */
+const char* tactus_output_name(tactus_run* run, int index);
+/* The newest value: `columns` numbers. Before the first activation the one it begins with. */
+void tactus_newest(tactus_run* run, int output, double* values);
+/* The oldest values that were not fetched yet, at most `most`: logical times in s into `times` (`most` numbers, or NULL), rows
+ * of `columns` numbers into `values`. Returns how many there were. After tactus_advance, tactus_render, or beside a live run,
+ * where values that nobody fetches for long are lost. */
+size_t tactus_fetch(tactus_run* run, int output, double* times, double* values, size_t most);
+/* How many values tactus_fetch could give now. */
+size_t tactus_available(tactus_run* run, int output);
+
+/* Ends the run (a live one, too) and writes what belongs into its folder. The error, if any, says what was not written. */
+int tactus_finish(tactus_run* run, tactus_error* error);
+/* After tactus_finish: the summary as JSON, as summary.json has it; valid as long as the run. */
+const char* tactus_summary(tactus_run* run);
+/* After tactus_finish: a hash over every value of every output; equal bits, equal hash. */
+uint64_t tactus_hash(tactus_run* run);
+void tactus_free_run(tactus_run* run);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""libtactus by ctypes: its C functions, tactus.h. Calls release the interpreter's lock."""
+
+from __future__ import annotations
+
+import ctypes as c
+import functools
+import os
+
+from .errors import Error
+
+_NAME = "libtactus.so.0.1"
+
+
+class ErrorText(c.Structure):
+    _fields_ = [("text", c.c_char * 2048), ("file", c.c_char * 512), ("line", c.c_int), ("column", c.c_int)]
+
+
+class Device(c.Structure):
+    _fields_ = [("max_force", c.c_double), ("max_torque", c.c_double), ("damping", c.c_double), ("delay", c.c_double)]
+
+
+class Options(c.Structure):
+    _fields_ = [("size", c.c_size_t), ("seconds", c.c_double), ("seed", c.c_uint64), ("folder", c.c_char_p),
+                ("audio", c.c_char_p), ("live", c.c_int), ("threads", c.c_int)]
+
+
+class Motion(c.Structure):
+    _fields_ = [("position", c.c_double * 3), ("orientation", c.c_double * 4), ("velocity", c.c_double * 3),
+                ("turning", c.c_double * 3), ("buttons", c.c_uint32), ("invalid", c.c_int)]
+
+
+class OutputInfo(c.Structure):
+    _fields_ = [("type", c.c_char_p), ("names", c.POINTER(c.c_char_p)), ("columns", c.c_int), ("rate", c.c_double)]
+
+
+_ERROR, _DOUBLES = c.POINTER(ErrorText), c.POINTER(c.c_double)
+_FUNCTIONS = {
+    "version": (c.c_char_p, []),
+    "load": (c.c_void_p, [c.c_char_p, _ERROR]),
+    "parse": (c.c_void_p, [c.c_char_p, c.c_char_p, _ERROR]),
+    "configure": (c.c_int, [c.c_void_p, c.c_char_p, _ERROR]),
+    "use_asset": (c.c_int, [c.c_void_p, c.c_char_p, _ERROR]),
+    "attach_hand": (c.c_int, [c.c_void_p, c.c_char_p, c.POINTER(Device), _ERROR]),
+    "free_patch": (None, [c.c_void_p]),
+    "start": (c.c_void_p, [c.c_void_p, c.POINTER(Options), _ERROR]),
+    "advance": (c.c_int, [c.c_void_p, c.c_double, _ERROR]),
+    "render": (c.c_int, [c.c_void_p, _ERROR]),
+    "time": (c.c_double, [c.c_void_p]),
+    "set": (c.c_int, [c.c_void_p, c.c_char_p, c.c_char_p, _ERROR]),
+    "find_hand": (c.c_int, [c.c_void_p, c.c_char_p, _ERROR]),
+    "move_hand": (None, [c.c_void_p, c.c_int, c.POINTER(Motion)]),
+    "hand_force": (None, [c.c_void_p, c.c_int, _DOUBLES]),
+    "output": (c.c_int, [c.c_void_p, c.c_char_p, c.c_int, c.POINTER(OutputInfo), _ERROR]),
+    "output_name": (c.c_char_p, [c.c_void_p, c.c_int]),
+    "newest": (None, [c.c_void_p, c.c_int, _DOUBLES]),
+    "fetch": (c.c_size_t, [c.c_void_p, c.c_int, _DOUBLES, _DOUBLES, c.c_size_t]),
+    "available": (c.c_size_t, [c.c_void_p, c.c_int]),
+    "finish": (c.c_int, [c.c_void_p, _ERROR]),
+    "summary": (c.c_char_p, [c.c_void_p]),
+    "hash": (c.c_uint64, [c.c_void_p]),
+    "free_run": (None, [c.c_void_p]),
+}
+
+
+@functools.lru_cache(maxsize=None)
+def library() -> c.CDLL:
+    """$TACTUS_SO, or the installed one. Raises Error."""
+    try:
+        loaded = c.CDLL(os.environ.get("TACTUS_SO") or _NAME)
+    except OSError as failure:
+        raise Error(f"{failure}; install the package libtactus0.1, or name the file in TACTUS_SO") from None
+    for name, (result, arguments) in _FUNCTIONS.items():
+        function = getattr(loaded, "tactus_" + name)
+        function.restype, function.argtypes = result, arguments
+    return loaded
+
+
+def call(name: str, *arguments):
+    """A function that may fail: its result, or an Error."""
+    error = ErrorText()
+    result = getattr(library(), "tactus_" + name)(*arguments, c.byref(error))
+    if error.text:
+        raise Error(error.text.decode(errors="replace"), error.file.decode(errors="replace"), error.line, error.column)
+    return result
