@@ -227,7 +227,7 @@ TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[ker
     ::unsetenv("SPNAV_SOCKET");
 }
 
-TEST_CASE("a 3D mouse tells where its cap wants the hand and what the hand feels", "[kernel]") {
+TEST_CASE("a 3D mouse tells where its cap wants the hand and what the hand feels", "[live]") {
     SpaceDaemon daemon;
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));

@@ -36,7 +36,7 @@ hosted::DeviceRequest simulated(std::vector<OptionText> settings) {
 
 }  // namespace
 
-TEST_CASE("a driver in a process of its own gives samples and takes forces", "[kernel]") {
+TEST_CASE("a driver in a process of its own gives samples and takes forces", "[live]") {
     const WatchedHost host;
     {
         const auto device = host.open();

@@ -27,7 +27,7 @@ std::map<std::string, Spot> Eyes::spots() const {
 }
 
 Spot Eyes::spot(const std::string& name) const {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 300; ++i) {
         const auto all = spots();
         if (const auto found = all.find(name); found != all.end()) return found->second;
         Person::wait(0.1);

@@ -22,7 +22,7 @@ struct Eyes {
     std::filesystem::path folder;
 
     std::map<std::string, Spot> spots() const;
-    /// Fails the test when it is not there within 10 s.
+    /// Fails the test when it is not there within 30 s.
     Spot spot(const std::string& name) const;
     /// Where it is once it does not move any more: lists scroll, and grow while a scene is being made.
     Spot resting_spot(const std::string& name) const;
