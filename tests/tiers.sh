@@ -5,8 +5,9 @@
 
 costs=tests/costs.tsv    # processor seconds of the costly cases; ./dev test --costs writes it
 ledger=tests/ledger.tsv  # when each set of ./dev test --all last ran, and its result
-slice_seconds=180        # processor time that a landing spends on long cases
-ledger_limit=50          # commits after which a set has to run again
+slice_seconds=180        # processor time that a landing spends on long cases, and again on those of changed rooms
+ledger_limit=50          # commits of the main line after which a set has to run again; a merge counts as one
+real_time='live|kernel|display'  # labels of cases that run in real time
 sets=(landing long walks asan tsan clang fuzz campaign crash chaos chaos-window bench)
 
 phases=()
@@ -36,7 +37,7 @@ print_phases() {
     [ ${#phases[@]} -eq 0 ] || printf '%s\n' "" "${phases[@]}"
 }
 
-# run_ctest PRESET JOBS [CTEST ARGS]: a live case or one of a window that failed runs once more, alone, beside a thread that
+# run_ctest PRESET JOBS [CTEST ARGS]: a case in real time that failed runs once more, alone, beside a thread that
 # does nothing: if the machine wakes that thread late (for a window by a frame or more), the case is skipped and says
 # so. Every other case must pass the first time.
 run_ctest() {
@@ -57,7 +58,7 @@ failed_in_real_time() {
     local log=build/$1/Testing/Temporary/LastTestsFailed.log failed others
     [ -s "$log" ] || return 1
     failed=$(cut -d: -f1 "$log" | sort -u)
-    others=$(comm -23 <(echo "$failed") <(cases_of "$1" 'live|display' | cut -f1 | sort -u))
+    others=$(comm -23 <(echo "$failed") <(cases_of "$1" "$real_time" | cut -f1 | sort -u))
     [ -z "$others" ] && paste -sd, <<<"$failed"
 }
 
@@ -66,21 +67,26 @@ cases_of() {
     ctest --test-dir "build/$1" -N -L "$2" | sed -nE 's/^ *Test +#([0-9]+): (.*)/\1\t\2/p'
 }
 
-# The numbers of the long cases that run on this landing, separated by commas: those of the rooms that differ from the
-# published branch, and others in an order that the hash of the tree chooses, up to slice_seconds.
+# The numbers of the long cases that run on this landing, separated by commas, in an order that the hash of the tree chooses:
+# up to slice_seconds of the rooms that differ from the published branch, and up to slice_seconds of the others.
 slice() {
     local preset=$1 tree rooms number name
     tree=$(git rev-parse 'HEAD^{tree}' 2>/dev/null || echo none)
     rooms=$(changed_rooms 2>/dev/null | paste -sd'|')
-    cases_of "$preset" '^long$' | while IFS=$'\t' read -r number name; do
+    cases_of "$preset" '^long' | while IFS=$'\t' read -r number name; do
         printf '%s\t%s\t%s\n' "$(cksum <<<"$tree $name" | cut -d' ' -f1)" "$number" "$name"
     done | sort -n | awk -F'\t' -v rooms="^(${rooms:-none}):" -v limit=$slice_seconds '
         FNR == NR { if ($0 !~ /^#/) cost[$2] = $1; next }
         {
             seconds = $3 in cost ? cost[$3] : 10
-            if ($3 ~ rooms) print $2
-            else if (spent + seconds <= limit || spent == 0) { spent += seconds; print $2 }
-        }' "$costs" - | paste -sd,
+            is_changed = $3 ~ rooms
+            all += seconds
+            if (spent[is_changed] > 0 && spent[is_changed] + seconds > limit) next
+            spent[is_changed] += seconds
+            print $2
+        }
+        END { if (all) printf "dev: slice: %d of %d s of the long cases\n", spent[0] + spent[1], all >"/dev/stderr" }
+    ' "$costs" - | paste -sd,
 }
 
 # What must pass before a change lands.
@@ -92,8 +98,10 @@ landing() {
     phase "tests: slow" run_ctest "$preset" "$(jobs)" -L '^slow$' || status=1
     chosen=$(slice "$preset")
     [ -z "$chosen" ] || phase "tests: slice of the long ones" run_ctest "$preset" "$(jobs)" -I "0,0,0,$chosen" || status=1
-    phase "tests: display" run_ctest "$preset" "$(jobs)" -L '^display$' || status=1
-    phase "tests: live" run_ctest "$preset" 1 -L live || status=1
+    # These wait half of their time.
+    phase "tests: display" run_ctest "$preset" "$(($(jobs) * 3 / 2))" -L '^display$' || status=1
+    phase "tests: kernel" run_ctest "$preset" "$(($(jobs) * 3 / 2))" -L '^kernel$' || status=1
+    phase "tests: live" run_ctest "$preset" 1 -L '^live' || status=1
     print_phases
     [ $status = 0 ] || echo "dev: tests failed; see above" >&2
     return $status
@@ -117,7 +125,7 @@ measure_costs() {
 run_set() {
     case "$1" in
         landing) landing release ;;
-        long) build release && run_ctest release "$(jobs)" -L '^long$' ;;
+        long) build release && run_ctest release "$(jobs)" -L '^long' ;;
         walks) walks ;;
         asan | tsan) sanitize "$1" ;;
         clang) need clang && build clang && run_ctest clang "$(jobs)" -LE long ;;
@@ -149,20 +157,24 @@ test_all() {
     return $status
 }
 
-# Fails if a set has not passed within the last commits.
+# Fails if a set has not passed within the last commits. A set that has never passed counts from the commit that added
+# the ledger, and until then is only reported.
 check_ledger() {
-    local set commit age stale=0
+    local set commit since age last stale=0 never=()
+    since=$(git log --diff-filter=A --format=%h -- "$ledger" | tail -1)
     for set in "${sets[@]}"; do
         commit=$(awk -F'\t' -v set="$set" '$1 == set && $4 == "passed" { commit = $2 } END { print commit }' "$ledger")
-        if [ -z "$commit" ]; then
-            age=never
-        else
-            age=$(git rev-list --count "$commit..HEAD" 2>/dev/null || echo unknown)
-            [ "$age" = unknown ] || [ "$age" -gt $ledger_limit ] || continue
-            age="$age commits ago"
+        age=$(git rev-list --first-parent --count "${commit:-${since:-HEAD}}..HEAD" 2>/dev/null || echo unknown)
+        if [ "$age" != unknown ] && [ "$age" -le $ledger_limit ]; then
+            [ -n "$commit" ] || never+=("$set")
+            continue
         fi
-        echo "dev: set '$set' last passed: $age; run ./dev test --all $set" >&2
+        last=never
+        [ -z "$commit" ] || last="$age commits ago"
+        echo "dev: set '$set' last passed: $last; run ./dev test --all $set" >&2
         stale=1
     done
+    [ ${#never[@]} -eq 0 ] ||
+        echo "dev: these sets have never passed, and ./dev check will require them: ${never[*]}; run ./dev test --all SET" >&2
     return $stale
 }

@@ -117,9 +117,9 @@ std::string verb_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
-TEST_CASE("the commands of README run as written", "[live]") { run_page(source_folder() / "README.md"); }
+TEST_CASE("the commands of README run as written", "[kernel]") { run_page(source_folder() / "README.md"); }
 
-TEST_CASE("the commands of the tutorials run as written", "[live]") {
+TEST_CASE("the commands of the tutorials run as written", "[kernel]") {
     for (const fs::path& page : markdown_files())
         if (page.parent_path() == source_folder() / "docs/tutorial") run_page(page);
 }

@@ -49,7 +49,7 @@ public:
 
     /// The exit code of './dev test'.
     int test() {
-        for (const char* label : {"fast", "slow", "display", "live"}) add(std::string("some_") + label, label, 0);
+        for (const char* label : {"fast", "slow", "display", "kernel", "live"}) add(std::string("some_") + label, label, 0);
         folder_.write("build/release/CTestTestfile.cmake", tests_);
         const std::string line =
             "PATH='" + path("bin") + "':\"$PATH\" bash '" + path("dev") + "' test >'" + path("out") + "' 2>&1";
@@ -87,13 +87,15 @@ TEST_CASE("a case in real time that failed runs once more, alone, beside a watch
     checkout.add("absent", "slow", 9, 77);
     checkout.add("once", "live", 1);
     checkout.add("window", "live-display", 1);
+    checkout.add("process", "kernel", 1);
+    checkout.add("matrix", "long-kernel", 1);
     const int code = checkout.test();
     INFO(checkout.printed());
     CHECK(code == 0);
     CHECK(checkout.runs_of("early") == ".");
     CHECK(checkout.runs_of("absent") == ".");
     CHECK(checkout.runs_of("once") == ".w.");
-    CHECK(checkout.runs_of("window") == ".w.");
+    for (const char* name : {"window", "process", "matrix"}) CHECK(checkout.runs_of(name) == ".w.");
 }
 
 TEST_CASE("a case in real time that fails twice fails the landing", "[slow]") {

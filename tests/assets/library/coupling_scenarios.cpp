@@ -97,41 +97,57 @@ Insertion insert(double clearance) {
     return result;
 }
 
+void check_insertion(double clearance) {
+    const Insertion peg = insert(clearance);
+    CAPTURE(clearance, peg.depth, peg.axial, peg.lateral, peg.end);
+    CHECK(peg.depth >= 20.0 * mm - 0.1 * mm);
+    CHECK(peg.axial <= 10.0);
+    CHECK(peg.lateral <= clearance + 0.02 * mm);
+    CHECK(peg.end < 0.0);
+}
+
 }  // namespace
 
-TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm", "[slow]") {
-    for (const double clearance : {0.3 * mm, 0.1 * mm, 0.0}) {
-        const Insertion peg = insert(clearance);
-        CAPTURE(clearance, peg.depth, peg.axial, peg.lateral, peg.end);
-        CHECK(peg.depth >= 20.0 * mm - 0.1 * mm);
-        CHECK(peg.axial <= 10.0);
-        CHECK(peg.lateral <= clearance + 0.02 * mm);
-        CHECK(peg.end < 0.0);
-    }
+TEST_CASE("a peg goes in and comes out without clearance", "[slow]") { check_insertion(0.0); }
+
+TEST_CASE("a peg goes in and comes out at 0.3 and 0.1 mm of clearance, and not at -0.1 mm", "[long]") {
+    for (const double clearance : {0.3 * mm, 0.1 * mm}) check_insertion(clearance);
     const Insertion tight = insert(-0.1 * mm);
     CAPTURE(tight.depth, tight.axial);
     CHECK(tight.depth < 10.0 * mm);
 }
 
-TEST_CASE("no corner pops through a thin plate below the documented force, no face at all", "[slow]") {
+namespace {
+
+/// Presses a cube with its face and with its corner on a plate of that thickness.
+void press_through(double wall) {
     const Part block = part_of(contact::Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
     const Quat on_corner = rotation_by(Vec3(0.0, -std::acos(1.0 / std::sqrt(3.0)), 0.0)) *
                            rotation_by(Vec3(0.0, 0.0, -0.25 * std::numbers::pi));
-    for (const double wall : {2.0 * mm, 1.0 * mm, 0.7 * mm})
-        for (const bool corner : {false, true}) {
-            const Part plate = part_of(contact::Box{{24.0 * mm, 24.0 * mm, wall}}, 1.0 * mm, 0.175 * mm);
-            contact::ContactLaw law;
-            law.blend = 0.0;
-            const Quat turn = corner ? glm::conjugate(on_corner) : Quat(1, 0, 0, 0);
-            Rig rig(plate, block, {}, law, {{0.1 * mm, 0.2 * mm, 12.0 * mm}, turn});
-            rig.coupling.settings.step = 0.25 * mm;
-            rig.coupling.settings.springs.linear.limit = corner ? 0.9 * law.stiffness * wall / 2.0 : 40.0;
-            rig.coupling.settings.springs.angular = {100.0, 100.0};
-            for (int n = 0; n < 4000; ++n) rig.update({{0.1 * mm, 0.2 * mm, 12.0 * mm - 0.015 * mm * n}, turn});
-            CAPTURE(wall, corner, rig.deepest);
-            CHECK(rig.coupling.state().proxy.position.z > 0.5 * wall);
-            CHECK(rig.coupling.state().contact.in_contact > 0);
-        }
+    const Part plate = part_of(contact::Box{{24.0 * mm, 24.0 * mm, wall}}, 1.0 * mm, 0.175 * mm);
+    for (const bool corner : {false, true}) {
+        contact::ContactLaw law;
+        law.blend = 0.0;
+        const Quat turn = corner ? glm::conjugate(on_corner) : Quat(1, 0, 0, 0);
+        Rig rig(plate, block, {}, law, {{0.1 * mm, 0.2 * mm, 12.0 * mm}, turn});
+        rig.coupling.settings.step = 0.25 * mm;
+        rig.coupling.settings.springs.linear.limit = corner ? 0.9 * law.stiffness * wall / 2.0 : 40.0;
+        rig.coupling.settings.springs.angular = {100.0, 100.0};
+        for (int n = 0; n < 4000; ++n) rig.update({{0.1 * mm, 0.2 * mm, 12.0 * mm - 0.015 * mm * n}, turn});
+        CAPTURE(wall, corner, rig.deepest);
+        CHECK(rig.coupling.state().proxy.position.z > 0.5 * wall);
+        CHECK(rig.coupling.state().contact.in_contact > 0);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("no corner pops through a plate of 0.7 mm below the documented force, no face at all", "[slow]") {
+    press_through(0.7 * mm);
+}
+
+TEST_CASE("no corner pops through a plate of 1 or 2 mm below the documented force, no face at all", "[long]") {
+    for (const double wall : {2.0 * mm, 1.0 * mm}) press_through(wall);
 }
 
 TEST_CASE("a plate of 1 mm does not go through a plate of 1 mm at any speed up to 2 m/s") {

@@ -66,7 +66,7 @@ TEST_CASE("a WebSocket opens only with the answer to its own greeting") {
                ContainsSubstring("extension"));
 }
 
-TEST_CASE("a server that answers another greeting, or never to the end, is no service", "[live]") {
+TEST_CASE("a server that answers another greeting, or never to the end, is no service", "[kernel]") {
     HaplyService impostor;
     impostor.is_impostor = true;
     CHECK_THROWS_WITH(open(impostor), ContainsSubstring("answers another greeting"));
@@ -177,7 +177,7 @@ TEST_CASE("a force is told by the name that the service's version knows") {
     CHECK_THAT(haply::force_text("A", {}, haply::ForceKey::values, true), ContainsSubstring("\"name\":\"tactus\""));
 }
 
-TEST_CASE("the service hears its own words, and the program's name once", "[live]") {
+TEST_CASE("the service hears its own words, and the program's name once", "[kernel]") {
     for (const std::string version : {"3.5.0", "3.1.0"}) {
         HaplyService service;
         service.version = version;
@@ -234,7 +234,7 @@ TEST_CASE("a service that stays silent, cut, far too long or no JSON is invalid,
         INFO("a sleeping thread was " << control.longest_ns() * 1e-6 << " ms late at most");
         CHECK(took < 40 * ms + 3 * control.longest_ns());
         int valid = 0;
-        for (int i = 0; i < 600; ++i) {
+        for (int i = 0; i < 300; ++i) {
             device.commit({});
             valid += device.acquire(1e-3).valid;
             sleep_until(steady_ns() + ms);

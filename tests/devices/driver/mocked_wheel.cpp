@@ -108,7 +108,7 @@ bool is_possible() {
 
 }  // namespace
 
-TEST_CASE("a wheel is found by what the kernel says of it, turns the hand and takes a constant force", "[live]") {
+TEST_CASE("a wheel is found by what the kernel says of it, turns the hand and takes a constant force", "[kernel]") {
     if (!is_possible()) return;
     Mock mock;
     {
@@ -129,7 +129,7 @@ TEST_CASE("a wheel is found by what the kernel says of it, turns the hand and ta
     CHECK(mock.state().files == 0);
 }
 
-TEST_CASE("a wheel whose process is killed goes slack, also when the kernel leaves its effect", "[live]") {
+TEST_CASE("a wheel whose process is killed goes slack, also when the kernel leaves its effect", "[kernel]") {
     if (!is_possible()) return;
     for (const bool keeps : {false, true}) {
         CAPTURE(keeps);
@@ -147,7 +147,7 @@ TEST_CASE("a wheel whose process is killed goes slack, also when the kernel leav
     }
 }
 
-TEST_CASE("a wheel goes slack when its engine is killed, and centres as before", "[live]") {
+TEST_CASE("a wheel goes slack when its engine is killed, and centres as before", "[kernel]") {
     if (!is_possible()) return;
     Mock mock;
     const pid_t engine = ::fork();
@@ -168,7 +168,7 @@ TEST_CASE("a wheel goes slack when its engine is killed, and centres as before",
     CHECK(mock.state().centring == 13107);  // as /sys states it
 }
 
-TEST_CASE("a wheel that is unplugged is invalid, and pushes again when it is back", "[live]") {
+TEST_CASE("a wheel that is unplugged is invalid, and pushes again when it is back", "[kernel]") {
     if (!is_possible()) return;
     Mock mock;
     const auto wheel = open_wheel();
@@ -183,6 +183,6 @@ TEST_CASE("a wheel that is unplugged is invalid, and pushes again when it is bac
 
 #else
 
-TEST_CASE("a wheel of umockdev", "[live]") { tactus::test::skip("umockdev or libumockdev-dev is missing"); }
+TEST_CASE("a wheel of umockdev", "[kernel]") { tactus::test::skip("umockdev or libumockdev-dev is missing"); }
 
 #endif

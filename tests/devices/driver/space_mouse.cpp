@@ -117,7 +117,7 @@ TEST_CASE("a 3D mouse that is pulled out while its cap is deflected stops the ha
     }
 }
 
-TEST_CASE("the cap steers the hand: right, up, and away from the user, turns with the right sign", "[live]") {
+TEST_CASE("the cap steers the hand: right, up, and away from the user, turns with the right sign", "[kernel]") {
     SpaceDaemon daemon;
     const auto device = open(daemon);
     REQUIRE(wait_until([&] { return device->acquire(1e-3).valid; }));
@@ -152,7 +152,7 @@ TEST_CASE("the cap steers the hand: right, up, and away from the user, turns wit
 }
 
 TEST_CASE("a hand that a 3D mouse has led to the end of its reach is there to a micrometre, and lost with the daemon",
-          "[live]") {
+          "[kernel]") {
     SpaceDaemon daemon;
     Options options = options_of({{"socket", daemon.path, {}}, {"speed", "1 m/s", {}}, {"reach", "20 mm", {}}});
     driver::ThreadedDevice device(spacenav::make_space_mouse(options), {.driver = "space_mouse"});
@@ -188,7 +188,7 @@ TEST_CASE("a daemon that is gone, floods or sends pieces neither delays nor move
     CHECK(wait_until([&] { return device->acquire(1e-3).valid; }, 1000));
 }
 
-TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[live]") {
+TEST_CASE("Debian's libspnav hears from the daemon what the driver hears", "[kernel]") {
     void* const library = ::dlopen("libspnav.so.0", RTLD_NOW | RTLD_LOCAL);
     if (!library) return skip("libspnav is not installed");
     SpaceDaemon daemon;

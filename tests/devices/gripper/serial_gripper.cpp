@@ -46,7 +46,7 @@ MotorDrive speed(double v) {
 
 }  // namespace
 
-TEST_CASE("a gripper at a serial line moves as told and tells where it is and what it feels", "[live]") {
+TEST_CASE("a gripper at a serial line moves as told and tells where it is and what it feels", "[kernel]") {
     StandInController controller;
     gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
@@ -61,7 +61,7 @@ TEST_CASE("a gripper at a serial line moves as told and tells where it is and wh
     CHECK(controller.bad == 0);
 }
 
-TEST_CASE("noise and losses on the line cost samples, never truth", "[live]") {
+TEST_CASE("noise and losses on the line cost samples, never truth", "[kernel]") {
     StandInController controller;
     controller.trouble.corrupt_percent = 30;
     controller.trouble.drop_percent = 20;
@@ -76,7 +76,7 @@ TEST_CASE("noise and losses on the line cost samples, never truth", "[live]") {
     CHECK(worst < 1.0);  // a flipped bit of a position would be anywhere within 600 m
 }
 
-TEST_CASE("a controller that falls silent, is not valid and holds, and back again it goes on", "[live]") {
+TEST_CASE("a controller that falls silent, is not valid and holds, and back again it goes on", "[kernel]") {
     StandInController controller;
     gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
@@ -94,7 +94,7 @@ TEST_CASE("a controller that falls silent, is not valid and holds, and back agai
     CHECK(controller.told_speed == 0.0);
 }
 
-TEST_CASE("a line that is pulled makes samples invalid and drives no harm", "[live]") {
+TEST_CASE("a line that is pulled makes samples invalid and drives no harm", "[kernel]") {
     StandInController controller;
     gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
@@ -108,7 +108,7 @@ TEST_CASE("a line that is pulled makes samples invalid and drives no harm", "[li
     CHECK(gripper.counts().unsent > 50);
 }
 
-TEST_CASE("a gripper that is let go is told to hold, and so is one whose speed is not a number", "[live]") {
+TEST_CASE("a gripper that is let go is told to hold, and so is one whose speed is not a number", "[kernel]") {
     StandInController controller;
     {
         gripper::SerialGripper gripper(settings_for(controller));

@@ -73,7 +73,7 @@ TEST_CASE("an engine that is stopped leaves no force after 20 ms, and the device
     CHECK(host.leaves_nothing());
 }
 
-TEST_CASE("an engine that was stopped for a moment gives no force without small ones first", "[live]") {
+TEST_CASE("an engine that was stopped for a moment gives no force without small ones first", "[kernel]") {
     const WatchedHost host;
     Engine engine(host);
     REQUIRE(wait_until([&] { return host.log->last() == 4.0; }));
@@ -89,7 +89,7 @@ TEST_CASE("an engine that was stopped for a moment gives no force without small 
     CHECK(exit_code_of(host.log->process()) == 0);
 }
 
-TEST_CASE("a device's process whose driver never returns ends after its engine", "[live]") {
+TEST_CASE("a device's process whose driver never returns ends after its engine", "[kernel]") {
     for (const std::string fault : {"hang in acquire", "hang in open", "hang in close"}) {
         CAPTURE(fault);
         const WatchedHost host;

@@ -98,17 +98,18 @@ TEST_CASE("a device's process has no descriptor of the engine") {
     ::close(file);
 }
 
-TEST_CASE("a sample that is no pose is not valid, and a force that is no number is none", "[live]") {
+TEST_CASE("a sample that is no pose is not valid, and a force that is no number is none", "[kernel]") {
     const WatchedHost host;
     const auto device = host.open("no pose", 300);
     CHECK(tick(*device, 4.0, [&](const DeviceSample&) { return host.log->last() == 4.0; }));
     CHECK(tick(*device, 4.0, [&](const DeviceSample& sample) { return !sample.valid; }));
-    std::int64_t from = 0;
-    for (int i = 0; i < 50; ++i) {
-        if (i == 10) from = boot_ns();
+    const auto commit_nan = [&] {
         device->commit({{std::nan(""), 0.0, 0.0}, {}});
-        sleep_until(steady_ns() + ms);
-    }
+        return host.log->last() == 0.0;
+    };
+    CHECK(wait_until(commit_nan));
+    const std::int64_t from = boot_ns();
+    CHECK_FALSE(wait_until([&] { return !commit_nan(); }, 50));
     CHECK(host.log->most_after(from) == 0.0);
     for (const ForceLog::Entry& entry : host.log->entries()) REQUIRE(std::isfinite(entry.force));
 }

@@ -15,7 +15,7 @@
 using namespace tactus;
 using namespace tactus::test;
 
-TEST_CASE("where the sticks of a gamepad want the hand comes out of the process of its driver", "[live]") {
+TEST_CASE("where the sticks of a gamepad want the hand comes out of the process of its driver", "[kernel]") {
     const WatchedHost host;
     const std::string path = host.path() + "-pad";
     REQUIRE(::mkfifo(path.c_str(), 0600) == 0);

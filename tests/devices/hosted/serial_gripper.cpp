@@ -7,7 +7,7 @@
 using namespace tactus;
 using namespace tactus::test;
 
-TEST_CASE("a gripper at a serial line has a process of its own, and holds when its engine is gone", "[live]") {
+TEST_CASE("a gripper at a serial line has a process of its own, and holds when its engine is gone", "[kernel]") {
     const WatchedHost host;
     StandInController controller;
     const hosted::DeviceRequest request{

@@ -120,7 +120,7 @@ TEST_CASE("a port that another program has is named") {
                       Catch::Matchers::ContainsSubstring("'here' is no address"));
 }
 
-TEST_CASE("what one program sends another follows", "[live]") {
+TEST_CASE("what one program sends another follows", "[kernel]") {
     const auto server = TransformServer::at("127.0.0.1", 0);
     Options options = options_of({{"port", std::to_string(server->port()), {}}});
     driver::ThreadedDevice device(openigtlink::make_tracker(options), {.driver = "openigtlink"});

@@ -120,7 +120,7 @@ TEST_CASE("a pose that comes early does not make the hand jump") {
     CHECK(before.position.x == Approx(after.position.x));
 }
 
-TEST_CASE("a tool of a tracker is a hand: valid while it is seen, lost and found with its server", "[live]") {
+TEST_CASE("a tool of a tracker is a hand: valid while it is seen, lost and found with its server", "[kernel]") {
     TrackerServer server;
     const auto device = open(server);
     const auto samples_until = [&](bool valid, int longest_ms, bool sends = false) {

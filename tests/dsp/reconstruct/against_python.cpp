@@ -96,9 +96,8 @@ std::string line_of(const FibulaInputs& inputs, const FibulaPlan& plan) {
         *plan.left_distal / mm, *plan.left_proximal / mm);
 }
 
-}  // namespace
-
-TEST_CASE("a thousand random fibula plans have the numbers and warnings that triangles cut in Python give", "[slow]") {
+/// The first plans of a random sequence that are accepted.
+void compare_plans(std::size_t count) {
     if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
         return tactus::test::skip("no python3 with numpy here");
     const Vec3 point = Vec3(90, 10, -120) * mm, line = glm::normalize(Vec3(0.09, -0.02, 1.0));
@@ -112,7 +111,7 @@ TEST_CASE("a thousand random fibula plans have the numbers and warnings that tri
         for (const auto& t : donor.triangles) triangles.push_back(fmt::format("[{},{},{}]", t[0], t[1], t[2]));
         out << fmt::format("{{\"vertices\":[{}],\"triangles\":[{}]}}\n", fmt::join(vertices, ","),
                            fmt::join(triangles, ","));
-        for (std::uint64_t trial = 0; accepted < 1000 && trial < 5000; ++trial) {
+        for (std::uint64_t trial = 0; accepted < count && trial < 5 * count; ++trial) {
             FibulaInputs inputs = random_inputs(trial, point, line);
             inputs.donor = donor;
             try {
@@ -123,8 +122,18 @@ TEST_CASE("a thousand random fibula plans have the numbers and warnings that tri
             }
         }
     }
-    CHECK(accepted == 1000);
+    CHECK(accepted == count);
     const std::string script = (tactus::test::source_folder() / "tests/dsp/reconstruct/check_plans.py").string();
     CHECK(std::system(fmt::format("/usr/bin/python3 '{}' '{}'", script, file.string()).c_str()) == 0);
     std::filesystem::remove(file);
+}
+
+}  // namespace
+
+TEST_CASE("random fibula plans have the numbers and warnings that triangles cut in Python give", "[slow]") {
+    compare_plans(100);
+}
+
+TEST_CASE("a thousand random fibula plans have the numbers and warnings that triangles cut in Python give", "[long]") {
+    compare_plans(1000);
 }

@@ -9,6 +9,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 #include "tests/support/times.hpp"
+#include "tests/support/virtual_clock.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -31,7 +32,8 @@ public:
     std::string toml() const {
         const auto& v = values_;
         return "quantum = \"1 ms\"\nwires = [\"hand.pose -> spring.device\", \"place.pose -> spring.object" +
-               v.at("mode") + "\", \"spring.wrench -> sum.in1\", \"hand.pose -> dial.pose\", \"dial.wrench -> sum.in2\", " +
+               v.at("mode") +
+               "\", \"spring.wrench -> sum.in1\", \"hand.pose -> dial.pose\", \"dial.wrench -> sum.in2\", " +
                "\"hand.pose -> blade.pose\", \"bone -> blade.bone\", \"blade.wrench -> sum.in3\", \"" + v.at("last") +
                "sum.out -> out.wrench" + v.at("delay") + "\"]\n[assets]\nbone = \"" + v.at("bone") +
                "\"\n[groups.hand]\nrate = \"1 kHz\"\nlatency = \"" + v.at("hand latency") +
@@ -143,7 +145,7 @@ TEST_CASE("an edit fades no hand but those whose force it may change") {
         CHECK(group->scheduled.at(1)->changes_force == (group->plan->name == "500 Hz"));
 }
 
-TEST_CASE("a discrete parameter is set while forces are held off, a request at once", "[live]") {
+TEST_CASE("a discrete parameter is set while forces are held off, a request at once", "[virtual]") {
     const std::string text =
         "wires = [\"hand.pose -> dial.pose\", \"hand.pose -> spring.device\", \"place.pose -> spring.object\",\n"
         "\"spring.wrench -> sum.in1\", \"dial.wrench -> sum.in2\", \"sum.out -> out.wrench\"]\n"
@@ -151,27 +153,26 @@ TEST_CASE("a discrete parameter is set while forces are held off, a request at o
         "dial = {type = \"dial\", rate = \"500 Hz\"}\nplace = {type = \"still\", rate = \"1 kHz\"}\n"
         "spring = {type = \"spring\", rate = \"1 kHz\", stiffness = \"0.2 N/mm\"}\n"
         "sum = {type = \"wrench_sum\", rate = \"1 kHz\"}\nout = {type = \"device_output\", rate = \"1 kHz\"}\n";
-    for (const bool is_request : {false, true})
-        for (int attempt = 1;; ++attempt) {
-            CAPTURE(is_request);
-            WatchedHand& hand = watched_hand("left");
-            double asked_at = 0.0, holds_at = 0.0;
-            const LiveOutcome o = run_case(
-                {text, 30.0,
-                 [&](run::Engine& engine) {
-                     asked_at = hand.logical_s;
-                     holds_at = seconds(engine.set(is_request ? "out" : "dial", is_request ? "recover" : "notches", "7"));
-                 },
-                 [&](run::Engine&) { return hand.logical_s > asked_at + 0.3; }},
-                hand);
-            if (!o.faults.empty() && attempt < attempts) continue;
-            double least = 1e9;
-            for (const auto& given : hand.given())
-                if (given.ns > o.done_ns && given.ns < o.stopped_ns) least = std::min(least, given.force_N);
-            CHECK(hand.force_at(o.done_ns) == Approx(0.4));
-            CHECK(hand.force_at(o.stopped_ns) == Approx(0.4));
-            CHECK((least == 0.0) == !is_request);
-            CHECK(holds_at - asked_at < (is_request ? 5.5e-3 : 25e-3));
-            break;
-        }
+    for (const bool is_request : {false, true}) {
+        CAPTURE(is_request);
+        const VirtualClock clock;
+        WatchedHand& hand = watched_hand("left");
+        double asked_at = 0.0, holds_at = 0.0;
+        const LiveOutcome o = run_case(
+            {text, 30.0,
+             [&](run::Engine& engine) {
+                 asked_at = hand.logical_s;
+                 holds_at = seconds(engine.set(is_request ? "out" : "dial", is_request ? "recover" : "notches", "7"));
+             },
+             [&](run::Engine&) { return hand.logical_s > asked_at + 0.3; }},
+            hand);
+        CHECK(o.faults.empty());
+        double least = 1e9;
+        for (const auto& given : hand.given())
+            if (given.ns > o.done_ns && given.ns < o.stopped_ns) least = std::min(least, given.force_N);
+        CHECK(hand.force_at(o.done_ns) == Approx(0.4));
+        CHECK(hand.force_at(o.stopped_ns) == Approx(0.4));
+        CHECK((least == 0.0) == !is_request);
+        CHECK(holds_at - asked_at < (is_request ? 5.5e-3 : 25e-3));
+    }
 }

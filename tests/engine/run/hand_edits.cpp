@@ -152,7 +152,7 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
     }
 }
 
-TEST_CASE("an edit of the force path does not jump, however long the control thread needs for it", "[live]") {
+TEST_CASE("an edit of the force path does not jump, however long the control thread needs for it", "[kernel]") {
     const auto folder = scratch("slow-edit");
     const auto big = scratch("big.bin");
     std::ofstream(big).put('x');

@@ -35,7 +35,7 @@ std::unique_ptr<HapticDevice> open(Line line, const HostilePeer& peer) {
 
 }  // namespace
 
-TEST_CASE("no attack on a driver's socket or line makes a call wait, or a pose that is none valid", "[live]") {
+TEST_CASE("no attack on a driver's socket or line makes a call wait, or a pose that is none valid", "[kernel]") {
     ::setenv("XDG_CONFIG_HOME", "/nowhere", 1);
     for (const Line line : {Line::web_socket, Line::openigtlink, Line::serial})
         for (const Attack attack : {Attack::half, Attack::huge, Attack::slow, Attack::flood}) {

@@ -60,7 +60,7 @@ TEST_CASE("what is too stiff exits with 1, what is wrong with 2, a fault that st
     CHECK(fault.err.find("at the end of the run") != std::string::npos);
 }
 
-TEST_CASE("'trigger' presses a button of a running patch again and again, also after 'set'", "[live]") {
+TEST_CASE("'trigger' presses a button of a running patch again and again, also after 'set'", "[kernel]") {
     const Folder folder;
     const std::string patch = folder
                                   .write("p.toml",

@@ -80,7 +80,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-TEST_CASE("a run whose device's process is killed ends by itself and says so", "[live]") {
+TEST_CASE("a run whose device's process is killed ends by itself and says so", "[kernel]") {
     Watched watched;
     pid_t run = ::fork();
     if (run == 0) {
@@ -101,7 +101,7 @@ TEST_CASE("a run whose device's process is killed ends by itself and says so", "
     CHECK(summary["seconds"].get<double>() < 50.0);
 }
 
-TEST_CASE("a run whose driver never returns ends by itself and says so", "[live]") {
+TEST_CASE("a run whose driver never returns ends by itself and says so", "[kernel]") {
     for (const std::string fault : {"hang in acquire", "hang in commit"}) {
         CAPTURE(fault);
         const Watched watched(fault, 4000);

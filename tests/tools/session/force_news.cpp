@@ -122,12 +122,12 @@ TEST_CASE("a trainer that stood still for a moment tells it, and when its forces
         test::Run run(folder, "saw-training --audio none --no-edits --out " + (folder.path / "out").string());
         const auto has = [&](const char* text) { return told().find(text) != std::string::npos; };
         REQUIRE(test::wait_for([&] { return has("running Saw training"); }));
-        wait(6.0);
+        wait(3.0);
         const bool was_calm = !has("no force on");
         run.signal(SIGSTOP);
         wait(0.1);
         run.signal(SIGCONT);
-        wait(5.0);
+        test::wait_for([&] { return has("forces are on again from "); });
         REQUIRE(run.stop(SIGINT) == 0);
         INFO(told());
         const json summary = json::parse(test::slurp(folder.path / "out/summary.json"));

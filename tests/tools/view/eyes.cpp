@@ -27,7 +27,7 @@ std::map<std::string, Spot> Eyes::spots() const {
 }
 
 Spot Eyes::spot(const std::string& name) const {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 300; ++i) {
         const auto all = spots();
         if (const auto found = all.find(name); found != all.end()) return found->second;
         Person::wait(0.1);
@@ -36,16 +36,25 @@ Spot Eyes::spot(const std::string& name) const {
     return {};
 }
 
+fs::file_time_type Eyes::written() const {
+    std::error_code none;
+    return fs::last_write_time(folder / "spots.txt", none);
+}
+
+void Eyes::wait_for_next() const {
+    const auto before = written();
+    // Some scripts write once.
+    for (int n = 0; n < 40 && written() == before; ++n) Person::wait(0.025);
+}
+
+void Eyes::look_again() const {
+    for (int i = 0; i < 2; ++i) wait_for_next();
+}
+
 Spot Eyes::resting_spot(const std::string& name) const {
-    const auto written = [&] {
-        std::error_code none;
-        return fs::last_write_time(folder / "spots.txt", none);
-    };
     Spot at = spot(name);
     for (int i = 0; i < 20; ++i) {
-        const auto before = written();
-        // Some scripts write once.
-        for (int n = 0; n < 20 && written() == before; ++n) Person::wait(0.05);
+        wait_for_next();
         const Spot now = spot(name);
         if (now == at) break;
         at = now;
@@ -79,7 +88,7 @@ void press(Person& person, const Eyes& eyes, const std::string& control) {
 
 std::string watching_script(const std::string& begin, double seconds) {
     std::string script = begin;
-    for (int i = 0; i < static_cast<int>(5.0 * seconds); ++i) script += "wait 0.2\nspots spots.txt\n";
+    for (int i = 0; i < static_cast<int>(10.0 * seconds); ++i) script += "wait 0.1\nspots spots.txt\n";
     return script + "close\n";
 }
 

@@ -22,18 +22,24 @@ struct Eyes {
     std::filesystem::path folder;
 
     std::map<std::string, Spot> spots() const;
-    /// Fails the test when it is not there within 10 s.
+    /// Fails the test when it is not there within 30 s.
     Spot spot(const std::string& name) const;
     /// Where it is once it does not move any more: lists scroll, and grow while a scene is being made.
     Spot resting_spot(const std::string& name) const;
+    /// Waits until the window has written its controls twice more: what was done before is in them.
+    void look_again() const;
     /// The last whole row of a table that a run writes, without and with its end ".part"; empty: none.
     std::vector<double> last_row(const std::string& table) const;
+
+private:
+    std::filesystem::file_time_type written() const;
+    void wait_for_next() const;
 };
 
 /// Presses a control by its name.
 void press(Person& person, const Eyes& eyes, const std::string& control);
 
-/// A script that keeps the controls five times a second for so long, then closes the window.
+/// A script that keeps the controls ten times a second for so long, then closes the window.
 std::string watching_script(const std::string& begin, double seconds);
 
 /// Waits until the window shows what was done: pictures are slow on a busy machine.
@@ -48,9 +54,9 @@ void interrupt(const std::filesystem::path& folder);
 /// Waits until something is to be seen, for half a minute at most.
 template <class Condition>
 bool sees(Condition&& is_there) {
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < 300; ++i) {
         if (is_there()) return true;
-        Person::wait(0.2);
+        Person::wait(0.1);
     }
     return false;
 }

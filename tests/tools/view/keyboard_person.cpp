@@ -25,7 +25,7 @@ void command(Person& person, const std::string& words) {
 }  // namespace
 
 TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a value, saves it and leaves",
-          "[display][live]") {
+          "[display]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
     folder.write("other.toml",

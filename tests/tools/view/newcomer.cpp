@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 using namespace tactus::test;
 using nlohmann::json;
@@ -49,15 +48,9 @@ void add(Walk& walk, const std::string& words, const std::string& node, double s
 
 /// Draws a wire from port to port, or from a port to a node.
 void wire(Walk& walk, const std::string& from, const std::string& to) {
-    Spot a = walk.eyes.spot(from), b = walk.eyes.spot(to);
     // Not while the view still moves.
-    for (int i = 0; i < 20; ++i) {
-        Person::wait(0.7);
-        const Spot before = std::exchange(a, walk.eyes.spot(from));
-        b = walk.eyes.spot(to);
-        if (a.left == before.left && a.top == before.top) break;
-    }
-    walk.person.drag(a.left, a.top, b.left, b.top, 0.8);
+    const Spot a = walk.eyes.resting_spot(from), b = walk.eyes.resting_spot(to);
+    walk.person.drag(a.left, a.top, b.left, b.top, 0.5);
 }
 
 double largest_force(const Walk& walk, const std::string& patch) {
@@ -79,8 +72,8 @@ std::string block_of(const fs::path& page, const std::string& file) {
 }  // namespace
 
 TEST_CASE("a newcomer builds the ball patch of the README on an empty canvas, hears it and saves it elsewhere",
-          "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+          "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "ball");
         if (!walk.is_possible()) return;
         Person& person = walk.person;
@@ -179,7 +172,7 @@ TEST_CASE("a newcomer builds the ball patch of the README on an empty canvas, he
 }
 
 TEST_CASE("a newcomer opens a take and goes to the instant of its largest force", "[display]") {
-    for (const WalkWindow& window : walk_windows(dense_window)) {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "take");
         if (!walk.is_possible()) return;
         REQUIRE(on(walk.display, walk.folder, "render touch-sphere --seconds 3 --record monday --out out").code == 0);

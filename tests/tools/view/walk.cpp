@@ -9,9 +9,9 @@ namespace tactus::test {
 
 std::string WalkWindow::name() const { return fmt::format("{}x{}", width, height); }
 
-std::vector<WalkWindow> walk_windows(const WalkWindow& usual) {
+std::vector<WalkWindow> walk_windows() {
     const char* const asked = std::getenv("TACTUS_WALKS");
-    if (!asked) return {usual};
+    if (!asked) return {small_window};
     std::vector<WalkWindow> wanted;
     for (const WalkWindow& window : {small_window, usual_window, dense_window})
         if (asked == std::string("all") || asked == window.name()) wanted.push_back(window);
@@ -38,8 +38,8 @@ bool Walk::is_possible() const {
 
 void Walk::start(const std::string& arguments, double seconds) {
     std::string script;
-    for (int i = 0; i < static_cast<int>(5.0 * seconds); ++i) {
-        script += "wait 0.2\nspots spots.txt\n";
+    for (int i = 0; i < static_cast<int>(10.0 * seconds); ++i) {
+        script += "wait 0.1\nspots spots.txt\n";
         if (i % 4 == 3) script += "text shown.toml\n";
     }
     start_script(arguments, script + "close\n", seconds);
@@ -83,11 +83,10 @@ bool Walk::scroll_to(const std::string& control, const std::string& panel) {
     for (int turn = 0; turn < most_turns && !shows(control); ++turn) {
         const Spot over = eyes.spot(panel);
         person.move(0.5 * (over.left + over.right), 0.5 * (over.top + over.bottom));
-        Person::wait(0.1);
         const int wheel = turn < most_turns / 2 ? 5 : 4;
         person.button(wheel, true);
         person.button(wheel, false);
-        Person::wait(0.6);
+        eyes.look_again();
     }
     return shows(control);
 }
@@ -103,14 +102,13 @@ void Walk::measure() {
     const double x = 0.5 * (scene.left + scene.right), y = 0.5 * (scene.top + scene.bottom);
     for (int n = 0; n < 36 && !shows("keep measurement"); ++n) {
         person.click(x + 14.0 * (n % 6) - 35.0, y + 24.0 * (n / 6) - 60.0);
-        Person::wait(0.3);
         // In a small window the list is longer than its room.
         person.move(0.5 * (tree.left + tree.right), 0.5 * (tree.top + tree.bottom));
         for (int turn = 0; turn < 5; ++turn) {
             person.button(5, true);
             person.button(5, false);
         }
-        Person::wait(0.8);
+        eyes.look_again();
     }
     REQUIRE(shows("keep measurement"));
 }
@@ -121,7 +119,7 @@ void Walk::command(const std::string& words) {
     person.type(words);
     person.tap("Return");
     CHECK(waits_while("command"));
-    Person::wait(0.5);
+    eyes.look_again();
 }
 
 bool Walk::until(const std::function<bool()>& is_seen, const std::function<void()>& act) {
@@ -143,6 +141,7 @@ bool Walk::shows_text(const std::string& part) const {
 }
 
 void Walk::keep(const std::string& name) {
+    if (!std::getenv("TACTUS_KEEP_PICTURES")) return;
     Person::wait(0.6);
     test::keep(person, fmt::format("{}-{}-{}-{}", what_, window.name(), ++pictures_, name));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks: a job that a person does with mouse and keyboard from its beginning to its end. Each is walked in one window as
-// usual; TACTUS_WALKS=all walks it in every one, TACTUS_WALKS=800x600 in that one.
+// Walks: a job that a person does with mouse and keyboard from its beginning to its end. Each is walked in the smallest
+// window, which is drawn soonest and has the least room; TACTUS_WALKS=all walks it in every one, TACTUS_WALKS=1600x1000
+// in that one.
 #pragma once
 
 #include "tests/tools/view/eyes.hpp"
@@ -21,8 +22,8 @@ struct WalkWindow {
 };
 inline constexpr WalkWindow small_window{800, 600, 1.0}, usual_window{1600, 1000, 1.0}, dense_window{2560, 1600, 2.0};
 
-/// `usual`: when TACTUS_WALKS asks for no other.
-std::vector<WalkWindow> walk_windows(const WalkWindow& usual);
+/// `small_window`, or those that TACTUS_WALKS names.
+std::vector<WalkWindow> walk_windows();
 
 /// A person at a window of that size.
 class Walk {

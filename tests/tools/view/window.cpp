@@ -63,7 +63,7 @@ close
 }
 
 TEST_CASE("a run with a window on it is recorded, replays to the bit, and its take is looked at at any instant",
-          "[display][live]") {
+          "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("record",

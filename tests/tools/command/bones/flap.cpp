@@ -59,7 +59,7 @@ geometry::TriangleSurface surface_of(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("flap makes a case that plan reconstruct takes, the same bits each time", "[slow]") {
+TEST_CASE("flap makes a case that plan reconstruct takes, the same bits each time", "[long]") {
     const Folder folder;
     const fs::path flap = folder.path / "flap";
     const Outcome made = folder.tactus("flap -o " + flap.string());

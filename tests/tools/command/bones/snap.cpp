@@ -24,6 +24,7 @@ using tactus::test::Outcome;
 using tactus::test::pose_in;
 using tactus::test::slurp;
 
+// Costly: a global search on whole surfaces.
 TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
@@ -59,7 +60,7 @@ TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's 
     CHECK(json::parse(stranger.out)["verdict"] != "fit");
 }
 
-TEST_CASE("halves that touch in one scan are not called a fit where the scan has them", "[slow]") {
+TEST_CASE("halves that touch in one scan are not called a fit where the scan has them", "[long]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -85,6 +86,7 @@ TEST_CASE("halves that touch in one scan are not called a fit where the scan has
     CHECK(json::parse(planned.out)["placed"] == false);
 }
 
+// Costly: three searches on whole surfaces.
 TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itself or on the main fragment", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
@@ -161,7 +163,7 @@ TEST_CASE("snap and fracture refuse what they cannot use with one clear line", "
     }
 }
 
-TEST_CASE("a fragment is painted towards several neighbours at once, and the paint that it has is kept", "[slow]") {
+TEST_CASE("a fragment is painted towards several neighbours at once, and the paint that it has is kept", "[long]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     const std::string jaw = (test::library_folder() / "bones/mandible.vdb").string();

@@ -83,8 +83,9 @@ void check_rig(const Folder& folder, const json& answer, int judged) {
 
 TEST_CASE("rig: rows, facts and findings of the thesis, at few rates", "[slow]") {
     const Folder folder;
-    folder.write("m.toml", "rates = [\"0.1 Hz\", \"1 Hz\"]\ncycles = 3\n[crossover]\nrates = [\"1 Hz\", \"2 Hz\"]\n"
-                           "stiffness = [\"1 N/mm\"]\n[assumed.wqsm]\nlag = [\"1 ms\", \"4 ms\"]\n");
+    folder.write("m.toml",
+                 "rates = [\"0.1 Hz\", \"1 Hz\"]\ncycles = 3\n[crossover]\nrates = [\"1 Hz\", \"2 Hz\"]\n"
+                 "stiffness = [\"1 N/mm\"]\n[assumed.wqsm]\nlag = [\"1 ms\", \"4 ms\"]\n");
     const json answer = rig(folder, "gripper-wqsm --matrix " + (folder.path / "m.toml").string());
     CHECK(answer["rows"].size() == 2 * 6 * 2 * 2);
     check_rig(folder, answer, 2);  // the limits of one assumption
@@ -194,7 +195,7 @@ TEST_CASE("gripper patches: planted faults hold the motor and are told", "[slow]
     }
 }
 
-TEST_CASE("gripper patches: one hash on any threads and blocks, and live when nothing is late", "[live]") {
+TEST_CASE("gripper patches: one hash on any threads and blocks, and live when nothing is late", "[kernel]") {
     const Folder folder;
     for (const char* patch : {"gripper-wqsm", "gripper-twum", "gripper-on-arm"}) {
         const json one = rendered(folder, patch, "--seconds 1 --jobs 1");

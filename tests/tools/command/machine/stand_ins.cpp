@@ -111,22 +111,21 @@ void runs_with(const Scene& scene, const std::string& driver, bool has_motors, c
     CHECK(json::parse(replay.out)["identical"] == true);
 }
 
-/// In each of the library's scenes for a hand.
-void runs_everywhere_with(const std::string& driver, bool has_motors, const std::string& before = {}) {
-    for (const Scene& scene : {sawing, planning, gripping}) runs_with(scene, driver, has_motors, before);
+using Scenes = std::vector<Scene>;
+
+void run_all(const Scenes& scenes, const std::string& driver, bool has_motors, const std::string& before = {}) {
+    for (const Scene& scene : scenes) runs_with(scene, driver, has_motors, before);
 }
 
-}  // namespace
-
-TEST_CASE("the library's scenes run with a 2diy, and their takes repeat them", "[live]") {
+void run_with_2diy(const Scenes& scenes) {
     const auto board = make_diy_peer();
     const Every moves([&](double t) { board->place(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
     ::setenv("TACTUS_BOARD_PORT", line_of(*board).c_str(), 1);
-    runs_everywhere_with("haply_2diy", true);
+    run_all(scenes, "haply_2diy", true);
     ::unsetenv("TACTUS_BOARD_PORT");
 }
 
-TEST_CASE("the library's scenes run with an Inverse3, and their takes repeat them", "[live]") {
+void run_with_inverse3(const Scenes& scenes) {
     std::optional<HaplyService> service;
     try {
         service.emplace(10001);  // where the driver looks
@@ -134,11 +133,11 @@ TEST_CASE("the library's scenes run with an Inverse3, and their takes repeat the
         return skip(error.what());
     }
     const Every moves([&](double t) { service->move(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
-    runs_everywhere_with("haply", true);
+    run_all(scenes, "haply", true);
     CHECK(service->texts > 100);
 }
 
-TEST_CASE("the library's scenes run with a 3D mouse, and their takes repeat them", "[live]") {
+void run_with_3d_mouse(const Scenes& scenes) {
     SpaceDaemon daemon;
     ::setenv("SPNAV_SOCKET", daemon.path.c_str(), 1);
     {
@@ -146,12 +145,12 @@ TEST_CASE("the library's scenes run with a 3D mouse, and their takes repeat them
             daemon.accept_now();
             daemon.send(motion(static_cast<int>(200.0 * std::sin(6.283 * t)), 0, 0, 0, 0, 0));
         });
-        runs_everywhere_with("space_mouse", false);
+        run_all(scenes, "space_mouse", false);
     }
     ::unsetenv("SPNAV_SOCKET");
 }
 
-TEST_CASE("the library's scenes run with a tracked tool, and their takes repeat them", "[live]") {
+void run_with_tracked_tool(const Scenes& scenes) {
     std::shared_ptr<openigtlink::TransformServer> server;
     try {
         server = openigtlink::TransformServer::at("127.0.0.1", 18944);  // where the driver looks
@@ -167,30 +166,65 @@ TEST_CASE("the library's scenes run with a tracked tool, and their takes repeat 
     INFO(probe.out << probe.err);
     CHECK(probe.out.find("the device has no motors") != std::string::npos);
     CHECK(probe.out.find("--verify") == std::string::npos);
-    runs_everywhere_with("openigtlink", false);
+    run_all(scenes, "openigtlink", false);
 }
 
-TEST_CASE("the library's scenes run with a board, and their takes repeat them", "[live]") {
+void run_with_board(const Scenes& scenes) {
     const auto board = make_frame_board_peer();
     const Every moves([&](double t) { board->place(place_at(t), {1.0, 0.0, 0.0, 0.0}); });
     ::setenv("TACTUS_BOARD_PORT", line_of(*board).c_str(), 1);
     // A board is a sector with one motor until its options say else: the hand moves along x.
-    runs_everywhere_with("serial_board", true);
+    run_all(scenes, "serial_board", true);
     ::unsetenv("TACTUS_BOARD_PORT");
 }
 
-TEST_CASE("the library's scenes run with a wheel and with a gamepad, and their takes repeat them", "[live]") {
+/// `kind`: of the event device that the driver finds.
+void run_with_event_device(const std::string& driver, const char* kind, const Scenes& scenes) {
     const fs::path library = fs::path(command()).parent_path() / "tests/libevent_device.so";
-    for (const auto& [driver, kind] : {std::pair{"wheel", "wheel"}, {"gamepad", "pad"}}) {
-        const Folder devices;
-        devices.write("event7", "");
-        ::setenv("FAKE_EVENT_FOLDER", devices.path.c_str(), 1);
-        ::setenv("FAKE_EVENT_DEVICE", kind, 1);
-        runs_everywhere_with(driver, std::string(driver) == "wheel", library.string());
-        // At most 0.5 N of 30 N m at 140 mm, until somebody has confirmed it.
-        if (fs::exists(devices.path / "strength") && std::string(driver) == "wheel")
-            CHECK(std::stoi(slurp(devices.path / "strength")) <= std::lround(32767.0 * 0.5 * 0.14 / 30.0));
-        ::unsetenv("FAKE_EVENT_FOLDER");
-        ::unsetenv("FAKE_EVENT_DEVICE");
-    }
+    const Folder devices;
+    devices.write("event7", "");
+    ::setenv("FAKE_EVENT_FOLDER", devices.path.c_str(), 1);
+    ::setenv("FAKE_EVENT_DEVICE", kind, 1);
+    run_all(scenes, driver, driver == "wheel", library.string());
+    // At most 0.5 N of 30 N m at 140 mm, until somebody has confirmed it.
+    if (fs::exists(devices.path / "strength") && driver == "wheel")
+        CHECK(std::stoi(slurp(devices.path / "strength")) <= std::lround(32767.0 * 0.5 * 0.14 / 30.0));
+    ::unsetenv("FAKE_EVENT_FOLDER");
+    ::unsetenv("FAKE_EVENT_DEVICE");
+}
+
+}  // namespace
+
+// Each driver once, each scene with two drivers or three.
+TEST_CASE("a scene of the library runs with a board and a 2diy, and its take repeats it", "[live]") {
+    run_with_board({planning});
+    run_with_2diy({sawing});
+}
+
+TEST_CASE("a scene of the library runs with an Inverse3, and its take repeats it", "[live]") {
+    run_with_inverse3({gripping});
+}
+
+TEST_CASE("a scene of the library runs with a 3D mouse, and its take repeats it", "[live]") {
+    run_with_3d_mouse({planning});
+}
+
+TEST_CASE("a scene of the library runs with a tracked tool, and its take repeats it", "[live]") {
+    run_with_tracked_tool({sawing});
+}
+
+TEST_CASE("a scene of the library runs with a wheel and with a gamepad, and its take repeats it", "[live]") {
+    run_with_event_device("wheel", "wheel", {gripping});
+    run_with_event_device("gamepad", "pad", {sawing});
+}
+
+TEST_CASE("every scene of the library runs with every device, and its take repeats it", "[long][kernel]") {
+    const Scenes all{sawing, planning, gripping};
+    run_with_board(all);
+    run_with_2diy(all);
+    run_with_inverse3(all);
+    run_with_3d_mouse(all);
+    run_with_tracked_tool(all);
+    run_with_event_device("wheel", "wheel", all);
+    run_with_event_device("gamepad", "pad", all);
 }

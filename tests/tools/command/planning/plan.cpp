@@ -213,6 +213,7 @@ TEST_CASE("a name with blanks is one name in every verb of a plan", "[slow]") {
     run("report", "");
 }
 
+// Costly: each verb of a plan once.
 TEST_CASE("broken bone is put together by a plan, measured, and written up on one page", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };

@@ -246,7 +246,7 @@ TEST_CASE("a pose too far away for a body is refused, and the plan is as it was"
     CHECK(slurp(row.plan) == before);
 }
 
-TEST_CASE("a fragment does not go where a third one is, is told why it stays, and keeps to what stands", "[slow]") {
+TEST_CASE("a fragment does not go where a third one is, is told why it stays, and keeps to what stands", "[long]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(test::bar(), file("bar.vdb"));

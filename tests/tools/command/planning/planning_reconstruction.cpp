@@ -62,6 +62,7 @@ std::vector<std::vector<double>> rows_of(const fs::path& path) {
 
 }  // namespace
 
+// Costly: the only run of a whole reconstruction.
 TEST_CASE("render planning-reconstruction: every segment at its planned place, in few steps, and the vessel reached",
           "[slow]") {
     const Folder folder;

@@ -182,7 +182,7 @@ TEST_CASE("what a client plays is heard and played to the sample, at one distanc
     }
 }
 
-TEST_CASE("a patch that only hears follows the card, and a run that is killed repeats what it heard", "[live]") {
+TEST_CASE("a patch that only hears follows the card, and a run that is killed repeats what it heard", "[kernel]") {
     if (!has_server()) return;
     const Folder folder;
     const std::string file = folder
@@ -207,8 +207,8 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
     const std::string take = (folder.path / "cut").string();
     there.reset();
     {
-        Run killed(folder, file + " --seconds 60 --audio default --out " + (folder.path / "k").string() + " --record " +
-                               take);
+        Run killed(folder,
+                   file + " --seconds 60 --audio default --out " + (folder.path / "k").string() + " --record " + take);
         REQUIRE(wait_for([&] { return bytes_in(take) > 150'000; }));  // most of a second of what was heard
         killed.stop(SIGKILL);
     }
@@ -218,7 +218,7 @@ louder = { type = "gain", rate = "48 kHz", factor = 3 }
     CHECK(again.code == 0);
 }
 
-TEST_CASE("a node without a channel plays on the card that its patch hears, which is opened once", "[live]") {
+TEST_CASE("a node without a channel plays on the card that its patch hears, which is opened once", "[kernel]") {
     if (!has_server()) return;
     const Folder folder;
     const auto run = [&](const std::string& outputs) {
@@ -245,7 +245,7 @@ mic = { type = "audio_input", rate = "48 kHz", channel = 2 }
     CHECK(one[0]["frames_written"] > 30'000);
 }
 
-TEST_CASE("a card with inputs only is heard, and who plays on it is told that it has no outputs", "[live]") {
+TEST_CASE("a card with inputs only is heard, and who plays on it is told that it has no outputs", "[kernel]") {
     if (!has_server()) return;
     const Folder folder;
     const std::string nodes = "[nodes]\nmic = { type = \"audio_input\", rate = \"48 kHz\", channel = 2 }\n";

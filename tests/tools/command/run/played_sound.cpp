@@ -101,7 +101,8 @@ TEST_CASE("what a second client records of a live run is the offline render, sam
 
 TEST_CASE("a server in freewheel gets every sample, too", "[live]") { check_playing(true, {64, 1024}); }
 
-TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take", "[live]") {
+TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take",
+          "[kernel]") {
     if (!has_server()) return;
     const Folder folder;
     Server server(folder, 256);
@@ -129,7 +130,7 @@ TEST_CASE("a server that dies leaves a run that ends by itself, silent, with fad
     CHECK(again.code == 0);
 }
 
-TEST_CASE("an output that an edit makes anew plays on through the card that is open", "[live]") {
+TEST_CASE("an output that an edit makes anew plays on through the card that is open", "[kernel]") {
     if (!has_server()) return;
     const Folder folder;
     Server server(folder, 256);
@@ -157,7 +158,7 @@ TEST_CASE("an output that an edit makes anew plays on through the card that is o
     CHECK(summary["sound"][0]["frames_written"] > 90'000);
 }
 
-TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error that says so", "[live]") {
+TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error that says so") {
     const Folder folder;
     const std::string patch = folder.write("tone.toml", tone).string(), out = (folder.path / "live").string();
     const Outcome missing = folder.tactus("run " + patch + " --seconds 0.1 --audio nobody-has-this --out " + out);
@@ -168,7 +169,7 @@ TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error
     CHECK(slow.err.find("--dilate") != std::string::npos);
 }
 
-TEST_CASE("sound goes to a file or nowhere when asked to", "[live]") {
+TEST_CASE("sound goes to a file or nowhere when asked to") {
     const Folder folder;
     const std::string patch = folder.write("tone.toml", tone).string();
     for (const char* where : {"file", "none"}) {

@@ -117,7 +117,7 @@ kept = { type = "record", rate = "48 kHz" }
     CHECK(half.err.find("--sensor NAME") != std::string::npos);
 }
 
-TEST_CASE("a machine without a sound card that listens is told so", "[live]") {
+TEST_CASE("a machine without a sound card that listens is told so") {
     const Folder folder;
     const Outcome outcome = folder.tactus("measure --device no-such-card -o " + (folder.path / "r.csv").string());
     CHECK(outcome.code == 2);

@@ -232,7 +232,7 @@ TEST_CASE("runs that cannot be scored are refused with what to do", "[slow]") {
     CHECK(refusal(here + "/run").find("did not come to its end") != std::string::npos);
 }
 
-TEST_CASE("a worse hand scores worse in every measure, and a take scores as its run to the bit", "[slow]") {
+TEST_CASE("a worse hand scores worse in every measure, and a take scores as its run to the bit", "[long]") {
     const Folder folder;
     const std::string here = folder.path.string();
     const auto attempt = [&](const std::string& trainee, const std::string& settings) {

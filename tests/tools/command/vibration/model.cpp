@@ -21,7 +21,7 @@ std::string bundled_set() { return (tactus::test::library_folder() / "saw/recipr
 }  // namespace
 
 TEST_CASE("the model of the bundled saw, made without one of its recordings, is within 2 dB of it between the others",
-          "[slow]") {
+          "[long]") {
     const Folder folder;
     const Outcome made =
         folder.tactus("model " + bundled_set() + " -o " + (folder.path / "saw.toml").string() + " --json");

@@ -16,8 +16,8 @@ double length_in(const Eyes& eyes, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives it back", "[display][live]") {
-    for (const WalkWindow& window : walk_windows(small_window)) {
+TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives it back", "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "hand");
         if (!walk.is_possible()) return;
         walk.start("run touch-sphere --view --layout plan --audio none --out out", 150.0);
@@ -57,8 +57,8 @@ TEST_CASE("a person takes the hand of a patch with the mouse and feels and gives
     }
 }
 
-TEST_CASE("a person hears the force by a command and ends that by the same", "[display][live]") {
-    for (const WalkWindow& window : walk_windows(small_window)) {
+TEST_CASE("a person hears the force by a command and ends that by the same", "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "hear");
         if (!walk.is_possible()) return;
         walk.start("run touch-sphere --view --audio file --out out", 120.0);

@@ -52,6 +52,7 @@ void check_vessel(const json& plan, const std::string& name) {
 
 }  // namespace
 
+// Costly: the whole way from a scan to a report.
 TEST_CASE("commands lead from a DICOM folder to a plan of fragments and a vessel, and its report shows both",
           "[slow]") {
     const Folder folder;

@@ -31,8 +31,8 @@ reconstruct::Flap flap_of(const fs::path& folder, int run) {
 
 TEST_CASE(
     "a planner with a mouse lays a plate, puts an implant where it was measured, removes the plate and undoes that",
-    "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+    "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "flap");
         if (!walk.is_possible()) return;
         walk.start(
@@ -87,9 +87,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a planner with a mouse adds a vessel, a site and a margin, and a plate keeps how it was laid",
-          "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+TEST_CASE("a planner with a mouse adds a vessel, a site and a margin, and a plate keeps how it was laid", "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "forms");
         if (!walk.is_possible()) return;
         walk.start(

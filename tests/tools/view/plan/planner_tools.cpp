@@ -31,8 +31,8 @@ bool is_red(int r, int g, int b) { return r > 90 && r > 2 * g && r > 2 * b; }
 }  // namespace
 
 TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compares, cuts, measures and saves for Slicer",
-          "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+          "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "planner");
         if (!walk.is_possible()) return;
         walk.start(
@@ -55,7 +55,7 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
         REQUIRE(walk.waits_for("scene picture"));
         REQUIRE(comes([&] { return plan().alternatives.size() == 1; }));
         const Spot scene = walk.eyes.spot("scene picture");
-        Person::wait(3.0);
+        Person::wait(1.5);
         const int red = count(person, scene, is_red);
 
         // Maps: fragments that face nothing are grey, their painted fractures, too.
@@ -129,8 +129,8 @@ TEST_CASE("a planner with a mouse shows maps, goes between alternatives, compare
     }
 }
 
-TEST_CASE("a planner with a mouse gives an alternative another name, but not that of another one", "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+TEST_CASE("a planner with a mouse gives an alternative another name, but not that of another one", "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "name");
         if (!walk.is_possible()) return;
         walk.start(

@@ -34,8 +34,8 @@ int count(const Person& person, const Spot& part, const Vec3& colour, int within
 }  // namespace
 
 TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, and a click on bone that of the slices",
-          "[display][live]") {
-    for (const WalkWindow& window : walk_windows(usual_window)) {
+          "[display]") {
+    for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "slices");
         if (!walk.is_possible()) return;
         // A block of bright bone about the first fragment, in air.
@@ -54,7 +54,7 @@ TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, a
         REQUIRE(walk.waits_for("part fragment_01"));
         REQUIRE(walk.waits_for("cursor axial"));
         walk.person.tap("1");
-        Person::wait(3.0);
+        Person::wait(1.5);
         walk.keep("begin");
 
         // A place of the axial slice: the other slices and the scene go there.
@@ -101,9 +101,8 @@ TEST_CASE("a planner's click in a slice of a CT moves the cursor of the scene, a
     }
 }
 
-TEST_CASE("a scan that is given for one case is not shown beside another one, nor remembered for it",
-          "[display][live]") {
-    Walk walk(usual_window, "other-case");
+TEST_CASE("a scan that is given for one case is not shown beside another one, nor remembered for it", "[display]") {
+    Walk walk(small_window, "other-case");
     if (!walk.is_possible()) return;
     const volume::Grid ct{{20, 20, 20}, Vec3(-0.01), Vec3(0.001), std::vector<float>(8000, 500.0f)};
     volume::write_volume(ct, volume::WrittenType::int16, walk.folder.path / "ct.nrrd");
@@ -111,7 +110,7 @@ TEST_CASE("a scan that is given for one case is not shown beside another one, no
     walk.start_script(
         "run planning-trauma --view --layout plan --scan ct.nrrd --set hand.device=mouse --audio none "
         "--out out --seconds 60 --json",
-        "wait 6\nopen " + other.string() + "\nlayout plan\nrun\nwait 8\nclose\n", 60.0);
+        "until 0.2\nwait 1\nopen " + other.string() + "\nlayout plan\nrun\nwait 2\nuntil 0.2\nwait 1\nclose\n", 60.0);
     walk.end(60.0);
     const view::WindowMemory memory(walk.folder.path / "state/tactus/window.json");
     CHECK(memory.scan_of(mine).filename() == "ct.nrrd");
