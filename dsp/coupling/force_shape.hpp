@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::coupling {
@@ -13,7 +14,7 @@ namespace tactus::coupling {
 /// Magnitudes up to `straight` pass; larger ones approach `most` with a continuous slope. Hard limit if `most` ≤
 /// `straight`.
 inline double soft_limit(double size, double straight, double most) noexcept {
-    if (!(size > straight)) return size;
+    if (!(size > std::min(straight, most))) return size;
     if (!(most > straight)) return most;
     return most - (most - straight) * std::exp(-(size - straight) / (most - straight));
 }

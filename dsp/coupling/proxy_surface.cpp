@@ -75,7 +75,7 @@ ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape,
         reading = read(*map, local);
         steepness = map->steepness;
     } else return {false, {}, 1e3};
-    const double above = reading.value - shape.radius;
+    const double above = reading.value - shape.radius - (triangles ? shape.raised() : 0.0);
     Level level;
     level.room = (above - shape.texture_height) / steepness;
     const double steep = glm::length(reading.gradient);
@@ -111,15 +111,16 @@ void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes&
     }
 }
 
-double ProxySurface::free_distance(const Vec3& at, const Vec3& direction, double length,
-                                   const ProxyShape& shape, Budget& budget) const noexcept {
+double ProxySurface::free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape,
+                                   Budget& budget) const noexcept {
+    const double radius = shape.core();
     const Pose back = pose.inverse();
     const Vec3 from = back.apply(at), along = back.rotate(direction) * length;
-    const double share = triangles->sweep(from, along, shape.radius, budget);
+    const double share = triangles->sweep(from, along, radius, budget);
     if (!(share < 1.0)) return length;
     // Slightly shortened, so that the next move does not start in contact; never below half.
     const Vec3 there = from + share * along;
-    const geometry::TriangleTree::Near near = triangles->nearest(there, 1.01 * shape.radius + 2.0 * proxy_hover, budget);
+    const geometry::TriangleTree::Near near = triangles->nearest(there, 1.01 * radius + 2.0 * proxy_hover, budget);
     if (budget.is_spent()) return 0.0;
     const double approach = -glm::dot(along, there - near.point) / (length * std::max(near.distance, 1e-12));
     return share * length - std::min(0.5 * share * length, proxy_hover / std::max(approach, 1e-3));

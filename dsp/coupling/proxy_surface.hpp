@@ -11,13 +11,24 @@
 #include "dsp/coupling/proxy_planes.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
 
+#include <algorithm>
+
 namespace tactus::coupling {
+
+/// Maximum radius of a ball that stands for a point, m.
+inline constexpr double point_radius = 1e-6;
 
 struct ProxyShape {
     double radius = 0.0;  ///< m, of the ball
-    double texture_height = 0.0;  ///< m, amplitude of the wave texture, from its mean, which is the surface, to the crest
+    double texture_height =
+        0.0;  ///< m, amplitude of the wave texture, from its mean, which is the surface, to the crest
     double texture_length = 2e-3;  ///< m, wavelength along each axis of the body
     double step = 0.25e-3;  ///< m: maximum length of a step along a field; never more than half a voxel
+
+    /// Radius of the ball that keeps off triangles, m: small enough to reach the troughs of their texture.
+    double core() const noexcept { return std::max(radius - texture_height, std::min(radius, point_radius)); }
+    /// By how much the texture of triangles lies above them, m: a point cannot be in a trough below a triangle.
+    double raised() const noexcept { return texture_height - (radius - core()); }
 };
 
 /// One surface: its triangles if there are any, otherwise its distance field.
@@ -43,7 +54,7 @@ struct ProxySurface {
     double stride(const ProxyShape& shape) const noexcept;
     /// Planes of all triangles that a ball at `at` touches.
     void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into, Budget& budget) const noexcept;
-    /// Distance that a ball can move along the unit vector `direction` before it touches a triangle, m; at most
+    /// Distance that the core of a ball can move along the unit vector `direction` before it touches a triangle, m; at most
     /// `length`.
     double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape,
                          Budget& budget) const noexcept;

@@ -10,7 +10,6 @@ namespace tactus::coupling {
 
 namespace {
 
-constexpr double point_radius = 1e-6;  // m
 constexpr double settled = 1e-9;  // m: a shorter move counts as none
 constexpr int most_moves = 200;
 constexpr double regrip = 0.8;  // of the sliding cone: a proxy this far inside is at rest

@@ -55,12 +55,15 @@ struct GuideLaw {
         return distance > 0.0 ? offset * (pull(distance) / distance) : Vec3(0.0);
     }
     /// On a hand that is `depth` inside of a wall with this normal, which points to where the hand may be. A wall pushes
-    /// and never pulls.
+    /// and never pulls. The damper sets in over the first `onset`: a hand that reaches the wall meets no step of force
+    /// (K. H. Hunt, F. R. E. Crossley, J. Applied Mechanics 42, 1975).
     Vec3 repel(double depth, const Vec3& normal, const Vec3& velocity) const noexcept {
         if (!(depth > 0.0)) return Vec3(0.0);
         const double spring = std::min(stiffness * depth, max_force);
-        return normal * std::clamp(spring - damping * glm::dot(velocity, normal), 0.0, max_force);
+        const double damper = damping * std::min(depth / onset, 1.0);
+        return normal * std::clamp(spring - damper * glm::dot(velocity, normal), 0.0, max_force);
     }
+    static constexpr double onset = 0.2e-3;  ///< m
 };
 
 }  // namespace tactus::guide

@@ -23,6 +23,7 @@ class TurningPull {
 public:
     static constexpr double turn_s = 0.05;  ///< in which a pull goes over to another place
     static constexpr double damping_s = 0.01;  ///< time constant of the damped directions
+    static constexpr double hysteresis = 0.1e-3;  ///< m, by which another place must be nearer
 
     /// The next hand is another one: nothing turns to it.
     void reset() noexcept { *this = {}; }
@@ -35,9 +36,14 @@ public:
         if (!is_known_) damped_ = across;
         else damped_ += (across - damped_) * (1.0 - std::exp(-dt / damping_s));
         fade(dt);
-        if (is_known_ && glm::distance(nearest, nearest_) > 4.0 * glm::distance(p, p_) + 0.1e-3) leave(nearest_);
+        // Of two places that are as near the hand keeps its own: rounding does not send it to and fro.
+        Vec3 aim = nearest;
+        if (is_known_ && glm::distance(nearest, nearest_) > 4.0 * glm::distance(p, p_) + 0.1e-3) {
+            if (glm::distance(p, nearest_) - glm::distance(p, nearest) < hysteresis) aim = nearest_;
+            else leave(nearest_);
+        }
         is_known_ = true;
-        nearest_ = nearest;
+        nearest_ = aim;
         p_ = p;
 
         double share = 1.0;
@@ -46,8 +52,8 @@ public:
             spring += left_[i].share() * law.spring_to(left_[i].at - p);
             share -= left_[i].share();
         }
-        spring += std::max(share, 0.0) * law.spring_to(nearest - p);
-        const double grip = law.grip(glm::distance(nearest, p));
+        spring += std::max(share, 0.0) * law.spring_to(aim - p);
+        const double grip = law.grip(glm::distance(aim, p));
         return limited_sum(spring, damped_ * velocity * (-law.damping * grip), law.max_force);
     }
 
@@ -76,7 +82,7 @@ private:
         left_[count_++] = {at, share, turn_s};
     }
 
-    std::array<Left, 8> left_{};
+    std::array<Left, 64> left_{};  // a fast hand between two places turns so often in turn_s
     std::size_t count_ = 0;
     glm::dmat3 damped_{1.0};
     Vec3 nearest_{0.0}, p_{0.0};

@@ -92,6 +92,9 @@ TEST_CASE("a soft limit passes small forces, never exceeds its end and has no co
     CHECK(coupling::soft_limit(3.0, 6.0, 10.0) == 3.0);
     CHECK(coupling::soft_limit(1e6, 6.0, 10.0) <= 10.0);
     CHECK(coupling::soft_limit(12.0, 6.0, 6.0) == 6.0);
+    // A limit below the straight part counts.
+    CHECK(coupling::soft_limit(5.0, 10.0, 6.0) == 5.0);
+    CHECK(coupling::soft_limit(8.0, 10.0, 6.0) == 6.0);
     const double h = 1e-6;
     CHECK((coupling::soft_limit(6.0 + h, 6.0, 10.0) - 6.0) / h == Approx(1.0).epsilon(1e-3));
     const Vec3 v = coupling::soft_limit(Vec3(30.0, 40.0, 0.0), 6.0, 10.0);

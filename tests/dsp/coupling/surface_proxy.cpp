@@ -228,6 +228,27 @@ TEST_CASE("texture makes the force of an even slide wave by the length of its wa
     CHECK(greatest - least == Approx(0.1).epsilon(0.05));
 }
 
+TEST_CASE("a texture on triangles holds back neither a ball nor a point that has no friction") {
+    for (const double radius : {0.0, 1.0 * mm})
+        for (const double height : {4e-3 * mm, 0.1 * mm}) {
+            const coupling::ProxySurface surface{nullptr, &plate_triangles(), {}};
+            coupling::SurfaceProxy proxy;
+            proxy.settings.shape = {radius, height, 2.0 * mm, 0.25 * mm};
+            proxy.reset({-4.0 * mm, 0.3 * mm, 4.0 * mm});
+            double most = 0.0;
+            for (int n = 0; n < 800; ++n) {
+                const double x = -4.0 * mm + 0.02 * mm * std::max(0, n - 400);
+                // 0.3 mm deep in the plate.
+                const double z = std::max(1.7 * mm + radius, 4.0 * mm - 0.02 * mm * n);
+                const coupling::ProxyState& now = proxy.update({x, 0.3 * mm, z}, {&surface, 1});
+                most = std::max(most, std::abs(now.proxy.x - x));
+            }
+            CAPTURE(radius, height, most / mm);
+            // The slope of the waves is at most 0.32, of a spring that is 0.5 mm long.
+            CHECK(most < 0.2 * mm);
+        }
+}
+
 TEST_CASE("texture reaches its height on flat and curved faces and does not lift the proxy") {
     const contact::Voxmap& ball = proxy_ball();
     for (const double height : {0.1 * mm, 0.3 * mm}) {
@@ -241,7 +262,8 @@ TEST_CASE("texture reaches its height on flat and curved faces and does not lift
             constexpr int count = 3000;
             for (int n = -200; n < count; ++n) {
                 const Vec3 hand = hand_at(std::max(n, 0) / double{count});
-                const double lift = lift_of(proxy.update(n < -100 ? hand + 0.5 * (start - hand) : hand, {&surface, 1}).proxy);
+                const double lift =
+                    lift_of(proxy.update(n < -100 ? hand + 0.5 * (start - hand) : hand, {&surface, 1}).proxy);
                 if (n < 0) continue;
                 low = std::min(low, lift);
                 high = std::max(high, lift);
@@ -252,16 +274,18 @@ TEST_CASE("texture reaches its height on flat and curved faces and does not lift
             CHECK(std::abs(low + high) < 0.05 * height);
         };
         // The upper face of the plate, 10 mm long and 9 mm wide. Deep below a steep wave a proxy would stay in the troughs.
-        lifts(plate_map(), {-5.0 * mm, 0.0, 3.0 * mm},
-              [](double u) { return Vec3(-5.0 * mm + 10.0 * mm * u, 4.5 * mm * std::sin(200.0 * u), 1.5 * mm); },
-              [](const Vec3& at) { return at.z - 2.0 * mm; });
+        lifts(
+            plate_map(), {-5.0 * mm, 0.0, 3.0 * mm},
+            [](double u) { return Vec3(-5.0 * mm + 10.0 * mm * u, 4.5 * mm * std::sin(200.0 * u), 1.5 * mm); },
+            [](const Vec3& at) { return at.z - 2.0 * mm; });
         // A zone about the pole of the ball.
-        lifts(ball, {0.0, 0.0, 28.0 * mm},
-              [](double u) {
-                  const double a = 0.35 * std::sqrt(u), b = 200.0 * std::sqrt(u);
-                  return 25.5 * mm * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
-              },
-              [](const Vec3& at) { return glm::length(at) - 26.0 * mm; });
+        lifts(
+            ball, {0.0, 0.0, 28.0 * mm},
+            [](double u) {
+                const double a = 0.35 * std::sqrt(u), b = 200.0 * std::sqrt(u);
+                return 25.5 * mm * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+            },
+            [](const Vec3& at) { return glm::length(at) - 26.0 * mm; });
     }
 }
 

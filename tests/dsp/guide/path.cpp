@@ -108,6 +108,9 @@ TEST_CASE("a wall pushes, never pulls, and never beyond its largest force") {
     CHECK(law.repel(1e-3, up, {0.0, 0.0, 1.0}).z == 0.0);
     CHECK(law.repel(-1e-3, up, {0.0, 0.0, -1.0}).z == 0.0);
     CHECK(law.repel(1.0, up, {}).z == 1.0);
+    // The damper sets in with the depth.
+    CHECK(law.repel(1e-8, up, {0.0, 0.0, -1.0}).z < 2e-3);
+    CHECK(law.repel(0.1e-3, up, {0.0, 0.0, -0.01}).z == Approx(0.05 + 0.1));
 }
 
 TEST_CASE("the walls of a box are its nearest faces") {
@@ -210,6 +213,24 @@ TEST_CASE("a pull goes over to another place in 50 ms, and takes energy from the
         if (n % 1000 == 0) CHECK(work <= explained - potential(p) + 1e-3);
     }
     CHECK(work < 0.0);
+}
+
+TEST_CASE("rounding does not send a hand to and fro between two places that are as near") {
+    constexpr double dt = 1e-4;
+    const guide::GuideLaw law{.stiffness = 20e3, .damping = 0.0, .max_force = 50.0, .reach = 0.0};
+    const guide::Path path(std::vector<Vec3>{{-0.1, 2e-3, 0}, {0.1, 2e-3, 0}, {0.1, -2e-3, 0}, {-0.1, -2e-3, 0}}, false,
+                           false);
+    guide::TurningPull pull;
+    double most = 0.0;
+    Vec3 before(0.0);
+    for (int k = 0; k < 2000; ++k) {
+        const Vec3 p(2e-6 * k, k % 2 == 0 ? 1e-12 : -1e-12, 0.0);
+        const guide::Path::Place place = path.nearest(p);
+        const Vec3 now = pull.on(law, p, {}, place.point, place.tangent, dt);
+        if (k > 0) most = std::max(most, glm::distance(now, before));
+        before = now;
+    }
+    CHECK(most < 80.0 * dt / guide::TurningPull::turn_s + 0.1);
 }
 
 TEST_CASE("damping turns with a path, and only takes") {
