@@ -22,11 +22,10 @@ struct Outline {
 
 /// A device that is open.
 struct Opened {
-    DeviceInfo info;
+    DeviceInfo info;  ///< one without motors cannot push anybody, and needs no confirmation
     std::string serial;    ///< for people, and for what was confirmed of this device; empty: it states none
     std::string setup;     ///< settings on which the direction of a push depends; part of what is confirmed
     std::vector<std::string> versions;  ///< "SDK 3.17.5", for reports
-    bool has_motors = true;  ///< false: it cannot push anybody, and needs no confirmation
     int axes = 3;            ///< along which it pushes: 1: to the right; 2: and away; 3: and up
 };
 

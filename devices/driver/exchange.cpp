@@ -30,6 +30,7 @@ Vec3 shorten(const Vec3& v, double most) noexcept {
 void Exchange::begin(const ForceLimits& limits, double noise, double angular_noise) noexcept {
     gate_ = {};
     gate_.fade_ns = force_fade_ns;
+    gate_.is_felt = limits.is_felt;
     limits_ = limits;
     noise_ = noise;
     angular_noise_ = angular_noise;

@@ -28,6 +28,7 @@ struct Reading {
 /// What a device may be given.
 struct ForceLimits {
     double force = 0.0, torque = 0.0;  ///< N, N·m; 0: none at all
+    bool is_felt = true;  ///< false: without motors, an old force does not fade
 };
 
 class Exchange {

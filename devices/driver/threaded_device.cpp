@@ -89,7 +89,8 @@ Opened ThreadedDevice::Shared::open() {
 }
 
 void ThreadedDevice::Shared::begin(const Opened& now, bool capped) {
-    ForceLimits limits{now.info.max_force, now.info.actuates_torque ? now.info.max_torque : 0.0};
+    ForceLimits limits{now.info.max_force, now.info.actuates_torque ? now.info.max_torque : 0.0,
+                       !now.info.without_motors};
     if (capped) limits = {std::min(limits.force, unconfirmed_force), 0.0};
     if (options.mode == OpenMode::reading) limits = {};
     exchange->begin(limits, std::max(now.info.resolution, 1e-9), std::max(now.info.angular_resolution, 1e-9));
@@ -124,7 +125,7 @@ void ThreadedDevice::Shared::run() noexcept {
     const CLocale c_locale;
     try {
         const Opened now = open();
-        const bool needs = now.has_motors && options.is_untested;
+        const bool needs = !now.info.without_motors && options.is_untested;
         const bool capped = needs && (options.ignores_confirmation || !is_confirmed(options.driver, now));
         begin(now, capped);
         const std::lock_guard lock(mutex);

@@ -218,7 +218,8 @@ public:
 
     const DeviceInfo& info() const override { return info_; }
 
-    void prepare(double) override {
+    void prepare(double period_s) override {
+        longest_tick_ = longest_tick_of_hand(period_s);
         hand_.pose = {};
         hand_.twist = {};
         steered_.wanted = {};
@@ -227,7 +228,7 @@ public:
     }
 
     DeviceSample acquire(double elapsed_s) noexcept override {
-        simulate::advance(hand_, steered_, force_.get(), elapsed_s);
+        simulate::advance(hand_, steered_, force_.get(), std::min(elapsed_s, longest_tick_));
         // A lost gamepad is a fault of the device: no sample is valid any more, which fades the force.
         const bool is_here = steered_.state.is_lost == 0;
         if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), steady_ns()});
@@ -246,6 +247,7 @@ private:
     PadReader reader_;
     simulate::Hand hand_;
     Steered steered_;
+    double longest_tick_ = 0.0;  // s
     std::int64_t counter_ = 0;
 };
 
@@ -266,9 +268,9 @@ Settings read_settings(Options& options) {
     simulate::HandDynamics hand = read_hand(options);
     if (!is_given) hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) hand.damping = 30.0;
-    refuse_model(options);
+    DeviceInfo info = read_info_without_motors(options, hand, "gamepad");
     Settings settings{hand,
-                      read_device_info(options, hand, "gamepad"),
+                      std::move(info),
                       options.quantity("speed", "100 mm/s", "1 mm/s", "500 mm/s"),
                       options.quantity("turn", "1.5 rad/s", "0.01 rad/s", "10 rad/s"),
                       options.quantity("rumble", "10 N", "0 N", "200 N"),

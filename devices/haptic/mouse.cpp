@@ -68,7 +68,8 @@ public:
 
     const DeviceInfo& info() const override { return info_; }
 
-    void prepare(double) override {
+    void prepare(double period_s) override {
+        longest_tick_ = longest_tick_of_hand(period_s);
         hand_.pose = {};
         hand_.twist = {};
         intended_ = {};
@@ -87,7 +88,7 @@ public:
 
     DeviceSample acquire(double elapsed_s) noexcept override {
         listen();
-        simulate::advance(hand_, intended_, force_.get(), elapsed_s);
+        simulate::advance(hand_, intended_, force_.get(), std::min(elapsed_s, longest_tick_));
         const std::int64_t silence = now_ns_() - heard_ns_;
         const bool is_silent = silence > (has_heard_ ? longest_silence_of_window_ns : longest_start_ns);
         tell(is_silent);
@@ -130,6 +131,7 @@ private:
     std::uint32_t buttons_ = 0;
     std::uint64_t heard_ = 0;
     std::int64_t counter_ = 0, run_ = 0, heard_ns_ = 0;
+    double longest_tick_ = 0.0;  // s
     bool has_heard_ = false;
 };
 
@@ -140,8 +142,7 @@ std::unique_ptr<HapticDevice> open_mouse(Options& options, WindowHand& link, std
     simulate::HandDynamics hand = read_hand(options);
     if (!is_given) hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) hand.damping = 30.0;
-    refuse_model(options);
-    DeviceInfo info = read_device_info(options, hand, "hand at the window");
+    DeviceInfo info = read_info_without_motors(options, hand, "hand at the window");
     options.finish();
     if (link.devices.fetch_add(1) > 0) {
         --link.devices;

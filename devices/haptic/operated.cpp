@@ -37,14 +37,6 @@ const simulate::DeviceModel* read_model(Options& options) {
     return chosen == 0 ? nullptr : &simulate::device_models()[chosen - 1];
 }
 
-void refuse_model(Options& options) {
-    if (read_model(options))
-        throw Error(options.where("model"),
-                    fmt::format("{}: a hand that a person moves has no 'model'; only 'simulated', 'scripted' and "
-                                "'replay' simulate a device as it is",
-                                options.owner()));
-}
-
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name) {
     const simulate::DeviceModel* const model = read_model(options);
     const bool gives_torque = !model || model->max_torque > 0.0;
@@ -68,5 +60,19 @@ DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand
     info.actuates_torque = info.actuates_torque && gives_torque;
     return info;
 }
+
+DeviceInfo read_info_without_motors(Options& options, simulate::HandDynamics& hand, std::string name) {
+    if (read_model(options))
+        throw Error(options.where("model"),
+                    fmt::format("{}: a hand that a person moves has no 'model'; only 'simulated', 'scripted' and "
+                                "'replay' simulate a device as it is",
+                                options.owner()));
+    DeviceInfo info = read_device_info(options, hand, std::move(name));
+    info.without_motors = true;
+    hand.strength = info.max_force;
+    return info;
+}
+
+double longest_tick_of_hand(double period) noexcept { return std::max(5e-3, 2.0 * period); }
 
 }  // namespace tactus::haptic

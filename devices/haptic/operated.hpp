@@ -21,8 +21,13 @@ DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand
 /// None: an ideal device.
 const simulate::DeviceModel* read_model(Options& options);
 
-/// For devices whose friction, steps and delay are not simulated. Throws Error when a model is given.
-void refuse_model(Options& options);
+/// Of a hand that a person moves by something without motors, whose friction, steps and delay are not simulated; its grip
+/// gets the strength `max_force`. Throws Error when a model is given.
+DeviceInfo read_info_without_motors(Options& options, simulate::HandDynamics& hand, std::string name);
+
+/// Longest time, s, that such a hand moves in one tick of `period` s. Nothing holds it while ticks are late: it would sink
+/// into what it presses on.
+double longest_tick_of_hand(double period) noexcept;
 
 /// The last commanded force. A watchdog may set it while the device is read.
 class SharedWrench {

@@ -142,6 +142,7 @@ InfoRecord pack(const DeviceInfo& info) noexcept {
     for (const Number& number : numbers) record.*number.shared = info.*number.stated;
     record.actuates_torque = info.actuates_torque ? 1 : 0;
     record.senses_rotation = info.senses_rotation ? 1 : 0;
+    record.without_motors = info.without_motors ? 1 : 0;
     record.fingers = info.fingers;
     return record;
 }
@@ -157,6 +158,7 @@ DeviceInfo unpack(const InfoRecord& record) {
     for (const Number& number : numbers) info.*number.stated = record.*number.shared;
     info.actuates_torque = record.actuates_torque == 1;
     info.senses_rotation = record.senses_rotation == 1;
+    info.without_motors = record.without_motors == 1;
     info.fingers = static_cast<int>(record.fingers);
     return info;
 }

@@ -54,7 +54,7 @@ struct InfoRecord {
     char name[128] = {};
     double max_force = 0.0, max_torque = 0.0, damping = 0.0, max_stiffness = 0.0, max_speed = 0.0, least_speed = 0.0;
     double resolution = 0.0, angular_resolution = 0.0, delay = 0.0;
-    std::uint64_t actuates_torque = 0, senses_rotation = 0;
+    std::uint64_t actuates_torque = 0, senses_rotation = 0, without_motors = 0;
     std::int64_t fingers = 0;
 };
 
@@ -76,7 +76,7 @@ enum class HostState : std::uint32_t { opens, runs, ended };
 
 struct Block {
     static constexpr std::uint64_t right_magic = 0x3153554843544154;  // "TATCHUS1"
-    static constexpr std::uint32_t right_version = 4;
+    static constexpr std::uint32_t right_version = 5;
 
     std::uint64_t magic = right_magic;
     std::uint32_t version = right_version, size = sizeof(Block);

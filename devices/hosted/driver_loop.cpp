@@ -93,6 +93,7 @@ void DriverLoop::open() {
     const DeviceInfo& info = device_->info();
     gate_.max_force = info.max_force;
     gate_.max_torque = info.max_torque;
+    gate_.is_felt = !info.without_motors;
     fingers_ = info.fingers;
     block_.info = pack(info);
     send(socket_, {say_ready});

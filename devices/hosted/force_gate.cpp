@@ -30,6 +30,10 @@ Wrench ForceGate::give(const ForceRecord& newest, std::uint64_t number, std::int
     const bool is_new = number != number_;
     number_ = number;
     const bool is_whole = is_finite(wanted);
+    if (!is_felt) {
+        passes_ = true;
+        return is_whole ? Wrench{shorten(wanted.force, max_force), shorten(wanted.torque, max_torque)} : Wrench{};
+    }
     if (!is_young(newest.committed_ns, now_ns, limit_ns)) {
         // The age counts, not when it was noticed: after a suspend nothing is left to fade.
         const bool is_past = newest.committed_ns > 0 && newest.committed_ns <= now_ns;

@@ -18,6 +18,7 @@ public:
     double small_force = 0.5, small_torque = 0.05;  ///< N, N·m
     int small_commits = 3;
     double max_force = 0.0, max_torque = 0.0;  ///< of the device, N, N·m; 0: it states none
+    bool is_felt = true;  ///< false: the device has no motors, and every force passes
 
     /// The force for the device now. `number` is that of Seqlock::read. Real-time; allocates nothing.
     Wrench give(const ForceRecord& newest, std::uint64_t number, std::int64_t now_ns) noexcept;

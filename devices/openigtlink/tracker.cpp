@@ -83,7 +83,6 @@ public:
         opened.info = settings_.info;
         opened.serial = where;
         opened.versions = {"OpenIGTLink at " + where};
-        opened.has_motors = false;
         return opened;
     }
 
@@ -169,6 +168,7 @@ std::unique_ptr<driver::Backend> make_tracker(Options& options) {
     settings.transform = options.text("transform", "");
     settings.oldest_ns = static_cast<std::int64_t>(1e9 * options.quantity("timeout", "100 ms", "5 ms", "2 s"));
     settings.info.name = fmt::format("tracker at {}:{}", settings.host, settings.port);
+    settings.info.without_motors = true;
     return std::make_unique<Tracker>(std::move(settings));
 }
 

@@ -96,7 +96,6 @@ public:
         opened.info = settings_.info;
         opened.serial = "spacenavd";
         opened.versions = {"socket " + settings_.socket};
-        opened.has_motors = false;
         return opened;
     }
 
@@ -152,8 +151,7 @@ std::unique_ptr<driver::Backend> make_space_mouse(Options& options) {
     settings.hand = haptic::read_hand(options);
     if (!is_given) settings.hand.stiffness = 2000.0;
     if (!is_given && !options.has("damping")) settings.hand.damping = 30.0;
-    haptic::refuse_model(options);
-    settings.info = haptic::read_device_info(options, settings.hand, "hand at a 3D mouse");
+    settings.info = haptic::read_info_without_motors(options, settings.hand, "hand at a 3D mouse");
     return std::make_unique<SpaceMouse>(std::move(settings));
 }
 

@@ -17,7 +17,8 @@ namespace tactus::saw {
 namespace {
 
 constexpr int most_moves = 12;
-constexpr std::size_t probes = 28;
+constexpr std::size_t probes = 29;
+constexpr double edge = 0.4e-3;  // m
 
 /// The 26 directions of a cube's faces, edges and corners.
 const std::array<Vec3, 26>& cube_directions() {
@@ -36,7 +37,8 @@ const std::array<Vec3, 26>& cube_directions() {
 }  // namespace
 
 Burr::Burr(const BurrShape& shape, double stiffness)
-    : shape_(shape), stiffness_(stiffness),
+    : shape_(shape),
+      stiffness_(stiffness),
       shaft_(shape.shaft_radius > 0.0 ? shaft_body(shape.radius, shape.shaft_radius, shape.shaft_length)
                                       : std::vector<BodyPoint>{},
              stiffness) {}
@@ -54,9 +56,16 @@ Burr::Touch Burr::touch(const volume::BoneSnapshot& bone, const Vec3& lag, doubl
     std::size_t count = 0;
     for (const Vec3& direction : cube_directions()) looks[count++] = direction;
     looks[count++] = glm::normalize(lag);
-    const Vec3 slope = bone.sample(at_).gradient;
-    if (const double length = glm::length(slope); length > 0.1) looks[count++] = -slope / length;
+    const volume::Sample here = bone.sample(at_);
+    const double slope = glm::length(here.gradient);
+    if (slope > 0.1) looks[count++] = -here.gradient / slope;
     double sum = 0.0;
+    const auto add = [&](const Vec3& direction, double density) {
+        touch.towards[touch.count++] = direction;
+        const double weight = std::max(glm::dot(direction, lag), 0.0);
+        touch.density += weight * density;
+        sum += weight;
+    };
     for (std::size_t n = 0; n < count; ++n) {
         const Vec3 there = at_ + looks[n] * (shape_.radius + ahead);
         const double d = bone.value(there);
@@ -64,10 +73,13 @@ Burr::Touch Burr::touch(const volume::BoneSnapshot& bone, const Vec3& lag, doubl
         if (d > -0.5 * ahead) continue;
         const double density = bone.density(there);
         if (!(density >= 1.0)) continue;  // bone without density does not resist, as for the teeth of a saw
-        touch.towards[touch.count++] = looks[n];
-        const double weight = std::max(glm::dot(looks[n], lag), 0.0);
-        touch.density += weight * density;
-        sum += weight;
+        add(looks[n], density);
+    }
+    // An edge of bone between the places that were sampled, before it is deeper than a part of the tool may be.
+    if (touch.count == 0 && slope > 0.1 && here.value < shape_.radius - std::max(edge, 2.0 * ahead)) {
+        const Vec3 inwards = -here.gradient / slope;
+        const double density = bone.density(at_ + inwards * (std::max(here.value, 0.0) + ahead));
+        if (density >= 1.0) add(inwards, density);
     }
     touch.density = sum > 0.0 ? touch.density / sum : 0.0;
     return touch;

@@ -26,6 +26,7 @@ struct HandDynamics {
     double inertia = 4e-4;           ///< kg·m², the same about every axis
     double stiffness = 800.0;        ///< N/m
     double damping = 15.0;           ///< N·s/m, against the intended velocity
+    double strength = HUGE_VAL;      ///< N: the hand pulls towards what it intends with no more
     double angular_stiffness = 2.0;  ///< N·m/rad
     double angular_damping = 0.04;   ///< N·m·s/rad
     double friction = 0.0;           ///< N, Coulomb, of the device
@@ -60,9 +61,11 @@ struct Hand {
         const HandDynamics& d = dynamics;
         if (d.friction > 0.0 || d.drag > 0.0 || d.angular_friction > 0.0 || d.angular_drag > 0.0)
             return step_on_device(h, intended, force);
-        const Vec3 v = (twist.linear * (2.0 * d.mass / h) + force.force +
-                        (intended.pose.position - pose.position) * d.stiffness + intended.twist.linear * d.damping) /
-                       (2.0 * d.mass / h + d.damping + 0.5 * d.stiffness * h);
+        const Vec3 away = intended.pose.position - pose.position;
+        const double share = share_of_pull(away);
+        const Vec3 v = (twist.linear * (2.0 * d.mass / h) + force.force + away * (share * d.stiffness) +
+                        intended.twist.linear * (share * d.damping)) /
+                       (2.0 * d.mass / h + d.damping + 0.5 * share * d.stiffness * h);
         pose.position += v * h;
         twist.linear = 2.0 * v - twist.linear;
 
@@ -75,6 +78,12 @@ struct Hand {
     }
 
 private:
+    /// Of the pull of the grip's spring, what the hand's strength leaves of it.
+    double share_of_pull(const Vec3& away) const noexcept {
+        const double pull = dynamics.stiffness * glm::length(away);
+        return pull > dynamics.strength ? dynamics.strength / pull : 1.0;
+    }
+
     /// The same with the friction of a device. Coulomb friction is implicit: it stops the motion within the step or
     /// takes its whole impulse, so that a hand at rest stays where it is.
     void step_on_device(double h, const Intention& intended, const Wrench& force) noexcept {
@@ -83,9 +92,11 @@ private:
             const double speed = glm::length(v);
             return speed > most ? v * (1.0 - most / speed) : Vec3(0.0);
         };
-        const double linear = 2.0 * d.mass / h + d.damping + d.drag + 0.5 * d.stiffness * h;
-        const Vec3 free = (twist.linear * (2.0 * d.mass / h) + force.force +
-                           (intended.pose.position - pose.position) * d.stiffness + intended.twist.linear * d.damping) /
+        const Vec3 away = intended.pose.position - pose.position;
+        const double share = share_of_pull(away);
+        const double linear = 2.0 * d.mass / h + d.damping + d.drag + 0.5 * share * d.stiffness * h;
+        const Vec3 free = (twist.linear * (2.0 * d.mass / h) + force.force + away * (share * d.stiffness) +
+                           intended.twist.linear * (share * d.damping)) /
                           linear;
         const Vec3 velocity = slowed(2.0 * free - twist.linear, 2.0 * d.friction / linear);
         pose.position += 0.5 * (twist.linear + velocity) * h;

@@ -6,6 +6,9 @@
 #include "dsp/core/stop.hpp"
 #include "dsp/volume/interpolation.hpp"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -29,6 +32,26 @@ BrickCell find_cell(const BrickLayout& layout, const std::vector<const float*>& 
     return {cell, brick ? brick + BrickLayout::sample_index(i & 7, j & 7, k & 7) : nullptr};
 }
 
+/// Beyond the border of the grid: the distance there and the way to it, as if the nearest surface lay straight inwards. Bone
+/// that the border cuts ends there.
+Sample beyond(const BoneSnapshot& bone, const Vec3& position) noexcept {
+    const BrickLayout& grid = *bone.root->layout;
+    const Vec3 last = Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1) * (1.0 - 1e-9) * grid.spacing;
+    const Vec3 border = grid.origin + glm::clamp(position - grid.origin, Vec3(0.0), last);
+    const Vec3 way = position - border;
+    const double length = glm::length(way);
+    const Sample none{grid.far, Vec3(0.0), false};
+    if (!(length > 0.0 && length < grid.far)) return none;
+    const BrickCell cell = find_cell(grid, bone.root->distance, border);
+    if (!cell.corner) return none;
+    const Interpolated at = cell.trilinear()(cell);
+    Sample found{std::max(at.value, 0.0) + length, at.slope / grid.spacing, true};
+    if (!(found.value < grid.far)) return none;
+    for (int axis = 0; axis < 3; ++axis)
+        if (way[axis] != 0.0) found.gradient[axis] = way[axis] / length;
+    return found;
+}
+
 }  // namespace
 
 // Without samples every position is outside.
@@ -38,7 +61,7 @@ const BoneRoot empty_bone{&empty_layout, {}, {}};
 Sample BoneSnapshot::sample(const Vec3& position) const noexcept {
     const BrickLayout& grid = *root->layout;
     const BrickCell cell = find_cell(grid, root->distance, position);
-    if (!cell.corner) return {grid.far, Vec3(0.0), false};
+    if (!cell.corner) return cell.inside ? Sample{grid.far, Vec3(0.0), false} : beyond(*this, position);
     const Interpolated at = cell.trilinear()(cell);
     return {at.value, at.slope / grid.spacing, true};
 }
@@ -66,7 +89,8 @@ Sample BoneSnapshot::smooth_sample(const Vec3& position) const noexcept {
 
 double BoneSnapshot::value(const Vec3& position) const noexcept {
     const BrickCell cell = find_cell(*root->layout, root->distance, position);
-    return cell.corner ? cell.trilinear().value(cell) : root->layout->far;
+    if (cell.corner) return cell.trilinear().value(cell);
+    return cell.inside ? root->layout->far : beyond(*this, position).value;
 }
 
 double BoneSnapshot::density(const Vec3& position) const noexcept {

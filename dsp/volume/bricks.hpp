@@ -49,7 +49,7 @@ extern const BoneRoot empty_bone;
 struct Sample {
     double value = 0.0;  ///< m, negative inside the bone
     Vec3 gradient{0.0, 0.0, 0.0};  ///< m/m; points out of the bone
-    bool inside = false;  ///< false: outside of the stored bricks, value = far, gradient 0
+    bool inside = false;  ///< false: nothing is stored near, value = far, gradient 0
 };
 
 /// Handle of one version, the value on wires. Reading is wait-free.
@@ -60,6 +60,8 @@ struct BoneSnapshot {
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;  ///< over all changes up to this version
 
+    /// Outside of the grid the distance goes on from its border, up to `far`, as if the surface lay straight inwards: a tool
+    /// may be thicker than the air around the bone.
     Sample sample(const Vec3& position) const noexcept;
     double value(const Vec3& position) const noexcept;
     /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so forces made of it do not jump

@@ -44,8 +44,8 @@ std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, 
 std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
                                    const SiteRequest& request = {});
 
-/// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there. Throws Error when that is
-/// more than 40 million samples.
+/// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there; the density up to the surface
+/// is that of the bone (extend_density). Throws Error when that is more than 40 million samples.
 struct SiteVolume {
     Grid distance, density;
 };

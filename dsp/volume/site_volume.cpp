@@ -3,12 +3,14 @@
 #include "dsp/volume/resample.hpp"
 #include "dsp/volume/site.hpp"
 #include "dsp/volume/site_geometry.hpp"
+#include "dsp/volume/surface_density.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::volume {
 
@@ -44,7 +46,9 @@ SiteVolume refine_at(const SawSite& site, const Grid& distance, const Grid& dens
                         samples * 1e-6, spacing * 1e3));
     const Grid layout = grid;
     made.distance = resampled(distance, layout);
-    made.density = resampled(density, layout);
+    Grid to_surface = density;
+    extend_density(distance, to_surface);
+    made.density = resampled(std::move(to_surface), layout);
     for (float& value : made.density.values) value = std::max(value, 0.0f);
     return made;
 }

@@ -46,7 +46,6 @@ std::unique_ptr<Generation> GenerationBuilder::build() {
     find_survivors();
     allocate();
     prepare();
-    if (context_.limits_stiffness) limit_stiffness();
     drives_.resize(plan().nodes.size());
     for (const compile::PlanWire& wire : plan().wires) connect(wire);
     finish_links();
@@ -131,17 +130,27 @@ void GenerationBuilder::prepare() {
             playing.insert(playing.end(), sounds.begin(), sounds.end());
     context_.host.expect_sounds(plan());
     context_.host.keep_sounds(std::move(playing));
-    for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
-        if (made_->survived[i]) continue;
-        const compile::PlanNode& node = plan().nodes[i];
-        const run::GroupRuntime& group = group_of(node);
-        context_.host.prepare_for(group.index, group.plan->period, node.where, made_->nodes[i]->uses);
-        Hash seed;
-        seed.add_word(plan().patch.seed);
-        seed.add_text(node.name);
-        const Setup setup{node.name, node.where, group.plan->period, group.max_frames, seed.value(), &context_.host};
-        node.type->prepare(made_->nodes[i]->instance.get(), setup);
-    }
+    const auto is_hand = [](const compile::PlanNode& node) {
+        return node.type->role == NodeRole::hand_source || node.type->role == NodeRole::hand_sink;
+    };
+    // Devices are opened first: other nodes are prepared with parameters that fit them.
+    for (std::size_t i = 0; i < plan().nodes.size(); ++i)
+        if (is_hand(plan().nodes[i])) prepare_node(i);
+    fit_to_devices();
+    for (std::size_t i = 0; i < plan().nodes.size(); ++i)
+        if (!is_hand(plan().nodes[i])) prepare_node(i);
+}
+
+void GenerationBuilder::prepare_node(std::size_t i) {
+    if (made_->survived[i]) return;
+    const compile::PlanNode& node = plan().nodes[i];
+    const run::GroupRuntime& group = group_of(node);
+    context_.host.prepare_for(group.index, group.plan->period, node.where, made_->nodes[i]->uses);
+    Hash seed;
+    seed.add_word(plan().patch.seed);
+    seed.add_text(node.name);
+    const Setup setup{node.name, node.where, group.plan->period, group.max_frames, seed.value(), &context_.host};
+    node.type->prepare(made_->nodes[i]->instance.get(), setup);
 }
 
 int Generation::find(std::string_view node) const {

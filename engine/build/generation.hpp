@@ -54,7 +54,7 @@ struct BuildContext {
     int next_group = 0, next_link = 0;
     int group_before = 0, link_before = 0;  ///< the same before the plan that is being built
     observe::Observer* observer = nullptr;  ///< who looks on, or null
-    bool limits_stiffness = true;  ///< a plan feels no stiffer than its devices state; false: it is built as it is
+    bool only_checked = false;  ///< a plan that is too stiff for the devices that it declares is built as it is
 };
 
 struct Generation {

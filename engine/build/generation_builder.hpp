@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan is made runnable, step by step. Only generation*.cpp and stiffness_limits.cpp include it.
+// How a plan is made runnable, step by step. Only generation*.cpp and fit_to_devices.cpp include it.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -43,8 +43,14 @@ private:
     void form_groups();
     void find_survivors();
     void prepare();
+    void prepare_node(std::size_t node);
 
-    // stiffness_limits.cpp
+    // fit_to_devices.cpp
+    bool is_declared(const DeviceSlot& slot);
+    bool is_unknown(const DeviceSlot& slot);
+    void notify(const std::string& notice);
+    void fit_to_devices();
+    void scale_forces();
     void limit_stiffness();
 
     // generation_wires.cpp

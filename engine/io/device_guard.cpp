@@ -41,7 +41,8 @@ void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_
     }
     const Wrench given = clamp_to_device(wanted, device.info());
     device.commit(given);
-    if (steady_ns() - now_ns > guard_.limit_ns) is_overdue_.store(true, std::memory_order_release);
+    if (!device.info().without_motors && steady_ns() - now_ns > guard_.limit_ns)
+        is_overdue_.store(true, std::memory_order_release);
     guard_.end(given, now_ns);
 }
 
@@ -94,6 +95,8 @@ void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {
     const bool retired = retired_.load(std::memory_order_acquire),
                lets_go = lets_go_.load(std::memory_order_acquire) || is_left_.load(std::memory_order_acquire);
     const bool was_taken = guard_.is_taken();
+    // Nobody feels the force of a device without motors: a late tick leaves it as it is.
+    if (device.info().without_motors && !was_taken && !retired && !lets_go) return;
     Wrench out;
     if (lets_go && !was_taken) is_let_go_.store(true, std::memory_order_release);
     const bool at_once = retired || lets_go || is_overdue_.load(std::memory_order_acquire);

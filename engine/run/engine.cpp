@@ -57,7 +57,7 @@ Engine::Parts::Parts(const EngineOptions& options_)
               .constants = {},
               .take = {},
               .observer = options.observer,
-              .limits_stiffness = !options.only_checked},
+              .only_checked = options.only_checked},
       timeline(options, context, recorder),
       edits(options, context, timeline, recorder, time),
       pause(timeline, time),

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <set>
 #include <fstream>
+#include <set>
 
 namespace tactus::take {
 
@@ -48,12 +48,13 @@ io::RecordedDevice read_device(const ParsedJson& json) {
                    .max_torque = info.at("max_torque"),
                    .damping = info.at("damping"),
                    .max_stiffness = info.at("max_stiffness"),
-                   // Takes of earlier versions do not hold these three.
+                   // Takes of earlier versions do not hold these three, nor whether a device has motors.
                    .resolution = info.value("resolution", 0.0),
                    .angular_resolution = info.value("angular_resolution", 0.0),
                    .delay = info.value("delay", 0.0),
                    .actuates_torque = info.at("actuates_torque"),
                    .senses_rotation = info.at("senses_rotation"),
+                   .without_motors = info.value("without_motors", false),
                    .fingers = info.at("fingers"),
                    .max_speed = info.at("max_speed"),
                    .least_speed = info.at("least_speed")};

@@ -178,6 +178,7 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
                 {"max_stiffness", info.max_stiffness},
                 {"actuates_torque", info.actuates_torque},
                 {"senses_rotation", info.senses_rotation},
+                {"without_motors", info.without_motors},
                 {"fingers", info.fingers},
                 {"max_speed", info.max_speed},
                 {"least_speed", info.least_speed},

@@ -37,12 +37,18 @@ bool is_felt(const Param& param) {
     return !param.is_internal && parse_unit(param.unit).dimension == force_per_distance;
 }
 
+/// What a tool multiplies its forces on the device by, and with them its stiffness.
+double device_scale(const compile::PlanNode& node) {
+    const auto found = node.params.find("device_scale");
+    return found != node.params.end() ? found->second->value : 1.0;
+}
+
 /// The node's largest stiffness: the value that a parameter has, or the largest while a wire drives it.
 std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const compile::PlanNode& node) {
     std::optional<DeclaredStiffness> found;
     for (const auto& [name, param] : node.params) {
         if (!is_felt(*param)) continue;
-        const double value = driven.contains(param) ? param->max : param->value;
+        const double value = (driven.contains(param) ? param->max : param->value) * device_scale(node);
         if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value, driven.contains(param)};
     }
     return found;
@@ -116,8 +122,10 @@ double damping_with_hand(const DeviceInfo& device) {
 
 std::span<const DeviceClass> device_classes() {
     static constexpr DeviceClass classes[] = {
-        {"light stylus arm (Touch)", 0.1, 1e-3, 1000.0},       {"light stylus arm (Touch X, Premium)", 0.2, 1e-3, 1500.0},
-        {"small parallel device (Falcon)", 1.0, 1e-3, 3000.0}, {"stiff parallel device (omega, delta)", 0.5, 0.5e-3, 14500.0},
+        {"light stylus arm (Touch)", 0.1, 1e-3, 1000.0},
+        {"light stylus arm (Touch X, Premium)", 0.2, 1e-3, 1500.0},
+        {"small parallel device (Falcon)", 1.0, 1e-3, 3000.0},
+        {"stiff parallel device (omega, delta)", 0.5, 0.5e-3, 14500.0},
         {"large arm (Virtuose)", 6.0, 1e-3, 2500.0},
     };
     return classes;
@@ -141,8 +149,9 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
                     SourceLocation where = plan.nodes[n].where;
                     for (const OptionText& given : plan.patch.nodes[n].settings)
                         if (given.name == name) where = given.where;
-                    felt.push_back({plan.nodes[n].name + "." + name, where, param, static_cast<int>(sink),
-                                    scale * scale, driven.contains(param)});
+                    felt.push_back({plan.nodes[n].name + "." + name, where, param, static_cast<int>(n),
+                                    static_cast<int>(sink), scale * scale * device_scale(plan.nodes[n]),
+                                    driven.contains(param)});
                 }
             }
         }

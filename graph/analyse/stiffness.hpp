@@ -49,8 +49,10 @@ struct FeltSpring {
     std::string name;  ///< "blade.stiffness"
     SourceLocation where;  ///< of its value, or of its node
     Param* param = nullptr;
+    int node = -1;  ///< index of the node that has it
     int sink = -1;  ///< index of the node that gives the force to the device
-    double scale = 1.0;  ///< of the parameter's N/m, at the device
+    double scale =
+        1.0;  ///< of the parameter's N/m, at the device: of workspaces, squared, and the node's `device_scale`
     bool is_driven = false;  ///< by a wire
 };
 
@@ -84,7 +86,7 @@ double damping_with_hand(const DeviceInfo& device);
 /// All paths from a device_input to a device_output, one line for each pair, in order of names. `device_of` returns the
 /// figures of a device by its name in the patch ("": the only one). A workspace on the path multiplies the stiffness by the
 /// square of its scale. A stiffness that a wire drives stays below `max_stiffness` of the device, since the run limits it
-/// (engine/build/stiffness_limits.cpp).
+/// (engine/build/fit_to_devices.cpp).
 std::vector<ForceLoop> force_loops(const compile::Plan& plan,
                                    const std::function<DeviceInfo(const std::string&)>& device_of);
 

@@ -63,6 +63,9 @@ struct DeviceInfo {
     double delay = 0.0;  ///< s, from a motion of the hand to the force that answers it
     bool actuates_torque = false;
     bool senses_rotation = false;
+    /// Nobody feels its forces, which only push the simulated hand of a mouse or a gamepad, or nothing at all. `max_force`
+    /// is then the strength of that hand.
+    bool without_motors = false;
     int fingers = 0;  ///< fingers with a motor each; 0: no gripper
     double max_speed = 0.0;  ///< m/s of a finger
     double least_speed = 0.0;  ///< m/s; the motor moves at least this fast, or not at all

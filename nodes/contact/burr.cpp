@@ -14,16 +14,17 @@ namespace tactus::nodes {
 struct Burr {
     static constexpr auto about =
         "A round burr that rests on the bone it has not cut yet and, running, advances along its own force by the "
-        "cutting law of saw_blade. Its shaft does not cut. 'carve' removes what the ball passes. No push frees it: it is "
-        "released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force with the hand "
+        "cutting law of saw_blade. Its shaft does not cut. 'carve' removes what the ball passes. No push frees it: it "
+        "is released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force with the hand "
         "outside of the bone.";
 
     In<Pose> pose{"of the tool: origin in the middle of the ball"};
     In<volume::BoneSnapshot> bone{"the carved bone"};
     In<bool> running{optional, "the burr turns; unconnected: always"};
     In<bool> release{optional, "while held, the bone is released: wire the clutch of the hand here"};
-    In<Wrench> asked{optional, "what device_output was asked for, as delay 1; with 'applied' the burr cuts by the share "
-                               "of its force that the hand could feel",
+    In<Wrench> asked{optional,
+                     "what device_output was asked for, as delay 1; with 'applied' the burr cuts by the share "
+                     "of its force that the hand could feel",
                      "N, N m"};
     In<Wrench> applied{optional, "what the device was given, device_output.applied as delay 1", "N, N m"};
     Out<Wrench> wrench{"on the tool, about the middle of the ball", "N, N m"};
@@ -36,13 +37,15 @@ struct Burr {
     Out<double> rendered{"share of the wanted force that the device was given in the last tick", "1"};
     Out<carve::CutFront> front{"where the ball has cut; wire it to carve.front as batch"};
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm", "that the hand feels"};
-    Param device_scale{"1", "0.01", "10",
-                       "forces on the device over those of the tool; the burr cuts by those of the tool, so that devices "
-                       "of different strength are comparable"};
+    Param device_scale{
+        "1", "0.01", "10",
+        "forces on the device over those of the tool; the burr cuts by those of the tool, so that devices "
+        "of different strength are comparable"};
     ContactThreshold threshold;
     Param diameter{structural, "4 mm", "1 mm", "8 mm", "of the ball; also the 'kerf' of carve"};
     Param flutes{structural, "8", "1", "32", "cutting edges; one bears at a time"};
-    Param shaft_diameter{structural, "2.35 mm", "0 mm", "8 mm", "of the shaft behind the ball, as ISO 1797-1, and at most 0.6 of the ball's; 0: none"};
+    Param shaft_diameter{structural, "2.35 mm", "0 mm", "8 mm",
+                         "of the shaft behind the ball, as ISO 1797-1, and at most 0.6 of the ball's; 0: none"};
     Param shaft_length{structural, "25 mm", "1 mm", "150 mm", "from the ball to the handpiece"};
     Param turn_rate{"1000 Hz", "1 Hz", "2000 Hz", "turns per second"};
 
@@ -58,6 +61,7 @@ struct Burr {
         released_.attach(setup);
         last_state_ = saw::HoldState::engaged;
         touch_ = {};
+        pause_ = {};
         told_ = {};
         last_ = {};
     }
@@ -69,7 +73,7 @@ struct Burr {
             .rate = turn_rate,
             .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
             .rendered = rendered_share(asked, applied),
-            .release = (release.connected && release.get()) || elapsed > std::max(longest_pause, 3.0 * seconds(tick.period))};
+            .release = pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get())};
         const saw::BurrContact now = burr_->step(bone.get(), pose.get(), drive, law_);
         wrench = now.wrench * device_scale;
         load = now.load;
@@ -101,13 +105,14 @@ private:
     carve::CutFront last_;
     ToolReport told_;
     contact::ContactSwitch touch_;
+    PauseWatch pause_;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;
 };
 
-TACTUS_NODE(Burr, pose, bone, running, release, asked, applied, wrench, load, flute_force, feed, penetration, in_contact,
-            waiting, rendered, front, stiffness, device_scale, threshold, diameter, flutes, shaft_diameter, shaft_length,
-            turn_rate)
+TACTUS_NODE(Burr, pose, bone, running, release, asked, applied, wrench, load, flute_force, feed, penetration,
+            in_contact, waiting, rendered, front, stiffness, device_scale, threshold, diameter, flutes, shaft_diameter,
+            shaft_length, turn_rate)
 TACTUS_VISUALS(Burr)
 
 }  // namespace tactus::nodes

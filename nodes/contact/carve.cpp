@@ -3,6 +3,7 @@
 #include "dsp/carve/carver.hpp"
 #include "dsp/saw/saw_shape.hpp"
 #include "dsp/volume/components.hpp"
+#include "dsp/volume/surface_density.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "graph/node/visual.hpp"
@@ -60,7 +61,9 @@ struct Carve {
         options.max_dirty = static_cast<int>(bricks_per_tick);
         options.band =
             4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
-        editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, bone_->density, options);
+        volume::Grid density = bone_->density;
+        if (!refined_) volume::extend_density(bone_->distance, density);
+        editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, density, options);
         carver_.prepare(*editor_, settings());
         samples_.reserve(4096);
         bone = editor_->current();

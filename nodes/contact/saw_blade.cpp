@@ -16,8 +16,8 @@ namespace tactus::nodes {
 
 struct SawBlade {
     static constexpr auto about =
-        "A saw blade that rests on the bone it has not cut yet: forces on all of its body, and a front of teeth, which a "
-        "running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes. No push "
+        "A saw blade that rests on the bone it has not cut yet: forces on all of its body, and a front of teeth, which "
+        "a running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes. No push "
         "frees it: it is released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force "
         "with the hand outside of the bone.";
 
@@ -26,8 +26,9 @@ struct SawBlade {
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
     In<bool> release{optional, "while held, the bone is released: wire the clutch of the hand here"};
-    In<Wrench> asked{optional, "what device_output was asked for, as delay 1; with 'applied' teeth cut by the share of "
-                               "their thrust that the hand could feel",
+    In<Wrench> asked{optional,
+                     "what device_output was asked for, as delay 1; with 'applied' teeth cut by the share of "
+                     "their thrust that the hand could feel",
                      "N, N m"};
     In<Wrench> applied{optional, "what the device was given, device_output.applied as delay 1", "N, N m"};
     Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
@@ -46,9 +47,10 @@ struct SawBlade {
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
                     "upper bound of the stiffness that the hand feels, for any number of points in contact"};
-    Param device_scale{"1", "0.01", "10",
-                       "forces on the device over those of the tool; teeth cut by those of the tool, so that devices of "
-                       "different strength are comparable"};
+    Param device_scale{
+        "1", "0.01", "10",
+        "forces on the device over those of the tool; teeth cut by those of the tool, so that devices of "
+        "different strength are comparable"};
     ContactThreshold threshold;
     Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
     Param sharpness{structural, "1", "0.1", "20",
@@ -101,6 +103,7 @@ struct SawBlade {
         released_.attach(setup);
         last_state_ = saw::HoldState::engaged;
         touch_ = {};
+        pause_ = {};
         told_ = {};
         last_ = {};
     }
@@ -112,7 +115,7 @@ struct SawBlade {
             .rate = strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
             .dt = std::clamp(elapsed, seconds(tick.period), 0.05),
             .rendered = rendered_share(asked, applied),
-            .release = (release.connected && release.get()) || elapsed > std::max(longest_pause, 3.0 * seconds(tick.period))};
+            .release = pause_.is_moved_in_pause(tick, pose.get()) || (release.connected && release.get())};
         const saw::SawContact now = blade_->step(bone.get(), pose.get(), drive, law_);
         wrench = now.wrench * device_scale;
         load = now.thrust;
@@ -146,13 +149,14 @@ private:
     carve::CutFront last_;
     ToolReport told_;
     contact::ContactSwitch touch_;
+    PauseWatch pause_;
     Notice waits_{tool_waits}, released_{tool_released};
     saw::HoldState last_state_ = saw::HoldState::engaged;
 };
 
 TACTUS_NODE(SawBlade, pose, bone, running, strokes, release, asked, applied, wrench, load, stroke_force, feed, teeth,
-            passing, penetration, in_contact, waiting, rendered, front, stiffness, device_scale, threshold, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke,
-            tooth_pitch)
+            passing, penetration, in_contact, waiting, rendered, front, stiffness, device_scale, threshold, stroke_rate,
+            sharpness, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
 TACTUS_VISUALS(SawBlade)
 
 }  // namespace tactus::nodes

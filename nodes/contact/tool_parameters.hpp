@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/contact_switch.hpp"
+#include "dsp/saw/hand_limits.hpp"
 #include "graph/node/node.hpp"
 
 #include <glm/geometric.hpp>
@@ -22,11 +23,25 @@ inline double rendered_share(const In<Wrench>& asked, const In<Wrench>& applied)
     const double square = glm::dot(asked->force, asked->force);
     if (!(square > 1e-12)) return 1.0;
     const double share = glm::dot(applied->force, asked->force) / square;
-    return share > 0.0 ? std::min(share, 1.0) : 0.0;
+    constexpr double rounding = 1e-9;
+    return share > 1.0 - rounding ? 1.0 : std::max(share, 0.0);
 }
 
-/// A tick after a longer pause than this does not continue the motion before it.
-inline constexpr double longest_pause = 0.1;  // s
+/// A tick after a pause of more than 100 ms and three ticks does not continue the motion before it, if the tool was moved
+/// meanwhile.
+class PauseWatch {
+public:
+    bool is_moved_in_pause(const Tick& tick, const Pose& pose) noexcept {
+        constexpr double longest_pause = 0.1, reach = 0.05;  // s, m
+        const bool moved = tick.elapsed_seconds() > std::max(longest_pause, 3.0 * seconds(tick.period)) &&
+                           !(is_valid(pose) && is_valid(last_) && !saw::is_jump(last_, pose, reach, 0.0));
+        last_ = pose;
+        return moved;
+    }
+
+private:
+    Pose last_;
+};
 
 struct ContactThreshold {
     Param contact_on{"0.05 N", "0 N", "10 N", "contact begins above this force"};

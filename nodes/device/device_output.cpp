@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace tactus::nodes {
@@ -20,7 +21,8 @@ static double lower_limit(double wanted, double of_device) {
 struct DeviceOutput {
     static constexpr auto about =
         "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. A contact returns no "
-        "more energy than the hand has put in, but for power that is granted. The limits of the device apply too.";
+        "more energy than the hand has put in, but for power that is granted. The limits of the device apply too. Of a "
+        "device without motors, as a mouse, only the strength of its simulated hand limits the force: nobody feels it.";
     static constexpr NodeRole role = NodeRole::hand_sink;
 
     In<Wrench> wrench{"on the hand, about the handle, device frame", "N, N m"};
@@ -48,13 +50,7 @@ struct DeviceOutput {
     void prepare(const Setup& setup) {
         port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         name_ = setup.name;
-        control::ForceLimits limits;
-        limits.max_force = lower_limit(max_force, port_->info.max_force);
-        limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
-        limits.force_slew = slew;
-        limits.torque_slew = torque_slew;
-        limits.engage_ramp_s = engage_time;
-        limiter_.prepare(limits, seconds(setup.period));
+        limiter_.prepare(port_->info.without_motors ? unfelt_limits(port_->info) : limits(), seconds(setup.period));
         const control::EnergyCapSettings cap = cap_settings(port_->info, seconds(setup.period));
         if (energy_cap && cap.delay_s > control::EnergyCap::longest_delay_s(cap.period_s))
             throw Error(
@@ -70,13 +66,7 @@ struct DeviceOutput {
     void process(const Tick& tick) noexcept {
         if (is_new_) take_over(tick);
         const DeviceSample& s = port_->sample;
-        limiter_.hold_off(port_->hold_off);
-        const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
-        port_->late.tick(is_late(), is_quiet && !s.taken, tick.elapsed_seconds());
-        if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
-        if (s.taken) limiter_.cut(control::Fault::late_commit);
-        if (s.late) limiter_.fail(control::Fault::late_source);
-        if (port_->overdue != control::Fault::none) limiter_.fail(port_->overdue);
+        if (!port_->info.without_motors) protect_hand(tick);
         // The port holds what the device was given after the last tick.
         limiter_.start_from(port_->wrench);
         const bool is_usable = is_good(s);
@@ -115,7 +105,10 @@ struct DeviceOutput {
             report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
         }
         const control::EnergyCapStatistics& e = cap_.statistics();
-        report.set("force", "energy_cap", std::string(energy_cap ? "on" : "off"));
+        report.set("force", "energy_cap",
+                   std::string(port_->info.without_motors ? "not needed"
+                               : energy_cap               ? "on"
+                                                          : "off"));
         report.set("force", "energy_capped_ticks", static_cast<double>(capped_ticks_));
         report.set("force", "energy_capped_max_N", most_capped_);
         report.set("force", "energy_stored_max_J", e.most_stored);
@@ -132,6 +125,39 @@ struct DeviceOutput {
     }
 
 private:
+    control::ForceLimits limits() const {
+        control::ForceLimits limits;
+        limits.max_force = lower_limit(max_force, port_->info.max_force);
+        limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
+        limits.force_slew = slew;
+        limits.torque_slew = torque_slew;
+        limits.engage_ramp_s = engage_time;
+        return limits;
+    }
+
+    /// Nobody feels the force of a device without motors, so nothing needs to come in slowly.
+    static control::ForceLimits unfelt_limits(const DeviceInfo& info) {
+        control::ForceLimits limits;
+        limits.max_force = lower_limit(HUGE_VAL, info.max_force);
+        limits.max_torque = lower_limit(HUGE_VAL, info.max_torque);
+        limits.force_slew = limits.torque_slew = HUGE_VAL;
+        limits.engage_ticks = 0;
+        limits.engage_ramp_s = 0.0;
+        return limits;
+    }
+
+    /// Fades the force while ticks or values are late, and while an edit or a pause wants it.
+    void protect_hand(const Tick& tick) noexcept {
+        const DeviceSample& s = port_->sample;
+        limiter_.hold_off(port_->hold_off);
+        const bool is_quiet = port_->wrench.force == Vec3(0.0) && port_->wrench.torque == Vec3(0.0);
+        port_->late.tick(is_late(), is_quiet && !s.taken, tick.elapsed_seconds());
+        if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
+        if (s.taken) limiter_.cut(control::Fault::late_commit);
+        if (s.late) limiter_.fail(control::Fault::late_source);
+        if (port_->overdue != control::Fault::none) limiter_.fail(port_->overdue);
+    }
+
     /// An edit clears no fault: what the node before it left on the port holds on, and forces come back as they would have
     /// there, through engagement.
     void take_over(const Tick& tick) noexcept {
@@ -167,6 +193,7 @@ private:
 
     /// Observes also while it is off, so that the report says what the hand was given.
     Wrench capped(const Wrench& limited, bool is_usable, double elapsed_s) noexcept {
+        if (port_->info.without_motors) return limited;
         const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
         most_granted_ = std::max(most_granted_, watts);
         const Pose nowhere{{}, {0.0, 0.0, 0.0, 0.0}};
@@ -197,7 +224,7 @@ private:
         using control::Fault;
         last_fault_ = limiter_.fault();
         const DeviceSample& s = port_->sample;
-        if (is_late()) port_->late.lose();
+        if (is_late() && !port_->info.without_motors) port_->late.lose();
         if (!in_fault_) {
             in_fault_ = true;
             is_let_ = false;
@@ -212,6 +239,11 @@ private:
         const bool is_fresh = is_good(s) && still_ticks_ < control::ForceLimits{}.stale_ticks;
         well_for_ = is_fresh && !s.taken && !s.sound_lost ? well_for_ + tick.elapsed_seconds() : 0.0;
         if (last_fault_ == Fault::not_finite) return;
+        if (port_->info.without_motors) {
+            if (is_fresh) limiter_.recover();
+            in_fault_ = !is_fresh;
+            return;
+        }
         const bool is_asked = recover.value != asked_;
         if (is_asked && port_->late.is_lost()) port_->late.forgive();
         is_let_ = is_let_ || is_asked;
@@ -227,7 +259,8 @@ private:
     /// hand that felt nothing when the tick was late, or may have moved since in a pause or an edit, has not chosen to be
     /// there. Then they wait for the hand to leave it.
     void return_from_lateness(bool is_fresh) noexcept {
-        if (!is_fresh || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns()) return;
+        if (!is_fresh || limiter_.is_held_off() || (recover_after == 0.0 && !is_let()) || !port_->late.returns())
+            return;
         if (energy_cap && !must_engage_) limiter_.recover_slowly(control::LateReturn::ramp_s);
         else limiter_.recover(control::LateReturn::ramp_s);
         in_fault_ = is_let_ = false;

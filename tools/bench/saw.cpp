@@ -2,6 +2,7 @@
 // The saw beside published measurements, and what its front costs beside a blade without one.
 #include "assets/bone/bone.hpp"
 #include "assets/file/json.hpp"
+#include "assets/library/mandible.hpp"
 #include "dsp/contact/blade.hpp"
 #include "dsp/core/processor_time.hpp"
 #include "dsp/saw/heat_partition.hpp"
@@ -11,7 +12,10 @@
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/saw_figure.hpp"
 #include "tools/study/saw/bone_trial.hpp"
+#include "tools/study/saw/device_trial.hpp"
+#include "tools/study/saw/grid_study.hpp"
 #include "tools/study/saw/saw_trial.hpp"
+#include "tools/study/saw/solid_sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -34,6 +38,8 @@ using file::Json;
 struct SawBenchChoice : BenchChoice {
     std::string figure;
     std::vector<std::string> bones;
+    bool devices = false, grid = false;
+    int poses = 0;
 };
 
 struct Row {
@@ -249,8 +255,102 @@ int bench_bones(const SawBenchChoice& choice) {
     return done;
 }
 
+/// The same cut on devices of different strength.
+int bench_devices(const SawBenchChoice& choice) {
+    Json rows = Json::array();
+    double ideal = 0.0;
+    if (!choice.json)
+        fmt::print("{:<8} {:>6} {:>18} {:>16} {:>8} {:>10} {:>16} {:>9}\n", "device", "scale", "stiffness, tool",
+                   "thrust of tool", "rubbing", "removed", "per N s above", "to ideal");
+    for (const study::DeviceTrial& trial : study::device_trials()) {
+        const study::DeviceTrialResult r = study::run_device_trial(trial);
+        if (ideal == 0.0) ideal = r.per_thrust;
+        const double off = r.per_thrust / ideal - 1.0;
+        rows.push_back({{"device", std::string(trial.model)},
+                        {"device_scale", trial.scale},
+                        {"stiffness_N_per_m", trial.stiffness},
+                        {"thrust_N", r.thrust},
+                        {"rubbing_N", r.rubbing},
+                        {"removed_mm3_per_s", r.removal * 1e9},
+                        {"removed_mm3_per_Ns", r.per_thrust * 1e9},
+                        {"limited", r.limited},
+                        {"off", off}});
+        if (!choice.json)
+            fmt::print(
+                "{:<8} {:>6.2f} {:>12.1f} N/mm {:>14.2f} N {:>6.2f} N {:>5.2f} mm³/s {:>7.3f} mm³/(N s) {:>+7.1f} %\n",
+                trial.model, trial.scale, trial.stiffness * 1e-3, r.thrust, r.rubbing, r.removal * 1e9,
+                r.per_thrust * 1e9, 100.0 * off);
+    }
+    if (choice.json) fmt::print("{}\n", Json{{"devices", rows}}.dump(2));
+    return done;
+}
+
+/// One box in voxels of several sizes.
+int bench_grid(const SawBenchChoice& choice) {
+    constexpr double voxels[] = {0.2e-3, 0.3e-3, 0.5e-3, 1e-3};
+    Json rows = Json::array();
+    const std::vector<study::GridStudyRow> study = study::run_grid_study(voxels);
+    double mean = 0.0;
+    for (const study::GridStudyRow& row : study) mean += row.removed / static_cast<double>(study.size());
+    for (const study::GridStudyRow& row : study) {
+        rows.push_back({{"voxel_mm", row.voxel * 1e3},
+                        {"cut_in_mm", row.cut_in * 1e3},
+                        {"removed_mm3", row.removed * 1e9},
+                        {"feed_mm_per_s", row.feed * 1e3},
+                        {"off_mean", row.removed / mean - 1.0}});
+        if (!choice.json)
+            fmt::print(
+                "voxels of {:.1f} mm, cut in {:.3f} mm: {:6.2f} mm³ removed in 10 s, feed {:.3f} mm/s, {:+.1f} % off "
+                "the "
+                "mean\n",
+                row.voxel * 1e3, row.cut_in * 1e3, row.removed * 1e9, row.feed * 1e3,
+                100.0 * (row.removed / mean - 1.0));
+    }
+    if (choice.json) fmt::print("{}\n", Json{{"grid", rows}}.dump(2));
+    return done;
+}
+
+/// Random attitudes of each tool on a box and on the jaw of the library.
+int bench_poses(const SawBenchChoice& choice) {
+    Json rows = Json::array();
+    bool is_solid = true;
+    const std::pair<const char*, bone::Bone> bones[] = {{"box", study::box_of_voxels(0.4e-3)},
+                                                        {"jaw", library::make_mandible()}};
+    constexpr std::pair<const char*, study::SolidTool> tools[] = {{"blade", study::SolidTool::blade},
+                                                                  {"sagittal blade", study::SolidTool::sagittal},
+                                                                  {"burr", study::SolidTool::burr}};
+    for (const auto& [bone_name, bone] : bones)
+        for (const auto& [name, tool] : tools) {
+            const study::SolidSweepResult r = study::run_solid_sweep(tool, bone, (choice.poses + 5) / 6);
+            is_solid = is_solid && r.silent == 0;
+            rows.push_back({{"bone", bone_name},
+                            {"tool", name},
+                            {"poses", r.poses},
+                            {"pressed_steps", r.pressed},
+                            {"silent_steps", r.silent},
+                            {"greatest_silent_mm", r.greatest_silent * 1e3},
+                            {"median_step_N", r.median_step},
+                            {"greatest_step_N", r.greatest_step},
+                            {"active", r.active},
+                            {"held", r.held}});
+            if (!choice.json)
+                fmt::print(
+                    "{}, {}: {} attitudes, {} steps with a part deeper than 0.5 mm, {} without force{}; force changes "
+                    "by "
+                    "{:.3f} N per 0.1 mm (median), at most {:.2f} N; {} ways gave energy, {} left a force\n",
+                    bone_name, name, r.poses, r.pressed, r.silent,
+                    r.silent > 0 ? fmt::format(" (to {:.2f} mm)", r.greatest_silent * 1e3) : "", r.median_step,
+                    r.greatest_step, r.active, r.held);
+        }
+    if (choice.json) fmt::print("{}\n", Json{{"poses", rows}}.dump(2));
+    return is_solid ? done : answer_is_no;
+}
+
 int bench_saw(const SawBenchChoice& choice) {
     if (!choice.bones.empty()) return bench_bones(choice);
+    if (choice.devices) return bench_devices(choice);
+    if (choice.grid) return bench_grid(choice);
+    if (choice.poses > 0) return bench_poses(choice);
     const Comparison made = compare();
     const Json cost = costs(choice.rounds);
     if (!choice.figure.empty()) picture::write_figure(picture::draw_saw_law(made.figure), choice.figure);
@@ -286,6 +386,14 @@ Verb saw_verb() {
                 verb.add("--bone", choice->bones,
                          "instead: feed and removed volume over thrust on this imported bone; may be given again")
                     .one_each();
+                verb.flag("--devices", choice->devices,
+                          "instead: the same cut on simulated devices of different strength");
+                verb.flag("--grid", choice->grid, "instead: the same cut in voxels of 0.2, 0.3, 0.5 and 1 mm");
+                verb.add("--poses", choice->poses,
+                         "instead: presses each tool into a box and a jaw at so many random attitudes in all, and "
+                         "fails when a "
+                         "part sinks in without force")
+                    .range(6, 100'000);
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_saw(*choice); };
             }};

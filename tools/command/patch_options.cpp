@@ -14,6 +14,14 @@ void add_override_options(VerbOptions& verb, session::PatchChoice& choice) {
     verb.add("--seed", choice.seed, "seed of the random numbers");
 }
 
+void add_device_scale(VerbOptions& verb, std::optional<double>& scale) {
+    verb.add("--device-scale", scale,
+             "forces and stiffness on the device over those of a saw or a burr, which cut as with 1: 0.2 for a device "
+             "that "
+             "gives a fifth of the force")
+        .range(0.01, 10.0);
+}
+
 void add_site_options(VerbOptions& verb, session::SiteText& text) {
     const Option site =
         verb.add("--site", text.site,

@@ -6,12 +6,16 @@
 #include "tools/session/patch_choice.hpp"
 #include "tools/session/site_choice.hpp"
 
+#include <optional>
+
 namespace tactus::command {
 
 /// The patch, its changed parameters and assets, and the seed.
 void add_patch_options(VerbOptions& verb, session::PatchChoice& choice);
 /// The same without the patch.
 void add_override_options(VerbOptions& verb, session::PatchChoice& choice);
+/// --device-scale, for session::choose_device_scale.
+void add_device_scale(VerbOptions& verb, std::optional<double>& scale);
 /// --site and --approach, for session::choose_site.
 void add_site_options(VerbOptions& verb, session::SiteText& text);
 

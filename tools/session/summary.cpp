@@ -210,7 +210,10 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
             throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
         return found->get<std::string>();
     };
-    TaskSummary summary{text("file"), text("hash"), text("record"), {}, true, false};
+    TaskSummary summary;
+    summary.file = text("file");
+    summary.hash = text("hash");
+    summary.record = text("record");
     if (const auto force = task->find("force"); force != task->end() && force->is_string())
         summary.has_force = force->get<std::string>() == "recorded";
     if (const auto sources = json.find("carve_sources"); sources != json.end() && sources->is_object())
@@ -219,6 +222,14 @@ TaskSummary read_task_summary(const std::filesystem::path& folder) {
     if (const auto carve = json.find("carve"); carve != json.end() && carve->is_object())
         if (const auto refined = carve->find("refined"); refined != carve->end() && refined->is_number())
             summary.refined = refined->get<double>() > 0.0;
+    const auto number = [&](const char* section, const char* key, double otherwise) {
+        const auto part = json.find(section);
+        if (!part || !part->is_object()) return otherwise;
+        const auto value = part->find(key);
+        return value && value->is_number() && value->get<double>() > 0.0 ? value->get<double>() : otherwise;
+    };
+    summary.device_scale = number("force", "device_scale", 1.0);
+    summary.limited = number("contact", "limited_fraction", 0.0);
     return summary;
 }
 

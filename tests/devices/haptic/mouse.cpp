@@ -182,6 +182,31 @@ TEST_CASE("the hand yields to force by its grip, and tells the window what it fe
     CHECK(soft.felt.pose.position.z == Approx(20e-3).epsilon(0.02));
 }
 
+TEST_CASE("a mouse pushes with its strength and no more, and rests while a tick is late") {
+    const auto pulled_by = [](const char* strength, double push) {
+        Rig rig(std::vector<OptionText>{{"max_force", strength, {}}});
+        CHECK(rig.device->info().without_motors);
+        // The cursor is 30 mm away, which a grip of 2 N/mm would pull with 60 N.
+        for (int n = 0; n < 1500; ++n) {
+            if (n % 16 == 0) rig.say({30e-3, 0.0, 0.0}, 0.016);
+            rig.device->commit({{-push, 0.0, 0.0}, {}});
+            rig.tick();
+        }
+        return rig.felt.pose.position.x;
+    };
+    CHECK(pulled_by("20 N", 15.0) == Approx(22.5e-3).epsilon(0.02));
+    CHECK(pulled_by("20 N", 21.0) < 0.0);
+    CHECK(pulled_by("100 N", 21.0) == Approx(19.5e-3).epsilon(0.02));
+
+    Rig rig;
+    rig.say({0.02, 0.0, 0.0}, 0.016);
+    rig.ticks(10);
+    const double before = rig.felt.pose.position.x;
+    rig.device->acquire(0.2);
+    rig.look();
+    CHECK(rig.felt.pose.position.x - before < 5e-3);
+}
+
 TEST_CASE("what a window says for an earlier run, or what is no pose, does not move the hand") {
     Rig rig;
     const std::int64_t before = rig.felt.run;

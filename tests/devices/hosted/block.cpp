@@ -144,6 +144,7 @@ TEST_CASE("what a driver states of its device is the same on both sides") {
                           .delay = 7.0,
                           .actuates_torque = true,
                           .senses_rotation = true,
+                          .without_motors = true,
                           .fingers = 1,
                           .max_speed = 8.0,
                           .least_speed = 9.0};
@@ -158,6 +159,7 @@ TEST_CASE("what a driver states of its device is the same on both sides") {
     CHECK(seen.delay == info.delay);
     CHECK(seen.actuates_torque);
     CHECK(seen.senses_rotation);
+    CHECK(seen.without_motors);
     CHECK(seen.fingers == info.fingers);
     CHECK(seen.max_speed == info.max_speed);
     CHECK(seen.least_speed == info.least_speed);

@@ -124,3 +124,14 @@ TEST_CASE("a device's process gives no more than its device bears") {
     played.newest = pack(Wrench{{}, {0.0, 5.0, 0.0}}, played.now);
     CHECK(glm::length(played.gate.give(played.newest, ++played.number, played.now).torque) == Approx(0.2));
 }
+
+TEST_CASE("every force of a device without motors passes, however old") {
+    Played played;
+    played.gate.is_felt = false;
+    played.gate.max_force = 20.0;
+    CHECK(played.commit(4.0) == Approx(4.0));
+    CHECK(played.after(500 * ms) == Approx(4.0));
+    CHECK_FALSE(played.gate.holds());
+    CHECK(played.commit(30.0) == Approx(20.0));
+    CHECK(played.commit(std::nan("")) == 0.0);
+}

@@ -44,8 +44,7 @@ double depth_of_burr(const Pose& pose) {
 }
 
 Quat random_turn(const Random& random, std::uint64_t n) {
-    return glm::normalize(
-        Quat(random.normal(n), random.normal(n + 1), random.normal(n + 2), random.normal(n + 3)));
+    return glm::normalize(Quat(random.normal(n), random.normal(n + 1), random.normal(n + 2), random.normal(n + 3)));
 }
 
 }  // namespace
@@ -70,8 +69,8 @@ TEST_CASE("no part of a blade or a burr sinks into bone without force, at any at
                                      : Vec3(shape.length * (random.uniform(50 * n + 4) - 0.5),
                                             -shape.height * random.uniform(50 * n + 5), 0.0);
         const Vec3 goal(0.008 * (random.uniform(50 * n + 6) - 0.5), 0.006 * (random.uniform(50 * n + 7) - 0.5), -0.003);
-        const Vec3 from = glm::normalize(Vec3(random.normal(50 * n + 8), random.normal(50 * n + 9),
-                                              0.3 + std::abs(random.normal(50 * n + 10))));
+        const Vec3 from = glm::normalize(
+            Vec3(random.normal(50 * n + 8), random.normal(50 * n + 9), 0.3 + std::abs(random.normal(50 * n + 10))));
         const Vec3 end = goal - turn * local;
         Vec3 at = end + 0.07 * from, last_force(0.0), last = at;
         double work = 0.0, bound = 0.0;
@@ -88,7 +87,8 @@ TEST_CASE("no part of a blade or a burr sinks into bone without force, at any at
                 return std::pair{now.wrench.force, now.magnitudes};
             }();
             work += glm::dot(last_force, at - last);
-            bound += 0.5 * std::min(std::abs(glm::dot(force - last_force, at - last)), 20e3 * glm::dot(at - last, at - last));
+            bound += 0.5 *
+                     std::min(std::abs(glm::dot(force - last_force, at - last)), 20e3 * glm::dot(at - last, at - last));
             last_force = force;
             const double depth = tool == 2 ? depth_of_burr(pose) : depth_of_blade(shape, pose);
             if (approaches && depth > 0.5e-3) {
@@ -144,8 +144,26 @@ TEST_CASE("the force of a blade in bone ends at zero when it is drawn out") {
     const Vec3 out = hand.position + Vec3(0.0, 0.0, 0.02e-3 * 199);
     for (int n = 0; n < 100; ++n) {
         // At rest beside the bone, with the tremor of a hand.
-        const saw::SawContact now = sawing.step({out + 1e-5 * Vec3(std::sin(0.1 * n), std::cos(0.13 * n), 0.0), teeth_down});
+        const saw::SawContact now =
+            sawing.step({out + 1e-5 * Vec3(std::sin(0.1 * n), std::cos(0.13 * n), 0.0), teeth_down});
         REQUIRE(now.magnitudes == 0.0);
         REQUIRE(now.count == 0);
     }
+}
+
+TEST_CASE("a burr rests on a bone whose grid ends nearer to it than the burr is thick") {
+    const auto bone =
+        bone_block({.low = {-0.006, -0.006, -0.006}, .high = {0.006, 0.006, 0.0}, .voxel = 0.3e-3, .margin = 0.6e-3});
+    saw::Burr burr({0.002, 8.0}, 20e3);
+    double last = 0.0, step = 0.0;
+    for (int n = 0; n <= 400; ++n) {
+        const double z = 3e-3 - 0.01e-3 * n;
+        const double force =
+            burr.step(bone->current(), {Vec3(0.0, 0.0, z), teeth_down}, {false, 0.0, 1e-3}, {}).wrench.force.z;
+        if (z < 1.9e-3) REQUIRE(force > 0.0);
+        if (z > 2.1e-3) REQUIRE(force == 0.0);
+        step = std::max(step, force - last);
+        last = force;
+    }
+    CHECK(step < 2.0);
 }

@@ -42,15 +42,13 @@ namespace {
 
 class Still final : public HapticDevice {
 public:
-    const DeviceInfo& info() const override { return info_; }
+    const DeviceInfo& info() const override { return stated; }
     void prepare(double) override {}
     DeviceSample acquire(double) noexcept override { return {}; }
     void commit(const Wrench& on_hand) noexcept override { last = on_hand; }
 
     Wrench last;
-
-private:
-    DeviceInfo info_;
+    DeviceInfo stated;
 };
 
 }  // namespace
@@ -82,6 +80,23 @@ TEST_CASE("a device that no node drives for a while is no late one when it is dr
         CHECK_FALSE(guard.was_taken());
         CHECK(device.last.force.x == 2.0);
     }
+}
+
+TEST_CASE("the watchdog leaves a device without motors its force until the run ends") {
+    constexpr std::int64_t ms = 1'000'000;
+    io::DeviceGuard guard;
+    guard.set_limit(3 * ms);
+    Still device;
+    device.stated.without_motors = true;
+    std::int64_t now = steady_ns();
+    guard.commit(device, {Vec3(1.0, 0.0, 0.0), {}}, now);
+    for (int n = 0; n < 200; ++n) guard.poll(device, now += ms);
+    CHECK(device.last.force.x == 1.0);
+    CHECK_FALSE(guard.was_taken());
+    guard.retire();
+    for (int n = 0; n < 20; ++n) guard.poll(device, now += ms);
+    CHECK(device.last.force.x == 0.0);
+    CHECK(guard.is_at_rest());
 }
 
 TEST_CASE("whoever reads faults while they are written sees each whole") {

@@ -365,3 +365,24 @@ TEST_CASE("a pause or an edit while forces come in after a late tick does not ma
         CHECK(next.node.values<Wrench>("applied")[120].force.x == Approx(asked));
     }
 }
+
+TEST_CASE(
+    "a device without motors keeps the force, whatever is late, held off or large, up to the strength of its hand") {
+    LateOutput out;
+    DeviceInfo& info = out.node.host.device("", DeviceUse::read, {}).info;
+    info.without_motors = true;
+    info.max_force = 20.0;
+    out.node.set("max_force", "3 N");
+    for (int k = 600; k < 2000; k += 7) out.taken.insert(k);
+    for (int k = 500; k < 700; ++k) out.late.insert(k);
+    out.held_from = 1000, out.held_to = 1200;
+    out.invalid.insert(1500);
+    // Large in the first tick: nothing waits for a small one.
+    out.node.feed<Wrench>("wrench", [](std::int64_t k) { return Wrench{{k < 1800 ? asked : 50.0, 0.0, 0.0}, {}}; });
+    out.run(2000);
+    for (std::size_t k = 0; k < 1800; ++k)
+        if (k != 1500 && k != 1501) REQUIRE(out.applied[k] == Approx(asked));  // there is no hand without a sample
+    CHECK(out.applied.back() == Approx(20.0));
+    CHECK(out.port().state == control::ForceState::on);
+    CHECK(out.port().fault == control::Fault::none);
+}

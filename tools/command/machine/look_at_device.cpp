@@ -176,7 +176,7 @@ int verify_device(const DeviceLook& look) {
         return leave(nullptr, say_failure(look, error.what(), error.steps));
     }
     const driver::Opened opened = device->opened();
-    if (!opened.has_motors) {
+    if (opened.info.without_motors) {
         fmt::print("{} has no motors: there is nothing to confirm\n", opened.info.name);
         return leave(std::move(device), done);
     }

@@ -127,8 +127,8 @@ static double energy_bound(const build::LiveNode& node, const std::vector<analys
     double stiffness = 0.0;
     for (const analyse::ForceLoop& loop : loops)
         if (loop.to == node.name)
-            stiffness = std::max(stiffness, loop.declared ? loop.declared->newton_per_metre
-                                                          : std::numeric_limits<double>::infinity());
+            stiffness = std::max(
+                stiffness, loop.declared ? loop.declared->newton_per_metre : std::numeric_limits<double>::infinity());
     const build::DeviceSlot& slot = *node.uses.devices.front().first;
     const double stated = slot.port.info.max_force, given = node.params.at("max_force")->value;
     return control::EnergyCap::max_gain(nodes::cap_settings(slot.port.info, seconds(slot.period)), stiffness,
@@ -142,11 +142,12 @@ Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes,
         if (node->type->name != "device_output") continue;
         Report report;
         node->type->report(node->instance.get(), report);
-        const bool is_on = std::get<std::string>(report.sections.at("force").at("energy_cap")) == "on";
+        const std::string& cap = std::get<std::string>(report.sections.at("force").at("energy_cap"));
+        const bool is_on = cap == "on";
         outputs.push_back({{"node", node->name},
                            {"energy_cap", is_on},
                            {"energy_bound_mJ", is_on ? Json(1e3 * energy_bound(*node, loops)) : Json()}});
-        if (!is_on)
+        if (cap == "off")
             warnings.push_back(fmt::format(
                 "{}: the energy cap is off; contacts may return more energy than the hand has put in", node->name));
     }

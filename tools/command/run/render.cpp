@@ -3,6 +3,7 @@
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/scene/frames.hpp"
+#include "tools/session/device_scale.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/output_folder.hpp"
 #include "tools/session/results.hpp"
@@ -140,6 +141,8 @@ Action add_render(VerbOptions& verb) {
     add_patch_options(verb, *choice);
     const auto site = std::make_shared<session::SiteText>();
     add_site_options(verb, *site);
+    const auto scale = std::make_shared<std::optional<double>>();
+    add_device_scale(verb, *scale);
     verb.add("--seconds", choice->seconds, "logical time to render, s").unit("s").shows_default().range(1e-3, 1e6);
     verb.add("-o,--out", choice->out, "folder for the results").required();
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
@@ -150,8 +153,9 @@ Action add_render(VerbOptions& verb) {
     verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");
-    return [choice, site] {
+    return [choice, site, scale] {
         session::choose_site(*choice, *site);
+        session::choose_device_scale(*choice, *scale);
         return render(*choice);
     };
 }

@@ -2,6 +2,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/session/device_scale.hpp"
 #include "tools/session/force_news.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
@@ -81,6 +82,8 @@ Action add_run(VerbOptions& verb) {
     add_patch_options(verb, *choice);
     const auto site = std::make_shared<session::SiteText>();
     add_site_options(verb, *site);
+    const auto scale = std::make_shared<std::optional<double>>();
+    add_device_scale(verb, *scale);
     verb.add("--seconds", choice->seconds, "stop after this logical time, s").unit("s").range(1e-3, 1e6);
     verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
     verb.add("--audio", choice->audio,
@@ -100,8 +103,9 @@ Action add_run(VerbOptions& verb) {
     verb.flag("--keep-running", choice->view.keep_running, "continue the run when the window is closed").needs(window);
     add_view_options(verb, choice->view);
     verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
-    return [choice, site] {
+    return [choice, site, scale] {
         session::choose_site(*choice, *site);
+        session::choose_device_scale(*choice, *scale);
         return run(*choice);
     };
 }

@@ -28,6 +28,8 @@ Json json_of(const study::Score& s) {
          {{"mean_N", s.mean_N},
           {"over_limit_Ns", s.over_limit_Ns},
           {"shown", or_null(s.shown_share)},
+          {"device_scale", s.device_scale},
+          {"limited", s.limited},
           {"jerk", or_null(s.jerk)}}},
         {"breakthrough",
          {{"depth_mm", or_null(s.breakthrough_mm)}, {"speed_mm_per_s", or_null(s.breakthrough_mm_per_s)}}},
@@ -112,6 +114,14 @@ std::string score_text(std::span<const study::ScoredRun> runs, std::span<const s
         }
         for (const study::SparedScore& one : run.score.spared)
             if (one.injured_mm3 > 0.0) text += fmt::format("  injured: {}, {:.3g} mm³\n", one.name, one.injured_mm3);
+        if (run.score.device_scale != 1.0)
+            text += fmt::format("  forces are those of the tool; those on the device were {:g} times as large\n",
+                                run.score.device_scale);
+        if (run.score.limited >= 0.005)
+            text += fmt::format(
+                "  the force was limited {:.0f} % of the time in contact: the device gave less than the tool "
+                "wanted\n",
+                100.0 * run.score.limited);
         if (run.score.shown_share && *run.score.shown_share < study::complete_share)
             text += "  the blade was in the bone without force on the hand: do not compare this attempt with others\n";
     }

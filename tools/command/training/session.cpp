@@ -8,6 +8,7 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/training/score_text.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/session/device_scale.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/rendered_run.hpp"
 #include "tools/session/run_session.hpp"
@@ -34,6 +35,7 @@ struct SessionChoice {
     std::string trainee;
     fs::path out;
     view::ViewedRunChoice run;  // what all attempts share
+    std::optional<double> device_scale;
     bool offline = false, is_new = false;
 };
 
@@ -47,6 +49,7 @@ view::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training
     view::ViewedRunChoice run = choice.run;
     run.patch = task.patch.empty() ? "saw-task" : task.patch;
     run.overrides.settings = task.settings;
+    choose_device_scale(run, choice.device_scale);
     // What the command line says is said last, and wins.
     run.overrides.settings.insert(run.overrides.settings.end(), choice.run.overrides.settings.begin(),
                                   choice.run.overrides.settings.end());
@@ -167,6 +170,7 @@ Action declare_session(VerbOptions& verb) {
         .unit("s")
         .range(1e-3, 1e5);
     add_override_options(verb, choice->run);
+    add_device_scale(verb, choice->device_scale);
     verb.add("--audio", choice->run.audio, "sound output: part of a card's name, default, file or none");
     verb.flag("--view", choice->run.view.wanted, "open a window for each attempt; closing it ends the attempt");
     return [choice] { return run_session(*choice); };

@@ -29,4 +29,8 @@ struct BoneTrial {
 BoneTrial run_bone_trial(const bone::Bone& bone, std::span<const double> thrusts, const saw::SawShape& shape = {},
                          double stiffness = 40e3);
 
+/// The same at a given site, for `measured` s of cutting.
+BoneTrial run_bone_trial_at(const volume::SawSite& site, const bone::Bone& bone, std::span<const double> thrusts,
+                            double measured, const saw::SawShape& shape = {}, double stiffness = 40e3);
+
 }  // namespace tactus::study

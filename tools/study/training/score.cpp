@@ -191,6 +191,9 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
         throw Error(fmt::format("{}: the run has no record of its attempt", folder.string()));
     Record record = record_of(folder / record_name);
     run.samples = std::move(record.samples);
+    run.score.device_scale = said.device_scale;
+    run.score.limited = said.limited;
+    for (training::AttemptSample& s : run.samples) s.force /= said.device_scale;
 
     const training::PlannedCut& cut = run.task.cut;
     const training::CutBone bone{run.before.distance, run.after.distance};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <utility>
 
 using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
@@ -82,7 +83,8 @@ double most_in(const std::string& csv, std::size_t column) {
 }  // namespace
 
 TEST_CASE(
-    "check says that stiffness is unknown beyond what a hand damps on a device that states no damping, and what other devices could feel") {
+    "check says that stiffness is unknown beyond what a hand damps on a device that states no damping, and what other "
+    "devices could feel") {
     const Folder folder;
     const std::string patch = folder.write("touch.toml", touch_patch("stiffness = \"4.5 N/mm\"", "0 N s/m")).string();
     const Outcome asked = folder.tactus("check --json " + patch);
@@ -184,4 +186,53 @@ TEST_CASE("check counts the delay of the device: an omega with a hand of 3 N s/m
         CHECK(row->at("stiffness_limit_N_per_mm").get<double>() == Approx(3.5));
         CHECK(outcome.code == (std::string(stiffness) == "3.4 N/mm" ? 0 : 1));
     }
+}
+
+TEST_CASE("saws, burr and planning are stable on each class of hardware that is named on the command line", "[slow]") {
+    const Folder folder;
+    for (const char* device : {"touch", "force_dimension", "haply", "mouse"})
+        for (const char* patch :
+             {"saw-training", "saw-task", "burr-training", "planning-trauma", "planning-reconstruction"}) {
+            const Outcome asked = folder.tactus(std::string("check --json ") + patch + " --set hand.device=" + device);
+            CAPTURE(device, patch, asked.out, asked.err);
+            CHECK(asked.code == 0);
+            const json checked = json::parse(asked.out);
+            CHECK_FALSE(checked["paths"].empty());
+            for (const json& row : checked["paths"])
+                if (row.contains("ok")) CHECK(row["ok"] == true);
+        }
+}
+
+TEST_CASE("a tool's forces are scaled to hardware that is weaker than the patch, unless somebody chose a scale") {
+    const Folder folder;
+    // An Inverse3 gives 4 N, the saw up to 25 N.
+    const Outcome asked = folder.tactus("check saw-training --set hand.device=haply");
+    CAPTURE(asked.out, asked.err);
+    CHECK_THAT(asked.out + asked.err, ContainsSubstring("blade.device_scale = 0.16"));
+    const Outcome chosen = folder.tactus("check saw-training --set hand.device=haply --set blade.device_scale=0.1");
+    CHECK_THAT(chosen.out + chosen.err, !ContainsSubstring("blade.device_scale ="));
+    // A mouse has no motors.
+    const Outcome mouse = folder.tactus("check saw-training --set hand.device=mouse");
+    CHECK_THAT(mouse.out + mouse.err, !ContainsSubstring("blade.device_scale"));
+}
+
+TEST_CASE("--device-scale scales the forces on the device and leaves what is cut") {
+    const Folder folder;
+    const auto removed = [&](const std::string& options) {
+        const Outcome run = folder.tactus("render saw-training --seconds 4 --overwrite --json " + options + " --out " +
+                                          (folder.path / "out").string());
+        CAPTURE(options, run.err);
+        REQUIRE(run.code == 0);
+        const json summary = json::parse(run.out);
+        return std::pair{summary["carve"]["removed_mm3"].get<double>(), summary["force"]["device_scale"].get<double>()};
+    };
+    const auto full = removed("");
+    const auto half = removed("--device-scale 0.5 --set 'simulated.thrust=3.75 N'");
+    CHECK(full.second == 1.0);
+    CHECK(half.second == 0.5);
+    CHECK(half.first == Approx(full.first).epsilon(0.2));
+    const Outcome none =
+        folder.tactus("render touch-sphere --seconds 1 --device-scale 0.5 --out " + (folder.path / "none").string());
+    CHECK(none.code == 2);
+    CHECK_THAT(none.err, ContainsSubstring("needs a saw_blade or a burr"));
 }

@@ -109,8 +109,8 @@ close
     REQUIRE(outcome.code == 0);
     const json summary = json::parse(outcome.out);
     INFO(outcome.out);
-    // Only a force that is rendered cuts: none on a machine that is late.
-    if (summary["faults"].empty()) CHECK(summary["carve"]["removed_mm3"].get<double>() > 20.0);
+    // Also on a machine that is late: nobody feels the force of a mouse.
+    CHECK(summary["carve"]["removed_mm3"].get<double>() > 20.0);
     check_picture(folder.path / "sawn.png", 800, 600);
     const Outcome again = on(display, folder, "replay take --json");
     INFO(again.out << again.err);
