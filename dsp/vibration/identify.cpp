@@ -4,6 +4,7 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/signal/spectrum/transform.hpp"
+#include "dsp/vibration/local_model.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace tactus::vibration {
 
@@ -26,6 +29,7 @@ struct Spectra {
     std::vector<Spectrum> answers;  ///< one per repeat
     double step = 0.0;              ///< Hz from bin to bin
     std::size_t size = 0;           ///< of the transform, samples
+    double oversampling = 1.0;      ///< bins per independent one
 };
 
 Spectra transform(const SweepRun& run, std::span<const float> captured, double rate) {
@@ -38,6 +42,7 @@ Spectra transform(const SweepRun& run, std::span<const float> captured, double r
     Spectra spectra;
     spectra.size = std::bit_ceil(period);
     spectra.step = rate / static_cast<double>(spectra.size);
+    spectra.oversampling = static_cast<double>(spectra.size) / static_cast<double>(period);
     std::vector<double> samples(period);
     for (std::size_t i = 0; i < period; ++i) samples[i] = run.amplitude * run.sweep(static_cast<double>(i) / rate);
     spectra.drive = signal::spectrum_of(samples, spectra.size);
@@ -80,6 +85,31 @@ Average average(const Spectra& spectra, double hz, double width, double delay) {
         }
     }
     return sum;
+}
+
+/// The model of the bins around `hz`, without the delay.
+LocalModel local_model(const Spectra& spectra, double hz, double width, double delay, std::vector<ResponseBin>& bins) {
+    bins.clear();
+    const double first = std::max(1.0, std::ceil((hz - width) / spectra.step));
+    const double last =
+        std::min(static_cast<double>(spectra.drive.size() - 1), std::floor((hz + width) / spectra.step));
+    for (double bin = first; bin <= last; ++bin) {
+        const auto k = static_cast<std::size_t>(bin);
+        const double f = bin * spectra.step, drive = std::norm(spectra.drive[k]);
+        if (!(drive > 0.0)) continue;
+        Complex sum = 0.0;
+        for (const Spectrum& answer : spectra.answers) sum += answer[k];
+        const auto repeats = static_cast<double>(spectra.answers.size());
+        bins.push_back({f, sum / (repeats * spectra.drive[k]) * std::polar(1.0, 2.0 * pi * f * delay),
+                        (0.5 + 0.5 * std::cos(pi * (f - hz) / width)) * drive * repeats});
+    }
+    return fit_local_model(bins, hz, width, spectra.oversampling);
+}
+
+/// How much of its amplitude a resonance still has at the end of the period, which begins to ring when the sweep passes.
+double left_at_the_end(const SweepRun& run, double hz, double damping) {
+    const double passes = run.sweep.growth() * std::log(hz / run.sweep.first);
+    return std::exp(-damping * 2.0 * pi * hz * (run.sweep.duration + run.pause - passes));
 }
 
 /// Time of the impulse response's peak within the swept band, s.
@@ -126,6 +156,75 @@ double excess_delay(const FrequencyResponse& response) {
     return spread > 0.0 ? -(w * wfp - wf * wp) / spread / (2.0 * pi) : 0.0;
 }
 
+/// The mode of a model around its own pole; none unless the pole is within the window, significant and stands out.
+std::optional<Mode> mode_near(const SweepRun& run, const Spectra& spectra, const LocalModel& coarse, double delay,
+                              std::vector<ResponseBin>& bins) {
+    const double width = coarse.half_width;
+    if (!coarse.is_significant() || std::abs(coarse.frequency() - coarse.centre) > 0.5 * width) return std::nullopt;
+    const LocalModel model = local_model(spectra, coarse.frequency(), width, delay, bins);
+    if (!model.is_significant()) return std::nullopt;
+    const double f0 = model.frequency(), half = model.pole().imag();
+    if (std::abs(f0 - model.centre) > 0.25 * width || 2.5 * half > width || model.pole_deviation > 0.5 * half)
+        return std::nullopt;
+    Mode mode{f0, model.damping(), model.pole_deviation / half, left_at_the_end(run, f0, model.damping()), 0.0, 0.0};
+    for (int i = -20; i <= 20; ++i) mode.peak = std::max(mode.peak, std::abs(model(f0 + 0.1 * i * half)));
+    for (const double side : {-1.0, 1.0})
+        if (mode.peak < 1.1 * std::abs(model(f0 + 2.0 * side * half))) return std::nullopt;
+    const double noise = std::pow(2.0 * mode.deviation / 0.05, 2.0);
+    const double ringing = std::log(1.0 / 0.05) / (mode.damping * 2.0 * pi * f0);
+    const double passes = std::log(f0 / run.sweep.first) / std::log(run.sweep.last / run.sweep.first);
+    mode.needed_duration =
+        std::max(run.sweep.duration * std::max(1.0, noise), (ringing - run.pause) / std::max(0.05, 1.0 - passes));
+    return mode;
+}
+
+/// Resonances by models of windows from `width` on, up to 64 times as wide: the narrowest window that resolves one leaves
+/// the least to the parabola, and so the least bias; a wider one counts where that is too noisy.
+std::vector<Mode> modes_of(const SweepRun& run, const Spectra& spectra, std::span<const double> hz, double width,
+                           double delay) {
+    std::vector<Mode> modes;
+    std::vector<ResponseBin> bins;
+    std::size_t stride = 1;  // of the centres: windows overlap by more than half
+    for (double window = width; window <= 64.0 * width; window *= 2.0, stride = std::min<std::size_t>(2 * stride, 8))
+        for (std::size_t i = 0; i < hz.size(); i += stride) {
+            const double f = hz[i];
+            if (window > 0.5 * f) continue;
+            const auto mode = mode_near(run, spectra, local_model(spectra, f, window, delay, bins), delay, bins);
+            if (!mode || mode->hz < hz.front() || mode->hz > hz.back()) continue;
+            const auto known = std::ranges::find_if(modes, [&](const Mode& one) {
+                return std::abs(one.hz - mode->hz) < std::max(one.hz * one.damping, mode->hz * mode->damping);
+            });
+            if (known == modes.end()) modes.push_back(*mode);
+            else if (known->deviation > 0.025 && mode->deviation < known->deviation) *known = *mode;
+        }
+    std::ranges::sort(modes, {}, &Mode::hz);
+    return modes;
+}
+
+/// Adds frequencies around each mode, a quarter of its half width apart. `add` appends the response at a frequency.
+template <class Add>
+void refine(FrequencyResponse& response, const std::vector<Mode>& modes, const Add& add) {
+    if (modes.empty()) return;
+    const double low = response.hz.front(), high = response.hz.back();
+    for (const Mode& mode : modes)
+        for (int i = -32; i <= 32; ++i) {
+            const double f = mode.hz * (1.0 + 0.25 * mode.damping * i);
+            if (f > low && f < high) add(f);
+        }
+    std::vector<std::size_t> order(response.hz.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, {}, [&](std::size_t i) { return response.hz[i]; });
+    FrequencyResponse sorted;
+    sorted.latency = response.latency;
+    for (const std::size_t i : order) {
+        if (!sorted.hz.empty() && response.hz[i] <= sorted.hz.back() * (1.0 + 1e-9)) continue;
+        sorted.hz.push_back(response.hz[i]);
+        sorted.gain.push_back(response.gain[i]);
+        sorted.coherence.push_back(response.coherence[i]);
+    }
+    response = std::move(sorted);
+}
+
 }  // namespace
 
 Identified identify(const SweepRun& run, std::span<const float> captured, double rate, int highest_order,
@@ -145,18 +244,33 @@ Identified identify(const SweepRun& run, std::span<const float> captured, double
     const int count = static_cast<int>(std::floor(std::log2(last / first) * per_octave)) + 1;
     for (int i = 0; i < count; ++i) response.hz.push_back(first * std::exp2(static_cast<double>(i) / per_octave));
 
-    const auto measure = [&](double delay) {
-        response.gain.clear();
-        response.coherence.clear();
-        for (const double f : response.hz) {
-            const Average here = average(spectra, f, width, delay);
-            response.gain.push_back(here.gain() * std::polar(1.0, 2.0 * pi * f * delay));
-            response.coherence.push_back(here.coherence());
+    std::vector<ResponseBin> bins;
+    const auto add = [&](double f, double delay, const LocalModel& model) {
+        const Average here = average(spectra, model.is_significant() ? model.centre : f, width, delay);
+        Complex gain = here.gain() * std::polar(1.0, 2.0 * pi * f * delay);
+        double coherence = here.coherence();
+        if (model.is_significant()) {
+            gain = model(f);
+            // Of the power of the bins the part that the model explains.
+            double explained = 0.0;
+            for (const ResponseBin& bin : bins) explained += bin.weight * std::norm(model(bin.hz));
+            coherence = std::min(1.0, explained / std::max(here.answer, 1e-300));
         }
+        response.hz.push_back(f);
+        response.gain.push_back(gain);
+        response.coherence.push_back(coherence);
+    };
+    const auto measure = [&](double delay) {
+        const std::vector<double> hz = std::move(response.hz);
+        response = {};
         response.latency = delay;
+        for (const double f : hz) add(f, delay, local_model(spectra, f, width, delay, bins));
     };
     measure(coarse_delay(run, spectra, rate));
     measure(response.latency + excess_delay(response));
+    out.modes = modes_of(run, spectra, response.hz, width, response.latency);
+    refine(response, out.modes,
+           [&](double f) { add(f, response.latency, local_model(spectra, f, width, response.latency, bins)); });
 
     // The linear response is far stronger and must not leak in: a wider average rejects it better.
     const double wide = 3.0 * width;

@@ -16,6 +16,7 @@
     X(view, run, run_and_patch)           \
     X(spectrum, vibration, vibrations)    \
     X(orders, vibration, vibrations)      \
+    X(response, vibration, vibrations)    \
     X(compare, vibration, vibrations)     \
     X(validate, vibration, vibrations)    \
     X(measure, vibration, vibrations)     \

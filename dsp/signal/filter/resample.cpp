@@ -3,6 +3,7 @@
 
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/signal/filter/bessel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,16 +17,6 @@ constexpr double half_width = 20.0;   // zero crossings of the sinc on each side
 constexpr double attenuation = 80.0;  // dB
 constexpr std::size_t most_phases = 1024;
 
-/// Modified Bessel function of order 0.
-double bessel(double x) {
-    double sum = 1.0, term = 1.0;
-    for (int k = 1; k < 50; ++k) {
-        term *= (0.5 * x / k) * (0.5 * x / k);
-        sum += term;
-    }
-    return sum;
-}
-
 constexpr std::size_t table_size = 16384;
 
 /// One side of a low-pass kernel of gain 1 with its edge at `cutoff` cycles per sample (Kaiser window), tabulated so
@@ -35,7 +26,7 @@ std::vector<double> kernel_table(double cutoff) {
     std::vector<double> table(table_size + 2);
     for (std::size_t i = 0; i < table_size; ++i) {
         const double u = static_cast<double>(i) / table_size, angle = pi * half_width * u;
-        const double window = bessel(beta * std::sqrt(1.0 - u * u)) / bessel(beta);
+        const double window = bessel_i0(beta * std::sqrt(1.0 - u * u)) / bessel_i0(beta);
         table[i] = 2.0 * cutoff * window * (i == 0 ? 1.0 : std::sin(angle) / angle);
     }
     return table;

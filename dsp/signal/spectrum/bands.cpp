@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/bands.hpp"
 
+#include "dsp/core/constants.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,15 @@ double band_power(std::span<const double> density, double df, double low, double
 
 double band_power(const Spectrum& density, double low, double high) {
     return band_power(density.power, density.df, low, high);
+}
+
+double integrated_band_power(const Spectrum& density, double low, double high) {
+    std::vector<double> integrated(density.power.size());
+    for (std::size_t k = 1; k < integrated.size(); ++k) {
+        const double omega = 2.0 * pi * density.frequency(k);
+        integrated[k] = density.power[k] / (omega * omega);
+    }
+    return band_power(integrated, density.df, low, high);
 }
 
 std::vector<Band> third_octaves(const Spectrum& density) {

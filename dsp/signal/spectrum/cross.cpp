@@ -49,6 +49,13 @@ std::vector<std::complex<double>> CrossSpectra::h2() const {
     return h;
 }
 
+std::vector<std::complex<double>> CrossSpectra::hv() const {
+    std::vector<std::complex<double>> h(xx.size());
+    for (std::size_t k = 0; k < xx.size(); ++k)
+        if (xx[k] > 0.0 && std::norm(xy[k]) > 0.0) h[k] = std::polar(std::sqrt(yy[k] / xx[k]), std::arg(xy[k]));
+    return h;
+}
+
 std::vector<double> CrossSpectra::response_deviation() const {
     std::vector<double> deviation = coherence();
     for (double& gamma : deviation)
@@ -96,6 +103,13 @@ void CrossStream<T>::push(std::span<const T> x, std::span<const T> y) {
 }
 
 template <class T>
+void CrossStream<T>::forget_waiting() noexcept {
+    // The segments that are complete count; the rest would span the gap.
+    if (held_ >= settings_.segment) take((held_ - settings_.segment) / settings_.step() + 1);
+    held_ = 0;
+}
+
+template <class T>
 void CrossStream<T>::take(std::size_t count) {
     std::array<const T*, SegmentFft<T>::lanes> at_x{}, at_y{};
     for (std::size_t i = 0; i < count; ++i) {
@@ -112,13 +126,13 @@ void CrossStream<T>::take(std::size_t count) {
         group_.im[k] += sum_lanes<T>(a * d - b * c);
     }
     segments_ += count;
-    if (segments_ % group_segments == 0) total_.add(group_);
+    if (segments_ / group_segments != (segments_ - count) / group_segments) total_.add(group_);
 }
 
 template <class T>
 CrossSpectra CrossStream<T>::spectra() const {
     CrossStream end = *this;
-    if (held_ >= settings_.segment) end.take((held_ - settings_.segment) / settings_.step() + 1);
+    end.forget_waiting();
     end.total_.add(end.group_);
     const std::vector<double> window(transform_x_.window().begin(), transform_x_.window().end());
     double sum = 0.0, squares = 0.0;

@@ -24,6 +24,9 @@ struct CrossSpectra {
     std::vector<std::complex<double>> h1() const;
     /// H2 = Pyy/conj(Pxy): response from x to y, unbiased by noise in x.
     std::vector<std::complex<double>> h2() const;
+    /// Hv = √(H1 H2) with the phase of Pxy: for noise of equal relative power in both channels. The geometric mean, unlike
+    /// the total least squares of Rocklin, Crowley and Vold (1985), does not depend on the units.
+    std::vector<std::complex<double>> hv() const;
     /// Standard deviation of |H1| relative to it, per bin: √((1−γ²)/(2γ²K)).
     std::vector<double> response_deviation() const;
 };
@@ -44,6 +47,8 @@ public:
     void push(std::span<const T> x, std::span<const T> y);
     /// From all samples pushed so far. Allocates.
     CrossSpectra spectra() const;
+    /// Marks a gap: no segment spans it.
+    void forget_waiting() noexcept;
 
 private:
     void take(std::size_t count);

@@ -100,6 +100,14 @@ std::vector<Harmonic> harmonic_table(const Spectrum& spectrum, double fundamenta
     return table;
 }
 
+std::optional<double> total_harmonic_distortion(std::span<const Harmonic> table) {
+    if (table.empty() || !table.front().present || table.front().order != 1) return std::nullopt;
+    double higher = 0.0;
+    for (const Harmonic& harmonic : table.subspan(1))
+        if (harmonic.present) higher += harmonic.power;
+    return std::sqrt(higher / table.front().power);
+}
+
 std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
     std::vector<HumLine> found;
     if (spectrum.power.size() < 16) return found;

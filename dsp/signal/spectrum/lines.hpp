@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace tactus::signal {
@@ -55,6 +57,10 @@ struct Harmonic : SpectralLine {
 
 /// Orders 1 … `orders` of `fundamental`, up to the end of the spectrum.
 std::vector<Harmonic> harmonic_table(const Spectrum& spectrum, double fundamental, int orders);
+
+/// Total harmonic distortion: rms of the present orders from 2 on over that of order 1 (IEC 61000-4-7, THD of the
+/// fundamental). None without a present first order.
+std::optional<double> total_harmonic_distortion(std::span<const Harmonic> table);
 
 struct HumLine : SpectralLine {
     int mains = 50;  ///< 50 or 60 Hz

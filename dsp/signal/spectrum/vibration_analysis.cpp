@@ -56,6 +56,7 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
         const std::size_t length = suggested_segment(envelope_->rate(), frames / envelope_->step());
         envelope_spectrum_.emplace(WelchSettings::hann(envelope_->rate(), length, length / 2));
     }
+    if (settings.octave_filters > 0) octaves_.emplace(settings.octave_filters, settings.psd.rate, frames);
     if (settings.spectrogram) {
         const double longest = std::min(0.1 * settings.psd.rate, static_cast<double>(frames) / 8.0);
         spectrogram_.emplace(std::bit_floor(static_cast<std::size_t>(std::max(16.0, longest))), settings.psd.rate);
@@ -63,12 +64,18 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
 }
 
 void VibrationAnalysis::push(std::span<const double> samples) {
+    if (settings_.only_psd) {
+        (psd_ ? *psd_ : lines_).push(samples);
+        return;
+    }
     level_.push(samples);
+    moments_.push(samples, mean_);
     lines_.push(samples);
     if (in_piece_ == 0) surround();
     shifted_.assign(samples.begin(), samples.end());
     for (double& x : shifted_) x -= mean_;
     bands_.push(shifted_);
+    if (octaves_) octaves_->push(shifted_);
     in_piece_ += samples.size();
     pushed_ += samples.size();
     if (psd_) psd_->push(samples);
@@ -109,6 +116,7 @@ void VibrationAnalysis::gap() {
         bands_.forget_waiting();
         in_piece_ = 0;
     }
+    if (octaves_) octaves_->gap();
     lines_.forget_waiting();
     if (psd_) psd_->forget_waiting();
     fundamental_.gap();
@@ -119,10 +127,15 @@ VibrationReport VibrationAnalysis::report() const {
     out.level = level_;
     out.lines = lines_.spectrum();
     out.psd = psd_ ? psd_->spectrum() : out.lines;
+    if (settings_.only_psd) return out;
+    out.moments = moments_;
     out.spectrogram = spectrogram_;
+    if (octaves_) out.filtered = octaves_->bands();
     if (out.lines.power.size() < 8) return out;
     out.fundamental = fundamental_.estimate();
     out.harmonics = harmonic_table(out.lines, out.fundamental.frequency, settings_.orders);
+    out.thd = total_harmonic_distortion(out.harmonics);
+    out.cepstrum = real_cepstrum(out.lines);
     out.peaks = strongest(find_lines(out.lines, 2.0 * out.lines.df, settings_.psd.rate));
     out.hum = find_hum(out.lines, out.fundamental.frequency);
     out.bands = third_octaves(band_spectrum());

@@ -2,11 +2,14 @@
 // Complete analysis of one channel of a vibration record, in one pass and bounded memory.
 #pragma once
 
+#include "dsp/signal/filter/octave_band.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/cepstrum.hpp"
 #include "dsp/signal/spectrum/envelope.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/level.hpp"
 #include "dsp/signal/spectrum/lines.hpp"
+#include "dsp/signal/spectrum/moments.hpp"
 #include "dsp/signal/spectrum/spectrogram.hpp"
 
 #include <optional>
@@ -20,14 +23,20 @@ struct AnalysisSettings {
     int orders = 10;
     std::optional<std::pair<double, double>> envelope;  ///< Hz: band of the envelope analysis
     bool spectrogram = false;
+    int octave_filters = 0;  ///< filters per octave, 1 or 3; 0: none
+    bool only_psd = false;   ///< `psd`, nothing else
 };
 
 struct VibrationReport {
     Level level;
+    Moments moments;
     Spectrum psd;  ///< density, with the given settings
     Spectrum lines;  ///< density, Hann, mean: the source of lines and bands
     FundamentalEstimate fundamental;
     std::vector<Harmonic> harmonics;
+    std::optional<double> thd;  ///< total harmonic distortion over the orders of the table
+    Cepstrum cepstrum;  ///< of `lines`
+    std::vector<FilteredBand> filtered;  ///< by octave filters, on request
     std::vector<SpectralLine> peaks;  ///< the strongest 20, by frequency
     std::vector<HumLine> hum;
     std::vector<Band> bands;  ///< of all samples alike: their sum is the mean square, but for what is outside of them
@@ -41,7 +50,7 @@ public:
     /// `frames`: length of the record. Throws Error when the settings are invalid.
     VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames);
 
-    /// Of the whole record, before the first `push`; bands are of what is left without it.
+    /// Of the whole record, before the first `push`; bands and moments are of what is left without it.
     void set_mean(double mean) { mean_ = mean; }
     void push(std::span<const double> samples);
     /// Marks a gap: no segment spans it.
@@ -55,6 +64,7 @@ private:
     AnalysisSettings settings_;
     std::size_t frames_;
     Level level_;
+    Moments moments_;
     WelchStream<double> lines_, bands_;
     double mean_ = 0.0;
     std::size_t in_piece_ = 0;  // samples since the start or the last gap
@@ -65,6 +75,7 @@ private:
     std::optional<BandEnvelope> envelope_;
     std::optional<WelchStream<double>> envelope_spectrum_;
     std::optional<Spectrogram> spectrogram_;
+    std::optional<OctaveBank> octaves_;
     std::vector<double> envelope_values_;
 };
 

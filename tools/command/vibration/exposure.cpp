@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tactus exposure: hand-arm vibration exposure (ISO 5349-1).
+// tactus exposure: vibration exposure of the hand (ISO 5349-1) and of the whole body (ISO 2631-1, -4).
 #include "tools/study/vibration/exposure.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
@@ -7,6 +7,8 @@
 #include "dsp/core/readable.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/vibration/body_exposure_text.hpp"
+#include "tools/command/vibration/exposure_verdict.hpp"
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
@@ -30,6 +32,7 @@ using Operation = study::ExposureOperation;
 
 struct ExposureChoice : RecordChoice {
     std::vector<std::string> durations;  // quantities of time; a bare number is hours
+    std::string body = "hand", axes;     // of the body: hand, whole or rail; "xyz"
     bool uncalibrated = false;           // take values of a record without calibration as m/s²
     int jobs = 0;                        // files at a time, 0: one per core
     std::filesystem::path table;
@@ -45,49 +48,22 @@ double parse_duration(const std::string& text) {
     return seconds;
 }
 
-Json minutes_json(double value, double acceleration) {
-    const double minutes = signal::time_to_reach(value, acceleration) / 60.0;
-    return std::isfinite(minutes) ? Json(minutes) : Json(nullptr);
+Json minutes_until(double value, const Operation& one) {
+    return minutes_json(signal::time_to_reach(value, one.total()));
 }
 
 std::string reached(double value, const Operation& one) {
-    const double minutes = signal::time_to_reach(value, one.total()) / 60.0;
-    if (minutes > 1440.0) return one.is_lower_bound() ? "cannot be judged" : "not within a day";
-    return fmt::format("after {}{:.0f} min", one.is_lower_bound() ? "at most " : "", minutes);
-}
-
-const char* verdict_name(study::ExposureVerdict verdict) {
-    switch (verdict) {
-        case study::ExposureVerdict::below_action: return "below_action";
-        case study::ExposureVerdict::above_action: return "above_action";
-        case study::ExposureVerdict::above_limit: return "above_limit";
-        case study::ExposureVerdict::at_least_above_action: return "at_least_above_action";
-        case study::ExposureVerdict::cannot_be_judged: break;
-    }
-    return "cannot_be_judged";
-}
-
-std::string verdict_text(double a8, bool is_lower_bound) {
-    const std::string value = fmt::format("A(8) {}{} m/s^2: ", is_lower_bound ? "at least " : "", plain(a8, 3));
-    switch (study::judge_exposure(a8, is_lower_bound)) {
-        case study::ExposureVerdict::below_action: return value + "below the action value, 2.5";
-        case study::ExposureVerdict::above_action: return value + "above the action value, 2.5";
-        case study::ExposureVerdict::above_limit: return value + "above the limit value, 5";
-        case study::ExposureVerdict::at_least_above_action:
-            return value + "above the action value, 2.5; whether the limit value, 5, is kept cannot be judged";
-        case study::ExposureVerdict::cannot_be_judged: break;
-    }
-    return value + "cannot be judged; axes, frequencies or peaks are missing in the record";
+    return reached_text(signal::time_to_reach(value, one.total()), one.is_lower_bound());
 }
 
 Json operation_json(const Operation& one) {
     return {{"a_hw", one.weighted},
             {"a_hv", one.three_axes ? Json(one.total()) : Json(nullptr)},
             {"a8", signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}})},
-            {"minutes_to_action", minutes_json(signal::action_value, one.total())},
-            {"minutes_to_limit", minutes_json(signal::limit_value, one.total())},
+            {"minutes_to_action", minutes_until(signal::hand_arm_limits.action, one)},
+            {"minutes_to_limit", minutes_until(signal::hand_arm_limits.limit, one)},
             {"calibrated", one.calibrated},
-            {"band_hz", {signal::hand_arm_lowest, one.band_high}},
+            {"band_hz", {signal::weighting_h.lowest, one.band_high}},
             {"lower_bound", one.is_lower_bound()},
             {"a_hw_filter", one.filtered},
             {"a_hw_by", "transform of the record"},
@@ -113,8 +89,8 @@ std::string table_row(const Operation& one) {
     return fmt::format("{},{}{},{},{},{},{},{},{},{},{},\n", csv_field(one.file), axes,
                        one.three_axes ? fmt::format("{}", one.total()) : std::string(),
                        signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}),
-                       one.duration, minutes(signal::action_value), minutes(signal::limit_value), one.calibrated,
-                       signal::hand_arm_lowest, one.band_high, csv_field(notes));
+                       one.duration, minutes(signal::hand_arm_limits.action), minutes(signal::hand_arm_limits.limit),
+                       one.calibrated, signal::weighting_h.lowest, one.band_high, csv_field(notes));
 }
 
 void write_table(const ExposureChoice& choice, const std::vector<Operation>& operations,
@@ -137,8 +113,8 @@ void print_operation(const Operation& one) {
         fmt::print("  axis {}: a_hw {} m/s^2 rms, by transform of the record (by filter {})\n", one.axes[i],
                    plain(one.weighted[i]), plain(one.filtered[i]));
     if (one.three_axes) fmt::print("  a_hv {} m/s^2\n", plain(one.total(), 3));
-    fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one),
-               reached(signal::limit_value, one));
+    fmt::print("  action value {}, limit value {}\n", reached(signal::hand_arm_limits.action, one),
+               reached(signal::hand_arm_limits.limit, one));
     for (const std::string& note : one.notes) fmt::print("  {}\n", note);
 }
 
@@ -153,24 +129,36 @@ void print_table(const std::vector<Operation>& operations) {
             fmt::print(
                 "{:<{}}  {:>9}  {:>9}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, plain(one.total(), 3),
                 plain(signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), 3),
-                one.duration / 60.0, reached(signal::action_value, one), reached(signal::limit_value, one),
+                one.duration / 60.0, reached(signal::hand_arm_limits.action, one),
+                reached(signal::hand_arm_limits.limit, one),
                 one.is_lower_bound() || !one.calibrated ? "  (see --table)" : "");
 }
 
-int exposure(const ExposureChoice& choice) {
-    const std::vector<std::filesystem::path> files = study::expand_folders(choice.files);
-    if (choice.durations.size() > 1 && choice.durations.size() != files.size())
+/// Durations of the files, s: one for all, or one each.
+std::vector<double> durations_of(const ExposureChoice& choice, std::size_t files) {
+    if (choice.durations.size() > 1 && choice.durations.size() != files)
         throw Error(fmt::format("there are {} durations for {} files; give one, or one per file",
-                                choice.durations.size(), files.size()));
+                                choice.durations.size(), files));
     std::vector<double> durations;
     for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
     if (durations.empty()) durations.push_back(signal::reference_day);
-    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated};
+    durations.resize(files, durations.front());
+    return durations;
+}
+
+std::string no_day(bool bad) {
+    return bad ? "a file could not be used" : "the durations add up to more than 24 h; state them with --duration";
+}
+
+int hand_exposure(const ExposureChoice& choice, const std::vector<std::filesystem::path>& files) {
+    if (!choice.axes.empty())
+        throw Error("--axes is of --body whole and --body rail; the hand has one weighting for all");
+    const std::vector<double> durations = durations_of(choice, files.size());
+    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated, {}};
     std::vector<Operation> operations(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
-            operations[i] =
-                study::analyse_exposure(files[i], settings, durations[std::min(i, durations.size() - 1)], progress);
+            operations[i] = study::analyse_exposure(files[i], settings, durations[i], progress);
         });
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
@@ -187,7 +175,8 @@ int exposure(const ExposureChoice& choice) {
                                              ? operation_json(operations[i])
                                              : Json{{"file", files[i].string()}, {"error", failures[i]}});
         json["lower_bound"] = is_bound;
-        json["verdict"] = a8 ? Json(verdict_name(study::judge_exposure(day, is_bound))) : Json();
+        json["verdict"] =
+            a8 ? Json(verdict_name(study::judge_exposure(day, signal::hand_arm_limits, is_bound))) : Json();
         json["years_to_white_fingers"] = day > 0.0 ? Json(signal::years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
@@ -196,12 +185,52 @@ int exposure(const ExposureChoice& choice) {
     else
         for (const Operation& one : operations)
             if (!one.file.empty()) print_operation(one);
-    if (a8) fmt::print("{}\n", verdict_text(day, is_bound));
-    else
-        fmt::print(
-            "no A(8) of the day: {}\n",
-            bad ? "a file could not be used" : "the durations add up to more than 24 h; state them with --duration");
+    if (a8) fmt::print("{}\n", verdict_text("A(8)", "m/s^2", day, signal::hand_arm_limits, is_bound));
+    else fmt::print("no A(8) of the day: {}\n", no_day(bad));
     return bad ? bad_input : done;
+}
+
+int body_exposure(const ExposureChoice& choice, const std::vector<std::filesystem::path>& files) {
+    const std::vector<double> durations = durations_of(choice, files.size());
+    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated, choice.axes};
+    const bool is_health = choice.body == "whole";
+    const auto judgement = is_health ? signal::BodyJudgement::health : signal::BodyJudgement::rail_comfort;
+    std::vector<study::BodyOperation> operations(files.size());
+    const std::vector<std::string> failures =
+        run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
+            operations[i] = study::analyse_body_exposure(files[i], settings, judgement, durations[i], progress);
+        });
+    const bool bad = tell_failures(failures) > 0;
+    if (!choice.table.empty()) {
+        std::string table = body_table_header();
+        for (std::size_t i = 0; i < files.size(); ++i)
+            table += failures[i].empty()
+                         ? body_table_rows(operations[i])
+                         : fmt::format("{},,,,,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
+        file::write_whole_file(choice.table, table);
+    }
+    if (bad && files.size() == 1 && !choice.json) return bad_input;
+    std::optional<study::BodyDay> day;
+    if (!bad && is_health) day = study::body_day(operations);
+    if (choice.json) {
+        Json json{{"body", choice.body}, {"day", body_day_json(day)}, {"operations", Json::array()}};
+        for (std::size_t i = 0; i < files.size(); ++i)
+            json["operations"].push_back(failures[i].empty()
+                                             ? body_json(operations[i])
+                                             : Json{{"file", files[i].string()}, {"error", failures[i]}});
+        fmt::print("{}\n", json.dump(2));
+        return bad ? bad_input : done;
+    }
+    for (const study::BodyOperation& one : operations)
+        if (!one.file.empty()) fmt::print("{}", body_text(one));
+    if (day) fmt::print("{}", body_day_text(*day));
+    else if (is_health) fmt::print("no A(8) of the day: {}\n", no_day(bad));
+    return bad ? bad_input : done;
+}
+
+int exposure(const ExposureChoice& choice) {
+    const std::vector<std::filesystem::path> files = study::expand_folders(choice.files);
+    return choice.body == "hand" ? hand_exposure(choice, files) : body_exposure(choice, files);
 }
 
 Action declare_exposure(VerbOptions& verb) {
@@ -210,6 +239,15 @@ Action declare_exposure(VerbOptions& verb) {
     verb.add("--duration", choice->durations,
              "contact time per day, such as \"90 min\" (default 8 h); one for all, or one per file")
         .one_each();
+    verb.add("--body", choice->body,
+             "hand: ISO 5349-1; whole: ISO 2631-1, health of a seated or standing person; rail: ISO 2631-4, comfort in "
+             "trains")
+        .shows_default()
+        .one_of({"hand", "whole", "rail"});
+    verb.add("--axes", choice->axes,
+             "whole body: the axis of each channel, such as xyz or z; z is along the spine (default: from the names of "
+             "the channels; of three others xyz)")
+        .value_name("LETTERS");
     verb.flag("--uncalibrated", choice->uncalibrated, "interpret the values of an uncalibrated record as m/s^2");
     verb.add("--table", choice->table, "a row per file, CSV");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
@@ -219,7 +257,9 @@ Action declare_exposure(VerbOptions& verb) {
 }  // namespace
 
 Verb exposure_verb() {
-    return {"exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value",
+    return {"exposure",
+            "vibration exposure of the hand (ISO 5349-1) or the whole body (ISO 2631): A(8), VDV, minutes to action "
+            "and limit value",
             declare_exposure};
 }
 

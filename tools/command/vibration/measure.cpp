@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -49,6 +50,15 @@ std::string json_of(const study::Measurement& found, const MeasureChoice& choice
               {"coherence_mean", found.coherence},
               {"band_hz", {found.lowest, found.highest}},
               {"unit", found.response.unit}};
+    json["modes"] = Json::array();
+    for (const vibration::Mode& mode : found.response.identified.modes)
+        json["modes"].push_back({{"hz", mode.hz},
+                                 {"damping_ratio", mode.damping},
+                                 {"relative_deviation", mode.deviation},
+                                 {"bias_bound", mode.truncation},
+                                 {"peak", mode.peak},
+                                 {"resolved", mode.is_resolved()},
+                                 {"needed_duration_s", mode.needed_duration}});
     for (const study::DistortionOrder& order : found.orders)
         json["thd"].push_back({{"order", order.order},
                                {"percent", 100.0 * order.rms},
@@ -76,6 +86,16 @@ void print(const study::Measurement& found, const MeasureChoice& choice, const M
     else
         fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n",
                    found.resonance.hz, found.resonance.damping, kinds[found.resonance.order], found.resonance.error_db);
+    for (const vibration::Mode& mode : found.response.identified.modes) {
+        fmt::print(
+            "  mode        {:.2f} Hz, damping ratio {:.3g} ± {:.1f} % (Q {:.0f}), bias at most {:.1f} %, peak {:.2f} "
+            "dB\n",
+            mode.hz, mode.damping, 100.0 * mode.deviation, 0.5 / mode.damping, 100.0 * mode.truncation,
+            20.0 * std::log10(mode.peak));
+        if (!mode.is_resolved())
+            fmt::print("              its damping needs {:.0f} s for 5 %: --duration {:.0f}\n", mode.needed_duration,
+                       std::ceil(mode.needed_duration));
+    }
     fmt::print("  latency     {:.3f} ms\n", 1e3 * found.response.identified.response.latency);
     fmt::print("  coherence   {:.4f} on average from {:.0f} to {:.0f} Hz\n", found.coherence, found.lowest,
                found.highest);

@@ -28,11 +28,14 @@ struct SpectrumChoice : RecordChoice {
     std::string envelope;              // LOW:HIGH in Hz
     std::string fundamental = "5:1000";  // LOW:HIGH in Hz
     std::string band;                  // LOW:HIGH in Hz, of plots
+    std::string octaves, integrate;    // none, octave or third; none, velocity or displacement
+    double high_pass = 10.0;           // Hz
+    bool only_psd = false;
     std::vector<std::string> marks;
     std::optional<std::size_t> segment;
     std::optional<double> overlap;
     int orders = 10, jobs = 0;         // files at a time, 0: one per core
-    fs::path csv, plot, table, report;
+    fs::path csv, plot, table, report, cepstrum;
 };
 
 struct Outcome {
@@ -64,6 +67,10 @@ study::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) 
     settings.fundamental = parse_band(choice.fundamental, "--fundamental");
     if (!choice.envelope.empty()) settings.envelope = parse_band(choice.envelope, "--envelope");
     settings.orders = choice.orders;
+    settings.octave_filters = choice.octaves == "octave" ? 1 : choice.octaves == "third" ? 3 : 0;
+    settings.integrations = choice.integrate == "velocity" ? 1 : choice.integrate == "displacement" ? 2 : 0;
+    settings.high_pass = choice.high_pass;
+    settings.only_psd = choice.only_psd;
     settings.spectrogram = (!choice.plot.empty() && !overlay) || !choice.report.empty();
     for (const std::string& mark : choice.marks) settings.marks.push_back(study::parse_mark(mark));
     return settings;
@@ -89,9 +96,10 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
     if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
+    if (!choice.cepstrum.empty()) file::write_whole_file(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
     if (!choice.plot.empty() && !overlay)
         picture::write_figure(picture::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"));
-    Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file),
+    Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file, choice.words),
                     analysis_rows(file),
                     choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice)),
                     {}};
@@ -115,7 +123,7 @@ int spectrum(const SpectrumChoice& choice) {
     settings_of(choice, false);  // refuses what cannot be read, before the files are
     plotted_band(choice);
     if (many)
-        for (const fs::path& folder : {choice.csv, choice.plot})
+        for (const fs::path& folder : {choice.csv, choice.plot, choice.cepstrum})
             if (!folder.empty() && !(folder == choice.plot && is_figure(folder))) fs::create_directories(folder);
     std::vector<Outcome> outcomes(files.size());
     const std::vector<std::string> failures =
@@ -172,6 +180,19 @@ Action declare_spectrum(VerbOptions& verb) {
     verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of the envelope of this band");
     verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: search range of the fundamental").shows_default();
     verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
+    verb.add("--octave-filters", choice->octaves,
+             "levels by filters of IEC 61260-1, class 1, of an octave or a third, up to 0.24 times the sample rate")
+        .one_of({"octave", "third"});
+    verb.add("--integrate", choice->integrate, "analyse the velocity or displacement of an acceleration")
+        .one_of({"velocity", "displacement"});
+    verb.add("--high-pass", choice->high_pass, "high-pass of each integration, Hz")
+        .unit("Hz")
+        .shows_default()
+        .range(1e-3, 1e6);
+    verb.add(
+        "--cepstrum", choice->cepstrum,
+        "CSV file with quefrency and cepstrum per channel, and its peaks in the text; for several files: a folder");
+    const Option only_psd = verb.flag("--psd-only", choice->only_psd, "the spectrum alone, in one pass: --csv, --json");
     verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
     verb.add("--plot", choice->plot,
              "figure, .svg or .png: several files in one plot; or a folder for a figure of each");
@@ -185,6 +206,10 @@ Action declare_spectrum(VerbOptions& verb) {
     verb.add("--table", choice->table, "CSV file with one row per file and channel");
     verb.add("--report", choice->report, "HTML file with figures, tables and methods");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
+    for (const char* other :
+         {"--octave-filters", "--cepstrum", "--envelope", "--plot", "--mark", "--table", "--report"})
+        verb.find(other).excludes(only_psd);
+    verb.check([choice] { choice->words.cepstrum = !choice->cepstrum.empty(); });
     return [choice] { return spectrum(*choice); };
 }
 

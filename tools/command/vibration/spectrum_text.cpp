@@ -30,11 +30,32 @@ std::string power_unit(const AnalysedFile& file, bool density) {
     return fmt::format("({})^2{}", file.calibration.unit, density ? "/Hz" : "");
 }
 
+/// rms of a channel: of its samples, or by Parseval of the spectrum alone.
+double rms_of(const AnalysedChannel& channel, const AnalysedFile& file) {
+    if (!file.only_psd) return channel.report.level.rms();
+    const signal::Spectrum& psd = channel.report.psd;
+    double sum = 0.0;
+    for (const double power : psd.power) sum += power;
+    return std::sqrt(sum * psd.df * (file.is_density ? 1.0 : 1.0 / psd.noise_bandwidth));
+}
+
+constexpr std::size_t most_cepstral_peaks = 5;
+constexpr const char* quantities[] = {"acceleration", "velocity", "displacement"};
+
 Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
 
 Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
     const signal::VibrationReport& r = channel.report;
     const study::LevelReference reference = study::level_reference(file.calibration);
+    if (file.only_psd) {
+        const double rms = rms_of(channel, file);
+        return {{"name", channel.name},
+                {"rms", rms},
+                {"rms_db", reference.db(rms * rms)},
+                {"db_re", reference.text},
+                {"unit", file.calibration.unit},
+                {"calibrated", file.calibration.known}};
+    }
     Json json{{"name", channel.name},
               {"rms", r.level.rms()},
               {"rms_db", reference.db(r.level.rms() * r.level.rms())},
@@ -43,6 +64,11 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
               {"mean", r.level.mean()},
               {"peak", r.level.peak()},
               {"clipped", r.level.clipped()},
+              {"skewness", r.moments.skewness()},
+              {"kurtosis", r.moments.kurtosis()},
+              {"thd", r.thd ? Json(*r.thd) : Json()},
+              {"machine_velocity_rms", channel.machine_velocity ? Json(*channel.machine_velocity) : Json()},
+              {"cepstrum", Json::array()},
               {"unit", file.calibration.unit},
               {"calibrated", file.calibration.known},
               {"fundamental_hz", number_or_null(r.fundamental.frequency)},
@@ -92,6 +118,14 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
                                  {"db", decibels(b.power)},
                                  {"deviation_db", band_deviation(b, r.lines)}});
     for (const signal::SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
+    for (const signal::CepstralPeak& peak : signal::cepstral_peaks(r.cepstrum, most_cepstral_peaks))
+        json["cepstrum"].push_back({{"quefrency_s", peak.quefrency}, {"hz", peak.frequency()}, {"value", peak.value}});
+    if (!r.filtered.empty()) json["filtered_bands"] = Json::array();
+    for (const signal::FilteredBand& b : r.filtered)
+        json["filtered_bands"].push_back({{"hz", b.centre},
+                                          {"rms", std::sqrt(b.power)},
+                                          {"rms_db", reference.db(b.power)},
+                                          {"deviation_db", b.deviation_db}});
     if (!file.marks.empty()) json["marks"] = Json::array();
     for (const study::MarkPlace& place : file.marks) {
         Json row{{"label", place.label}, {"harmonic", place.harmonic}, {"hz", place.frequency}};
@@ -156,7 +190,9 @@ std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) 
     Json json{{"file", file.file.string()}, {"sample_rate_hz", file.rate}, {"duration_s", file.duration}};
     json["stretch"] = stretch_json(file.stretch);
     if (file.log) json["log"] = log_json(*file.log, file.rate);
-    json["calibration"] = calibration_json(file.calibration);
+    json["calibration"] = calibration_json(file.recorded);
+    if (file.integrations > 0)
+        json["integrated"] = {{"to", quantities[file.integrations]}, {"high_pass_hz", file.high_pass}};
     json["channels"] = Json::array();
     for (const AnalysedChannel& channel : file.channels) json["channels"].push_back(channel_json(channel, file));
     if (!file.channels.empty()) {
@@ -170,21 +206,24 @@ std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) 
                        {"detrend", words.detrend},
                        {"average", words.average},
                        {"segments", psd.segments},
-                       {"relative_deviation", psd.relative_deviation()},
-                       {"lines_df_hz", file.channels.front().report.lines.df}};
+                       {"relative_deviation", psd.relative_deviation()}};
+        if (!file.only_psd) json["psd"]["lines_df_hz"] = file.channels.front().report.lines.df;
     }
     return json.dump(2) + "\n";
 }
 
-std::string analysis_text(const AnalysedFile& file) {
+std::string analysis_text(const AnalysedFile& file, const SpectrumWords& words) {
     std::string text = fmt::format("{}: {:.3f} s at {}, {}\n", file.file.string(), file.duration,
                                    readable(file.rate, "Hz", 6), counted(file.channels.size(), "channel"));
     auto out = std::back_inserter(text);
     const study::LevelReference reference = study::level_reference(file.calibration);
     if (!file.stretch.is_whole()) fmt::format_to(out, "  of the record: {}\n", file.stretch.text());
     fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
-    for (const std::string& line : study::understood(file.calibration, file.log, file.rate))
+    for (const std::string& line : study::understood(file.recorded, file.log, file.rate))
         fmt::format_to(out, "  {}\n", line);
+    if (file.integrations > 0)
+        fmt::format_to(out, "  integrated to {}, high-pass {} of second order{}\n", quantities[file.integrations],
+                       readable(file.high_pass, "Hz"), file.integrations > 1 ? ", twice" : "");
     for (const AnalysedChannel& channel : file.channels) {
         const signal::VibrationReport& r = channel.report;
         const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {
@@ -194,10 +233,18 @@ std::string analysis_text(const AnalysedFile& file) {
                 fmt::format_to(out, " {:.2f} ({:.1f})", l.frequency, reference.db(l.power));
             text += '\n';
         };
-        fmt::format_to(out, "  channel {}: rms {}{}, {:.2f} dB; crest {:.2f}\n", channel.name,
-                       readable(r.level.rms(), file.calibration.unit, 4),
-                       file.calibration.known ? "" : " (uncalibrated)", reference.db(r.level.rms() * r.level.rms()),
-                       r.level.crest());
+        const double rms = rms_of(channel, file);
+        fmt::format_to(out, "  channel {}: rms {}{}, {:.2f} dB", channel.name, readable(rms, file.calibration.unit, 4),
+                       file.calibration.known ? "" : " (uncalibrated)", reference.db(rms * rms));
+        if (file.only_psd) {
+            fmt::format_to(out, " by the spectrum of {} segments\n", r.psd.segments);
+            continue;
+        }
+        fmt::format_to(out, "; crest {:.2f}, kurtosis {:.2f}, skewness {:.2f}\n", r.level.crest(), r.moments.kurtosis(),
+                       r.moments.skewness());
+        if (channel.machine_velocity)
+            fmt::format_to(out, "    velocity {:g} to {:g} Hz (ISO 20816): {} rms\n", study::machine_band.first,
+                           study::machine_band.second, readable(*channel.machine_velocity, "m/s", 4));
         if (r.fundamental.frequency > 0.0) {
             fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
                            r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");
@@ -211,6 +258,7 @@ std::string analysis_text(const AnalysedFile& file) {
             text += "    orders, dB rms:";
             for (const signal::Harmonic& h : r.harmonics)
                 fmt::format_to(out, " {}{}", h.order, h.present ? fmt::format(" {:.1f}", reference.db(h.power)) : " –");
+            if (r.thd) fmt::format_to(out, "; THD {:.3g} %", 100.0 * *r.thd);
             text += '\n';
         }
         list("lines", r.peaks);
@@ -218,6 +266,19 @@ std::string analysis_text(const AnalysedFile& file) {
             fmt::format_to(out, "    hum of {} Hz mains at {:.2f} Hz, {:.1f} dB rms, SNR {:.0f} dB\n", h.mains,
                            h.frequency, reference.db(h.power), h.snr_db);
         list("envelope", r.envelope);
+        if (!r.filtered.empty()) {
+            text += "    octave filters, Hz (dB rms):";
+            for (const signal::FilteredBand& b : r.filtered)
+                fmt::format_to(out, " {:.4g} ({:.1f})", b.centre, reference.db(b.power));
+            text += '\n';
+        }
+        if (words.cepstrum) {
+            const std::vector<signal::CepstralPeak> peaks = signal::cepstral_peaks(r.cepstrum, most_cepstral_peaks);
+            text += peaks.empty() ? "    cepstrum: no family of lines" : "    cepstrum, ms (spacing):";
+            for (const signal::CepstralPeak& peak : peaks)
+                fmt::format_to(out, " {:.2f} ({:.2f} Hz)", 1e3 * peak.quefrency, peak.frequency());
+            text += '\n';
+        }
         text += marks_text(channel, file, reference);
         for (const std::string& warning : channel.warnings) fmt::format_to(out, "    {}\n", warning);
     }
@@ -233,6 +294,22 @@ std::string analysis_csv(const AnalysedFile& file) {
         fmt::format_to(std::back_inserter(text), "{}", file.channels.front().report.psd.frequency(k));
         for (const AnalysedChannel& channel : file.channels)
             fmt::format_to(std::back_inserter(text), ",{}", channel.report.psd.power[k]);
+        text += '\n';
+    }
+    return text;
+}
+
+std::string cepstrum_csv(const AnalysedFile& file) {
+    std::string text = "quefrency_s";
+    for (const AnalysedChannel& channel : file.channels) text += "," + csv_field(channel.name);
+    text += '\n';
+    const std::size_t values = file.channels.empty() ? 0 : file.channels.front().report.cepstrum.value.size();
+    for (std::size_t k = 0; k < values; ++k) {
+        fmt::format_to(std::back_inserter(text), "{}", file.channels.front().report.cepstrum.quefrency(k));
+        for (const AnalysedChannel& channel : file.channels)
+            // A silent channel has none.
+            text +=
+                k < channel.report.cepstrum.value.size() ? fmt::format(",{}", channel.report.cepstrum.value[k]) : ",";
         text += '\n';
     }
     return text;

@@ -11,12 +11,15 @@ namespace tactus::command {
 /// The settings as text.
 struct SpectrumWords {
     std::string window = "hann", detrend = "constant", average = "mean", scaling = "density";
+    bool cepstrum = false;  ///< its peaks in the text
 };
 
 std::string analysis_json(const study::AnalysedFile& file, const SpectrumWords& words);
-std::string analysis_text(const study::AnalysedFile& file);
+std::string analysis_text(const study::AnalysedFile& file, const SpectrumWords& words);
 /// Frequency and density per channel.
 std::string analysis_csv(const study::AnalysedFile& file);
+/// Quefrency and cepstrum per channel.
+std::string cepstrum_csv(const study::AnalysedFile& file);
 /// One row per channel.
 std::string analysis_rows(const study::AnalysedFile& file);
 /// Header of these rows.

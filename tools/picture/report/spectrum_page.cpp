@@ -116,7 +116,7 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
                        counted(file.channels.empty() ? 0 : file.channels.front().report.psd.segments, "segment"),
                        file.psd.segment);
     if (!file.stretch.is_whole()) out += fmt::format("<p>Of the record: {}.</p>\n", file.stretch.text());
-    for (const std::string& line : study::understood(file.calibration, file.log, file.rate))
+    for (const std::string& line : study::understood(file.recorded, file.log, file.rate))
         out += fmt::format("<p>{}.</p>\n", html::escaped(line));
     if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
     for (const study::AnalysedChannel& channel : file.channels) out += channel_section(channel, file);

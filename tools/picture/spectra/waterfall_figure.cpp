@@ -17,6 +17,7 @@ namespace {
 
 constexpr double left = 70.0, width = 560.0, height = 340.0, gap = 30.0, rate_width = 110.0, right = 60.0, each = 420.0;
 constexpr double depth = 60.0;  // dB
+constexpr display::Colour order_ink{0xC8, 0xCC, 0xD2};
 constexpr std::size_t most_rows = 150, most_columns = 220;  // cells of a picture
 
 double place(const study::Waterfall& w, std::size_t row) {
@@ -87,6 +88,31 @@ void draw_cells(display::Figure& figure, const Axes& axes, const study::Waterfal
     figure.unclip();
 }
 
+/// Lines of the orders over frequency, which make rows of one rate each a Campbell diagram: a resonance stands upright,
+/// an order runs along its line. The lines are broken, so that the levels show between.
+void draw_orders(display::Figure& figure, const Axes& axes, const study::Waterfall& w, int highest) {
+    figure.clip(axes.x, axes.y, axes.width, axes.height);
+    for (int order = 1; order <= highest; ++order) {
+        std::vector<display::FigurePoint> line;
+        for (std::size_t row = 0; row < w.rows.size(); ++row)
+            if (order * w.rows[row].rate <= axes.across.high)
+                line.push_back(axes.at(order * w.rows[row].rate, place(w, row)));
+        if (line.size() < 2) break;
+        figure.line(line, order_ink, 0.8, 3.0);
+    }
+    figure.unclip();
+    // Names at the upper end, where the lines are furthest apart.
+    double taken = axes.x;
+    for (int order = 1; order <= highest; ++order) {
+        const double hz = order * w.rows.back().rate;
+        if (hz > axes.across.high) break;
+        const double x = axes.at(hz, 0.0).x;
+        if (x < taken + 22.0) continue;
+        figure.text({x - 3.0, axes.y + 11.0}, fmt::format("×{}", order), 9.0, order_ink, display::TextAnchor::end);
+        taken = x;
+    }
+}
+
 void draw_channel(display::Figure& figure, const study::OrdersOfChannel& channel, const study::Orders& orders,
                   double y) {
     const study::Waterfall& w = *channel.waterfall;
@@ -101,6 +127,7 @@ void draw_channel(display::Figure& figure, const study::OrdersOfChannel& channel
     axes.draw(fmt::format("channel {}: rms, dB re {}", channel.name, reference.text),
               w.settings.of_orders ? "order" : "frequency, Hz", speed ? "rate, Hz" : "time, s");
     draw_cells(figure, axes, w, cells);
+    if (!w.settings.of_orders) draw_orders(figure, axes, w, static_cast<int>(channel.spectrum.orders.size()));
     // The ticks again, over the colours.
     for (const double v : axes.across.ticks())
         figure.line({{axes.at(v, up.low).x, y + height}, {axes.at(v, up.low).x, y + height - 4.0}}, axis_ink, 1.0);

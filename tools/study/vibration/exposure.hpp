@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/signal/exposure/hand_arm.hpp"
-#include "tools/study/vibration/record.hpp"
+#include "tools/study/vibration/weighted_channels.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -13,11 +13,6 @@
 #include <vector>
 
 namespace tactus::study {
-
-struct ExposureSettings {
-    RecordSettings record;
-    bool uncalibrated = false;  ///< interpret the values of an uncalibrated record as m/s²
-};
 
 /// Work with one tool during a day.
 struct ExposureOperation {
@@ -29,7 +24,7 @@ struct ExposureOperation {
     bool calibrated = false, three_axes = false;
     sound::Calibration calibration;
     std::optional<sound::LogFacts> log;
-    double band_high = signal::hand_arm_highest;     ///< Hz
+    double band_high = signal::weighting_h.highest;     ///< Hz
     std::vector<std::string> notes;
 
     double total() const { return signal::vibration_total(weighted); }
@@ -42,7 +37,7 @@ struct ExposureOperation {
 /// What the exposure of a day shows. A lower bound can exceed a value, but never shows that one is kept.
 enum class ExposureVerdict { below_action, above_action, above_limit, at_least_above_action, cannot_be_judged };
 
-ExposureVerdict judge_exposure(double a8, bool is_lower_bound) noexcept;
+ExposureVerdict judge_exposure(double value, const signal::ExposureLimits& limits, bool is_lower_bound) noexcept;
 
 /// Evaluates a record with the axes as channels. `duration`: contact time per day, s. Calls `progress` with the
 /// fraction done. Throws Error.

@@ -174,6 +174,16 @@ Measurement measure(const MeasureSettings& settings, const Progress& progress) {
     found.fit_highest = std::min(settings.fit_highest, response.hz.back());
     found.resonance =
         vibration::fit_resonance(response, std::max(settings.fit_lowest, response.hz.front()), found.fit_highest);
+    // The mode of the resonance has the resolution of the record, which the fit of the level has not.
+    const vibration::Mode* strongest = nullptr;
+    for (const vibration::Mode& mode : found.response.identified.modes)
+        if (mode.hz >= settings.fit_lowest && mode.hz <= found.fit_highest &&
+            (!strongest || mode.peak > strongest->peak))
+            strongest = &mode;
+    if (strongest && (!(found.resonance.hz > 0.0) || std::abs(strongest->hz / found.resonance.hz - 1.0) < 0.03)) {
+        found.resonance.hz = strongest->hz;
+        found.resonance.damping = strongest->damping;
+    }
     found.orders = summarise(found.response.identified, found.lowest, found.highest);
     found.coherence = mean_coherence(response, found.lowest, found.highest);
     return found;

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/readable.hpp"
+#include "dsp/signal/filter/integrator.hpp"
 
 #include <fmt/format.h>
 
@@ -26,9 +27,55 @@ signal::WelchSettings psd_settings(const SpectrumSettings& settings, double rate
     return welch;
 }
 
+/// Integrates a channel of an acceleration in m/s², less its mean.
+class ChannelIntegration {
+public:
+    ChannelIntegration(const SpectrumSettings& settings, double rate, double si, double mean)
+        : stages_(static_cast<std::size_t>(settings.integrations), signal::Integrator(settings.high_pass, rate)),
+          si_(si),
+          mean_(mean) {}
+    void operator()(std::vector<double>& samples) {
+        for (double& x : samples) {
+            x = si_ * (x - mean_);
+            for (signal::Integrator& stage : stages_) x = stage(x);
+        }
+    }
+    void reset() {
+        for (signal::Integrator& stage : stages_) stage.reset();
+    }
+
+private:
+    std::vector<signal::Integrator> stages_;
+    double si_, mean_;
+};
+
+/// Of the integral of an acceleration. Throws Error for another quantity.
+sound::Calibration integrated(const sound::Calibration& recorded, const SpectrumSettings& settings,
+                              const std::filesystem::path& file) {
+    if (settings.integrations == 0) return recorded;
+    if (!recorded.known || !recorded.is_acceleration)
+        throw Error(fmt::format("{}: --integrate needs a calibrated acceleration, not {}; state it with --calibration",
+                                file.string(), recorded.known ? recorded.unit : "an uncalibrated record"));
+    sound::Calibration out;
+    out.known = true;
+    out.unit = settings.integrations == 1 ? "m/s" : "m";
+    return out;
+}
+
+std::optional<double> machine_velocity(const signal::Spectrum& lines, const AnalysedFile& file) {
+    const auto [low, high] = machine_band;
+    const double usable = file.log ? std::min(0.5 * file.rate, file.log->usable) : 0.5 * file.rate;
+    if (!file.recorded.known || usable < high || lines.power.empty() || low < 4.0 * lines.df) return std::nullopt;
+    if (file.integrations == 0 && file.recorded.is_acceleration)
+        return file.recorded.si * std::sqrt(signal::integrated_band_power(lines, low, high));
+    if (file.integrations == 1 && file.high_pass <= low) return std::sqrt(signal::band_power(lines, low, high));
+    return std::nullopt;
+}
+
 std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file,
                                      std::size_t channel) {
     std::vector<std::string> warnings;
+    if (file.only_psd) return warnings;
     const signal::Level& level = report.level;
     if (level.largest() == 0.0) warnings.push_back("the channel is silent");
     else if (level.rms() <= 1e-12 * level.largest())
@@ -76,7 +123,11 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     AnalysedFile out;
     out.file = file;
     out.rate = reader.rate();
-    out.calibration = reader.calibration();
+    out.recorded = reader.calibration();
+    out.calibration = integrated(out.recorded, wanted, file);
+    out.integrations = wanted.integrations;
+    out.high_pass = wanted.integrations > 0 ? wanted.high_pass : 0.0;
+    out.only_psd = wanted.only_psd;
     out.log = reader.log();
     out.stretch = reader.stretch();
     out.is_density = wanted.is_density;
@@ -88,6 +139,8 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     if (wanted.envelope) settings.envelope = *wanted.envelope;
     settings.orders = wanted.orders;
     settings.spectrogram = wanted.spectrogram;
+    settings.only_psd = wanted.only_psd;
+    settings.octave_filters = wanted.octave_filters;
     std::vector<signal::VibrationAnalysis> analyses;
     try {
         for (std::size_t i = 0; i < chosen.size(); ++i) analyses.emplace_back(settings, reader.frames());
@@ -96,16 +149,30 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     }
     // The mean first: the bands contain the ends of the record, where a constant part would be a step.
     sound::RecordBlock block;
-    std::vector<signal::Level> levels(chosen.size());
-    while (reader.next(block))
-        for (std::size_t i = 0; i < chosen.size(); ++i) levels[i].push(block.channels[chosen[i]]);
-    for (std::size_t i = 0; i < chosen.size(); ++i) analyses[i].set_mean(levels[i].mean());
-    reader.rewind();
+    std::vector<ChannelIntegration> integrations;
+    std::vector<double> integrated_samples;
+    if (!wanted.only_psd || wanted.integrations > 0) {
+        std::vector<signal::Level> levels(chosen.size());
+        while (reader.next(block))
+            for (std::size_t i = 0; i < chosen.size(); ++i) levels[i].push(block.channels[chosen[i]]);
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (wanted.integrations > 0) integrations.emplace_back(wanted, out.rate, out.recorded.si, levels[i].mean());
+            else analyses[i].set_mean(levels[i].mean());
+        }
+        reader.rewind();
+    }
     std::size_t done = 0;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             if (block.after_gap) analyses[i].gap();
-            analyses[i].push(block.channels[chosen[i]]);
+            if (integrations.empty()) {
+                analyses[i].push(block.channels[chosen[i]]);
+                continue;
+            }
+            if (block.after_gap) integrations[i].reset();
+            integrated_samples = block.channels[chosen[i]];
+            integrations[i](integrated_samples);
+            analyses[i].push(integrated_samples);
         }
         done += block.size();
         if (progress)
@@ -116,6 +183,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         AnalysedChannel& channel = out.channels.emplace_back();
         channel.name = reader.channels()[chosen[i]];
         channel.report = analyses[i].report();
+        channel.machine_velocity = machine_velocity(channel.report.lines, out);
         channel.marks = levels_at(channel.report.lines, out.marks);
         if (channel.report.envelope_spectrum)
             channel.envelope_marks = levels_at(*channel.report.envelope_spectrum, out.marks);
@@ -123,7 +191,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         if (!wanted.is_density)
             for (double& power : psd.power) power *= psd.noise_bandwidth;
         // The rows themselves have the level, whatever resampling does near half the rate.
-        if (out.log) channel.report.level = out.log->levels[chosen[i]];
+        if (out.log && wanted.integrations == 0) channel.report.level = out.log->levels[chosen[i]];
         channel.warnings = warnings_of(channel.report, out, chosen[i]);
     }
     return out;
