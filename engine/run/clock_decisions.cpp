@@ -86,8 +86,7 @@ int LiveDecisions::overdue(const build::DeviceSlot& slot, const std::vector<buil
                            std::int64_t tick) noexcept {
     const auto is_overdue = [now = tick * period_](const build::ValueSource& source) {
         const GroupRuntime& group = *source.group;
-        return !group.is_over() &&
-               now >= group.computed() * group.plan->period + source.latency + source.limit;
+        return !group.is_over() && now >= group.computed() * group.plan->period + source.latency + source.limit;
     };
     const auto found = std::ranges::find_if(sources, is_overdue);
     const int now = found == sources.end() ? -1 : static_cast<int>(found - sources.begin());

@@ -164,6 +164,8 @@ int GroupRuntime::finish_call() noexcept {
     {
         RealtimeScope scope;
         publish(n);
+        for (Link* link : program_->inputs)
+            if (link->changes_within_calls) link->end_call();
         hold_outputs(n);
         clear_events(n);
     }

@@ -125,8 +125,11 @@ public:
     /// Points inputs at values for the call of activations j … j + frames − 1. Wait-free.
     void deliver(std::int64_t j, int frames) noexcept;
     /// The same for a part of a call, which reads `index`: its activations from … from + frames − 1, the first of which
-    /// has index j. What the first part reads is kept until the next call. Wait-free.
+    /// has index j. What the first part reads is kept until `end_call`. Wait-free.
     void deliver_part(std::int64_t index, std::int64_t j, int from, int frames) noexcept;
+    /// After a call in parts: only the value in use is kept. What a producer has room for then depends on the activations
+    /// that ran, not on how they were divided into calls. Wait-free.
+    void end_call() noexcept { hold_from(used_); }
 
     std::int64_t used() const { return used_; }
     std::int64_t depth() const { return depth_; }

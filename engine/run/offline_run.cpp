@@ -7,6 +7,8 @@
 #include "dsp/core/realtime.hpp"
 #include "engine/observe/observer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <thread>
 #include <utility>
@@ -18,13 +20,36 @@ void OfflineRun::wake_others() {
     steps_.notify_all();
 }
 
-/// Leaves out what a log leaves out, and takes over the programs that are due. True when there was one.
+/// Leaves out what a log leaves out, and takes over the programs that are due. True when there was either: others may
+/// then read, or have room.
 static bool take_up(GroupRuntime& group) noexcept {
-    for (bool took_over = false;; took_over = true) {
-        while (!group.finished() && group.skip_as_decided()) {
-        }
-        if (!group.take_changes()) return took_over;
+    for (bool has_changed = false;; has_changed = true) {
+        while (!group.finished() && group.skip_as_decided()) has_changed = true;
+        if (!group.take_changes()) return has_changed;
     }
+}
+
+void OfflineRun::await_step(std::uint32_t seen) {
+    {
+        const std::lock_guard lock(idle_lock_);
+        if (steps_.load() != seen) return;
+        if (std::exchange(idle_step_, seen) != seen) idle_ = 0;
+        // All have looked since the last change, and none found a group that is ready: none ever will.
+        if (++idle_ == working_) throw Error(why_it_stands());
+    }
+    steps_.wait(seen, std::memory_order_acquire);
+}
+
+std::string OfflineRun::why_it_stands() const {
+    std::vector<std::string> waiting;
+    for (const auto& group : timeline_.groups())
+        if (!group->finished())
+            waiting.push_back(
+                fmt::format("{} at {:.4f} s", group->plan->name, seconds(group->next() * group->plan->period)));
+    return fmt::format("{}: every group waits for another ({}){}",
+                       options_.replay ? "the run cannot be repeated" : "the run cannot go on",
+                       fmt::join(waiting, ", "),
+                       options_.replay ? "; the log of its timing does not fit the patch" : "");
 }
 
 GroupRuntime* OfflineRun::earliest_ready(const std::vector<GroupRuntime*>& mine, bool& all_finished) {
@@ -50,9 +75,9 @@ void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed
         const std::uint32_t seen = steps_.load(std::memory_order_acquire);
         bool all_finished = false;
         GroupRuntime* const group = earliest_ready(mine, all_finished);
-        if (all_finished) return;
+        if (all_finished) break;
         if (!group) {
-            steps_.wait(seen, std::memory_order_acquire);
+            await_step(seen);
             continue;
         }
         int frames = group->max_frames;
@@ -68,6 +93,9 @@ void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed
         if (const auto* ring = group->log.ring; ring && ring->size() * 2 > ring->capacity())
             recorder_.drain_journal(timeline_.groups());
     }
+    const std::lock_guard lock(idle_lock_);
+    --working_;
+    wake_others();
 }
 
 void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
@@ -78,6 +106,7 @@ void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
     for (std::size_t i = 0; i < groups.size(); ++i)
         shares[std::min(groups.size() - 1 - i, count - 1)].push_back(groups[i].get());
     const std::uint64_t seed = timeline_.now().plan.patch.seed;
+    working_ = count;
     if (count == 1 && !progress) {
         work(shares.front(), mix(seed));
         return complete();

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <sched.h>
+#include <algorithm>
 
 namespace tactus::run {
 

@@ -125,7 +125,8 @@ void Timeline::forget_ended() {
         (*same)->telemetry.merge(groups_[i]->telemetry);
         groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    for (auto ended = std::ranges::count_if(groups_, has_ended); ended > static_cast<std::ptrdiff_t>(max_ended); --ended) {
+    for (auto ended = std::ranges::count_if(groups_, has_ended); ended > static_cast<std::ptrdiff_t>(max_ended);
+         --ended) {
         const auto oldest = std::ranges::find_if(groups_, has_ended);
         const auto next = std::find_if(oldest + 1, groups_.end(), has_ended);
         (*next)->take_over_counts(**oldest);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls of audio groups: how long they are, and that nothing depends on it.
+#include "engine/take/timing_log.hpp"
 #include "nodes/catalogue.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
@@ -11,7 +12,7 @@
 #include <atomic>
 #include <ctime>
 #include <filesystem>
-#include <optional>
+#include <utility>
 
 namespace tactus::test {
 
@@ -225,7 +226,8 @@ TEST_CASE("groups that tick faster than the system wakes a thread leave most of 
 
 TEST_CASE("what came too late between two audio groups is repeated from the log, whatever blocks and threads",
           "[virtual][slow]") {
-    std::optional<VirtualClock> clock(std::in_place);
+    // Repeated in virtual time, too, so that the threads of a repetition meet in every order.
+    const VirtualClock clock;
     const PatchText text{{{"a", "loop", "one", {}},
                           {"x", "chaos", "one", {}},
                           {"b", "loop", "two", {}},
@@ -248,9 +250,43 @@ TEST_CASE("what came too late between two audio groups is repeated from the log,
     std::int64_t late = 0;
     for (const auto& group : live.groups()) late += group->telemetry.misses + group->telemetry.skipped;
     CHECK(late > 0);
-    clock.reset();  // replays have no time of their own
     check_replays([&] { return plan_of(text); }, options.seconds, log, live.port_hashes());
     std::filesystem::remove(log);
+}
+
+TEST_CASE("a log in which two groups wait for each other ends the repetition with an error, on any number of threads") {
+    const PatchText text{
+        {{"a", "chaos", "1 kHz", {}}, {"b", "chaos", "500 Hz", {}}}, {"a.out -> b.in", "b.out -> a.in"}, "seed = 7\n"};
+    const auto path = scratch("stands.log");
+    {
+        const run::Engine engine(plan_of(text), {});
+        take::TimingLogWriter writer(path, engine.plan_hash(), 0.1);
+        // At 20 ms each reads what the other gives later.
+        for (const auto& [group, tick] : {std::pair{0, 20}, std::pair{1, 10}})
+            for (const std::uint32_t link : {0u, 1u}) {
+                take::TimingRecord record;
+                record.kind = take::TimingKind::held_read;
+                record.group = static_cast<std::uint16_t>(group);
+                record.source = link;
+                record.tick = tick;
+                record.count = 1;
+                record.value = 25;
+                writer.write(record);
+            }
+        writer.finish();
+    }
+    const take::TimingLog recorded = take::TimingLog::load(path);
+    for (const int threads : {1, 2}) {
+        run::EngineOptions options;
+        options.seconds = 0.1;
+        options.replay = &recorded;
+        run::Engine replay(plan_of(text), options);
+        using Catch::Matchers::ContainsSubstring;
+        CHECK_THROWS_WITH(replay.render(threads),
+                          ContainsSubstring("cannot be repeated: every group waits for another") &&
+                              ContainsSubstring("at 0.0200 s") && ContainsSubstring("does not fit the patch"));
+    }
+    std::filesystem::remove(path);
 }
 
 }  // namespace tactus::test
