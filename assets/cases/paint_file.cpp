@@ -27,6 +27,9 @@ constexpr double stroke_radius = 0.9e-3;  // m
 constexpr double rounding = 2e-6;  // m, more than the rounding of a position and a radius in the file
 constexpr double rim_share = 0.7;  // of the distance to the next unpainted point: the rim lies about half way
 
+/// Those from "bone" on are for people.
+const std::vector<std::string> member_names{"radius_mm", "paint", "erase", "bone", "unit", "frame", "faces"};
+
 struct Stroke {
     Vec3 place{0.0};
     double radius = stroke_radius;
@@ -93,7 +96,8 @@ void paint_from_file(std::span<contact::SurfacePoint> points, const std::filesys
 
 void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file,
                      bool keep) {
-    const Json json = Json::parse_or_null(text);
+    const Json json = file::parse_json(text, file);
+    file::refuse_unknown(json, file, member_names);
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(
             "{}: expected {{\"radius_mm\": r, \"paint\": [[x, y, z], ...], \"erase\": [[x, y, z], ...]}}", file));

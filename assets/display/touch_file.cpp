@@ -33,6 +33,7 @@ Vec3 place(const table::NumberTable& table, std::array<const char*, 3> columns, 
 
 std::vector<Touch> load_touches(const std::filesystem::path& path) {
     const table::NumberTable table = table::load_number_table(path);
+    table.know({"of", "screen", "u", "v", "x_mm", "y_mm", "z_mm", "at_x_mm", "at_y_mm", "at_z_mm"});
     std::vector<Touch> touches;
     for (std::size_t row = 0; row < table.rows(); ++row) {
         Touch touch;
@@ -73,6 +74,7 @@ std::string touches_text(std::span<const Touch> touches) {
 
 std::vector<Vec3> load_places(const std::filesystem::path& path) {
     const table::NumberTable table = table::load_number_table(path);
+    table.know({"x_mm", "y_mm", "z_mm"});
     std::vector<Vec3> places;
     for (std::size_t row = 0; row < table.rows(); ++row) places.push_back(place(table, {"x_mm", "y_mm", "z_mm"}, row));
     return places;

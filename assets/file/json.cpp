@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace tactus::file {
 
@@ -15,9 +16,39 @@ using Library = nlohmann::ordered_json;
 /// Deeper text is no file of ours, and values are freed recursively.
 constexpr std::size_t most_nested = 100;
 
+/// Characters of a text for the parser, which reports no lines: counts those that it has read. The parser reads no
+/// character behind a name or an opening bracket before it reports it.
+class Reading {
+public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    Reading(const char* at, int* lines) : at_(at), lines_(lines) {}
+    reference operator*() const { return *at_; }
+    Reading& operator++() {
+        *lines_ += *at_ == '\n';
+        ++at_;
+        return *this;
+    }
+    Reading operator++(int) {
+        Reading before = *this;
+        ++*this;
+        return before;
+    }
+    friend bool operator==(const Reading& a, const Reading& b) { return a.at_ == b.at_; }
+
+private:
+    const char* at_;
+    int* lines_;
+};
+
 /// Builds a value from the events of the parser.
 class Builder : public nlohmann::json_sax<Library> {
 public:
+    explicit Builder(const int& line) : line_(line) {}
     Json take() { return std::move(root_); }
 
     bool null() override { return add(Json()); }
@@ -31,6 +62,7 @@ public:
     bool start_array(std::size_t) override { return open(Json::array()); }
     bool key(std::string& value) override {
         key_ = std::move(value);
+        key_line_ = line_;
         return true;
     }
     bool end_object() override { return close(); }
@@ -45,7 +77,10 @@ private:
     Json& place(Json value) {
         if (open_.empty()) return root_ = std::move(value);
         Json& parent = *open_.back();
-        if (parent.is_object()) return parent[key_] = std::move(value);
+        if (parent.is_object()) {
+            value.set_line(key_line_);
+            return parent[key_] = std::move(value);
+        }
         parent.push_back(std::move(value));
         return parent.back();
     }
@@ -57,6 +92,7 @@ private:
     bool open(Json value) {
         if (open_.size() == most_nested)
             throw JsonSyntaxError(fmt::format("values nest more than {} deep", most_nested), 0);
+        value.set_line(line_);
         open_.push_back(&place(std::move(value)));
         return true;
     }
@@ -68,6 +104,8 @@ private:
     Json root_;
     std::vector<Json*> open_;
     std::string key_;
+    const int& line_;  ///< that the parser is in
+    int key_line_ = 0;
 };
 
 Library library_value(const Json& json) {
@@ -155,8 +193,9 @@ Json Json::object() {
 }
 
 Json Json::parse(std::string_view text) {
-    Builder builder;
-    Library::sax_parse(text, &builder);
+    int line = 1;
+    Builder builder(line);
+    Library::sax_parse(Reading(text.data(), &line), Reading(text.data() + text.size(), &line), &builder);
     return builder.take();
 }
 
@@ -288,6 +327,35 @@ bool operator==(const Json& a, const Json& b) {
     }
     if (a.is_number() && b.is_number()) return a.as_real() == b.as_real();
     return a.value_ == b.value_;
+}
+
+Json parse_json(std::string_view text, const std::string& file) {
+    try {
+        return Json::parse(text);
+    } catch (const JsonSyntaxError& error) {
+        // The parser counts bytes from 1, and reports the byte behind a text that ends too early.
+        const std::string_view before = text.substr(0, error.byte > 0 ? std::min(error.byte - 1, text.size()) : 0);
+        const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is the start of the text
+        // Its text begins with its own name of the error, and the place once more.
+        const std::string_view whole = error.message();
+        const std::size_t place = whole.find("column "), colon = whole.find(": ", place);
+        const std::string_view reason =
+            place == std::string_view::npos || colon == std::string_view::npos ? whole : whole.substr(colon + 2);
+        throw Error({file, 1 + static_cast<int>(std::ranges::count(before, '\n')),
+                     1 + static_cast<int>(before.size() - line_start)},
+                    fmt::format("not valid JSON: {}", reason));
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file, error.message()));
+    }
+}
+
+void refuse_unknown(const Json& object, const std::string& where, std::span<const std::string> names) {
+    if (!object.is_object()) return;
+    for (const auto& [name, value] : object.items())
+        if (std::ranges::find(names, name) == names.end())
+            throw Error(fmt::format("{} has the unknown key '{}'{}{}", where, name,
+                                    value.line() > 0 ? fmt::format(" in line {}", value.line()) : "",
+                                    did_you_mean(name, names)));
 }
 
 }  // namespace tactus::file

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -145,6 +146,11 @@ public:
     /// Sets all members of `other`.
     void update(const Json& other);
 
+    /// The line of a parsed text, from 1, on which the name of this member stands, or on which this list or object in a list
+    /// begins. 0: unknown, as of a value that was not parsed.
+    int line() const { return line_; }
+    void set_line(int line) { line_ = line; }
+
     /// Numbers are equal by value, whatever their type.
     friend bool operator==(const Json& a, const Json& b);
 
@@ -159,6 +165,16 @@ private:
 
     // Mutable because the elements of an initialiser list are constant, and are moved from.
     mutable std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, List, Object> value_;
+    int line_ = 0;
 };
+
+/// As Json::parse, for files that a person writes: errors have the place, "file:line:column: not valid JSON: ...".
+Json parse_json(std::string_view text, const std::string& file);
+
+/// Throws Error for the first member of `object` whose name is not in `names`, with its line and the name that is meant
+/// perhaps. A misspelt name would otherwise be a default that nobody asked for. `where` begins the message: the file, and
+/// the place in it. Every reader of JSON that a person writes calls this for each of its objects; readers of TOML have
+/// TomlFile::know and readers of tables NumberTable::know.
+void refuse_unknown(const Json& object, const std::string& where, std::span<const std::string> names);
 
 }  // namespace tactus::file

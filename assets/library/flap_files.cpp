@@ -2,10 +2,12 @@
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/flap_case.hpp"
+#include "assets/markup/markup.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/vessel/track_file.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -22,24 +24,10 @@ Json as_is(const Vec3& v) { return Json::array({rounded(v.x), rounded(v.y), roun
 
 /// Points for 3D Slicer.
 std::string markups(const std::vector<NamedPoint>& points) {
-    Json list = Json::array();
-    for (std::size_t n = 0; n < points.size(); ++n)
-        list.push_back({{"id", fmt::format("{}", n + 1)},
-                        {"label", points[n].name},
-                        {"description", "synthetic"},
-                        {"position", in_mm(points[n].position)},
-                        {"selected", true},
-                        {"locked", false},
-                        {"visibility", true},
-                        {"positionStatus", "defined"}});
-    const Json json{
-        {"@schema",
-         "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-         "markups-schema-v1.0.3.json#"},
-        {"markups",
-         Json::array({Json{
-             {"type", "Fiducial"}, {"coordinateSystem", "LPS"}, {"coordinateUnits", "mm"}, {"controlPoints", list}}})}};
-    return json.dump(2) + "\n";
+    markup::Markup list;
+    for (const NamedPoint& point : points)
+        list.points.push_back({point.name, glm::round(point.position * 1e9) * 1e-9, "synthetic"});
+    return markup::text_of({&list, 1});
 }
 
 std::string inputs_text(const FlapCase& made) {

@@ -111,11 +111,18 @@ Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* orig
                     : kind == "ply" ? read_ply(bytes, file)
                                     : read_obj(bytes, file);
     check_numbers(text.surface, file);
-    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), text.unit, 0, std::move(text.notes)};
+    const std::size_t points = text.surface.vertices.size();
+    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), text.unit, 0,
+                     std::move(text.notes)};
     for (Vec3& v : text.surface.vertices)
         v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
     found.without_area = join_equal_points(text.surface);
-    if (text.surface.triangles.empty()) throw Error(fmt::format("{}: holds no triangles", file));
+    if (text.surface.triangles.empty())
+        throw Error(points == 0
+                        ? fmt::format("{}: holds no triangles", file)
+                        : fmt::format("{}: holds {} points and no triangles, a point cloud; make a closed surface of "
+                                      "it first, for example by Poisson reconstruction in MeshLab or CloudCompare",
+                                      file, points));
     if (origin) *origin = found;
     Mesh mesh;
     static_cast<geometry::TriangleSurface&>(mesh) = std::move(text.surface);

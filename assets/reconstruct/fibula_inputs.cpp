@@ -4,7 +4,7 @@
 #include "assets/file/json.hpp"
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
-#include "assets/mesh/mesh.hpp"
+#include "assets/reconstruct/flap_files.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
@@ -21,6 +21,39 @@ namespace tactus::reconstruct {
 namespace {
 
 using file::Json;
+
+/// Of the whole file; "units" to "notes" are for people and the check of the unit, those from "vessels" on are of the flap.
+const std::vector<std::string> member_names{"units",
+                                            "frame",
+                                            "source",
+                                            "notes",
+                                            "mandible_planes",
+                                            "jaw_curve",
+                                            "segments",
+                                            "least_segment_mm",
+                                            "fibula_line",
+                                            "leg",
+                                            "between_space_mm",
+                                            "additional_between_space_mm_default",
+                                            "distal_margin_mm",
+                                            "proximal_margin_mm",
+                                            "along_line_mm",
+                                            "roll_deg",
+                                            "reversed",
+                                            "kerf_mm",
+                                            "resection",
+                                            "donor",
+                                            "jaw",
+                                            "tumour",
+                                            "vessels",
+                                            "perforators",
+                                            "sites",
+                                            "plates",
+                                            "implants",
+                                            "paddle",
+                                            "margin_mm",
+                                            "limits"},
+    line_names{"point", "direction"};
 
 Vec3 vector_of(const Json& json, const char* key, const std::string& where) {
     const Json* found = json.find(key);
@@ -44,9 +77,11 @@ std::vector<JawPlane> planes_of(const Json& planes, const std::string& file) {
     if (planes.size() < 2 || planes.size() > most_planes)
         throw Error(fmt::format("{}: {} mandible planes; a plan needs 2 to {}", file, planes.size(), most_planes));
     std::vector<JawPlane> found;
+    const std::vector<std::string> names{"name", "origin", "normal", "x", "y"};
     for (const Json& one : planes) {
         const std::string where = fmt::format("{}: plane {}", file, found.size() + 1);
         if (!one.is_object()) throw Error(fmt::format("{} is no object", where));
+        file::refuse_unknown(one, where, names);
         JawPlane plane{vector_of(one, "origin", where) * mm, {}, {}};
         if (one.contains("normal")) plane.normal = vector_of(one, "normal", where);
         if (one.contains("y")) plane.y = vector_of(one, "y", where);
@@ -78,12 +113,8 @@ CurveSplit curve_of(const Json& json, const std::string& file) {
 
 FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& file, std::string* donor,
                                    std::string* jaw) {
-    Json json;
-    try {
-        json = Json::parse(text);
-    } catch (const file::JsonSyntaxError& error) {
-        throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
-    }
+    const Json json = file::parse_json(text, file);
+    file::refuse_unknown(json, file, member_names);
     const bool has_planes = json.is_object() && json.contains("mandible_planes") && json["mandible_planes"].is_array(),
                has_curve = json.is_object() && json.contains("jaw_curve") && json["jaw_curve"].is_array();
     if (has_planes == has_curve || !json.contains("fibula_line") || !json["fibula_line"].is_object())
@@ -98,6 +129,7 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
         inputs.planes = planes_on(*inputs.from_curve);
     }
     const std::string line = file + ": fibula_line";
+    file::refuse_unknown(json["fibula_line"], line, line_names);
     inputs.line_point = vector_of(json["fibula_line"], "point", line) * mm;
     inputs.line_direction = vector_of(json["fibula_line"], "direction", line);
     if (const Json* leg = json.find("leg")) {
@@ -154,14 +186,8 @@ FibulaInputs fibula_inputs_of_text(std::string_view text, const std::string& fil
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path) {
     std::string donor, jaw;
     FibulaInputs inputs = fibula_inputs_of_text(file::read_whole_file(path), path.string(), &donor, &jaw);
-    const auto load = [&path](const std::string& name) {
-        mesh::MeshOrigin origin;
-        geometry::TriangleSurface surface = mesh::load_mesh(path.parent_path() / name, 1.0, &origin);
-        for (Vec3& v : surface.vertices) v *= origin.unit.value_or(mm);
-        return surface;
-    };
-    if (!donor.empty()) inputs.donor = load(donor);
-    if (!jaw.empty()) inputs.jaw = load(jaw);
+    if (!donor.empty()) inputs.donor = read_surface(path.parent_path() / donor);
+    if (!jaw.empty()) inputs.jaw = read_surface(path.parent_path() / jaw);
     return inputs;
 }
 

@@ -20,8 +20,9 @@ inline constexpr std::size_t most_planes = 6;
 ///      "distal_margin_mm": 75, "proximal_margin_mm": 60, "along_line_mm": [...], "roll_deg": 0, "reversed": false,
 ///      "kerf_mm": 0.4, "resection": "between", "donor": "fibula.stl", "jaw": "jaw.stl"}
 /// in LPS; in place of the planes a curve along the jaw, "jaw_curve": [[x, y, z], ...] with "segments": 3 and, if wanted,
-/// "least_segment_mm": 20. All from "leg" on may be missing, as may normals of inner planes and each "y". "x" and further members are not
-/// read. Paths of meshes are relative to the file; their unit is mm unless they state another. Throws Error.
+/// "least_segment_mm": 20. All from "leg" on may be missing, as may normals of inner planes and each "y". The members of the
+/// flap (read_reconstruction_inputs), "x" of planes, "frame", "source" and "notes" are accepted and not read; others are
+/// refused. Paths of meshes are relative to the file; their unit is mm unless they state another. Throws Error.
 FibulaInputs read_fibula_inputs(const std::filesystem::path& path);
 
 /// The same from the text of a file, without the donor and the jaw, whose paths are returned (empty: none); `file` is the

@@ -3,16 +3,17 @@
 
 #include "assets/file/json_vector.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/markup/markup.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/reconstruct/fibula_inputs.hpp"
+#include "assets/table/number_table.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -24,14 +25,6 @@ using file::Json;
 
 namespace {
 
-Json parsed(std::string_view text, const std::string& file) {
-    try {
-        return Json::parse(text);
-    } catch (const file::JsonSyntaxError& error) {
-        throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
-    }
-}
-
 /// Names that fit on one line; others are numbered.
 std::string plain(const std::string& label, const char* otherwise, std::size_t number) {
     const bool is_plain =
@@ -39,27 +32,14 @@ std::string plain(const std::string& label, const char* otherwise, std::size_t n
     return is_plain ? label : fmt::format("{} {}", otherwise, number);
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-        const std::size_t comma = line.find(',');
-        std::string_view cell = line.substr(0, comma);
-        while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-        while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r')) cell.remove_suffix(1);
-        cells.push_back(cell);
-        if (comma == std::string_view::npos) return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
-
 /// An object in which each member of a list of strings has become what it names.
-Json with_files_read(Json json, const fs::path& folder, const std::string& where) {
+Json with_files_read(Json json, const fs::path& folder, const std::string& where, std::vector<std::string>& notes) {
     const auto marks = [&](const char* key, bool with_kind) {
         const Json* named = json.find(key);
         if (!named || !named->is_string()) return;
         const std::string file = named->as_text();
         Json list = Json::array();
-        for (const MarkedPoint& mark : read_marks(folder / file)) {
+        for (const MarkedPoint& mark : read_marks(folder / file, notes)) {
             Json one{{"name", mark.name}, {"at_mm", {mark.at.x / mm, mark.at.y / mm, mark.at.z / mm}}};
             if (with_kind) one["kind"] = name_of(kind_in(mark.name, (folder / file).string()));
             list.push_back(one);
@@ -76,7 +56,7 @@ Json with_files_read(Json json, const fs::path& folder, const std::string& where
             if (file) {
                 if (!file->is_string() || file->as_text().empty())
                     throw Error(fmt::format("{}: vessels[{}] has a 'file' that is not a path", where, list.size()));
-                const FlapVessel read = read_vessel(folder / file->as_text(), VesselKind::artery);
+                const FlapVessel read = read_vessel(folder / file->as_text(), VesselKind::artery, 0, notes);
                 Json points = Json::array();
                 for (const Vec3& p : read.points) points.push_back({p.x / mm, p.y / mm, p.z / mm});
                 one["points_mm"] = points;
@@ -92,88 +72,49 @@ Json with_files_read(Json json, const fs::path& folder, const std::string& where
 
 }  // namespace
 
-std::vector<MarkedPoint> marks_of_text(std::string_view text, const std::string& file) {
-    const Json json = parsed(text, file);
-    const Json* markups = json.find("markups");
-    if (!markups || !markups->is_array())
-        throw Error(fmt::format("{}: has no list 'markups': expected a file of markups of 3D Slicer", file));
+std::vector<MarkedPoint> marks_of(const markup::ReadPoints& read, const std::string& file) {
     std::vector<MarkedPoint> all;
-    for (const Json& markup : *markups) {
-        const Json* system = markup.find("coordinateSystem");
-        const std::string frame = system && system->is_string() ? system->as_text() : "LPS";
-        if (frame != "LPS" && frame != "RAS")
-            throw Error(fmt::format("{}: 'coordinateSystem' must be \"LPS\" or \"RAS\", not \"{}\"", file, frame));
-        const Json* unit = markup.find("coordinateUnits");
-        if (unit && !(unit->is_string() && (unit->as_text() == "mm" || unit->as_text() == "millimeter")))
-            throw Error(fmt::format("{}: 'coordinateUnits' must be \"mm\"", file));
-        const Json* points = markup.find("controlPoints");
-        if (!points || !points->is_array()) continue;
-        for (const Json& point : *points) {
-            const Json* position = point.find("position");
-            const std::optional<Vec3> at = position ? file::vector_of(*position, farthest_mm) : std::nullopt;
-            if (!at) throw Error(fmt::format("{}: control point {} has no position", file, all.size() + 1));
-            const Json* label = point.find("label");
-            const double side = frame == "RAS" ? -mm : mm;
-            all.push_back({plain(label && label->is_string() ? label->as_text() : "", "mark", all.size() + 1),
-                           {at->x * side, at->y * side, at->z * mm}});
-        }
-    }
-    if (all.empty()) throw Error(fmt::format("{}: has no control points", file));
+    for (const markup::ControlPoint& point : read.points)
+        all.push_back({plain(point.label, "mark", all.size() + 1), point.position});
+    if (all.empty()) throw Error(fmt::format("{}: has no control points with a position", file));
     return all;
 }
 
-std::vector<MarkedPoint> read_marks(const fs::path& path) {
-    return marks_of_text(file::read_whole_file(path), path.string());
+std::vector<MarkedPoint> read_marks(const fs::path& path, std::vector<std::string>& notes) {
+    const markup::ReadPoints read = markup::read_points(path);
+    notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+    return marks_of(read, path.string());
 }
 
 FlapVessel vessel_of_table(std::string_view text, const std::string& file, int branch) {
-    constexpr std::array<std::string_view, 5> wanted{"branch", "x_mm", "y_mm", "z_mm", "radius_mm"};
-    std::array<std::size_t, 5> column{};
+    const table::NumberTable table = table::read_number_table(text, file);
+    table.know({"branch", "x_mm", "y_mm", "z_mm", "radius_mm", "contrast", "confidence", "parent"});
+    const std::vector<double> branches = table.numbers("branch"), x = table.numbers("x_mm"), y = table.numbers("y_mm"),
+                              z = table.numbers("z_mm"), radii = table.numbers("radius_mm");
     FlapVessel vessel;
-    std::size_t number = 0;
-    double radii = 0.0;
-    while (!text.empty()) {
-        const std::size_t end = text.find('\n');
-        const std::string_view line = text.substr(0, end);
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        ++number;
-        if (line.empty() || line.front() == '#') continue;
-        const std::vector<std::string_view> cells = cells_of(line);
-        if (cells.empty() || (cells.size() == 1 && cells[0].empty())) continue;
-        if (column == std::array<std::size_t, 5>{}) {
-            for (std::size_t c = 0; c < wanted.size(); ++c) {
-                const auto found = std::ranges::find(cells, wanted[c]);
-                if (found == cells.end())
-                    throw Error(fmt::format("{}: has no column '{}': expected a table as 'tactus vessel' writes it",
-                                            file, wanted[c]));
-                column[c] = static_cast<std::size_t>(found - cells.begin());
-            }
-            continue;
-        }
-        std::array<double, 5> values{};
-        for (std::size_t c = 0; c < wanted.size(); ++c) {
-            const std::string_view cell = column[c] < cells.size() ? cells[column[c]] : std::string_view{};
-            const auto [rest, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[c]);
-            if (error != std::errc{} || rest != cell.data() + cell.size() || !(std::abs(values[c]) <= farthest_mm))
-                throw Error(fmt::format("{}: line {}: '{}' is not a number", file, number, wanted[c]));
-        }
-        if (values[0] != branch) continue;
-        vessel.points.emplace_back(values[1] * mm, values[2] * mm, values[3] * mm);
-        radii += values[4] * mm;
+    vessel.radius = 0.0;
+    for (std::size_t n = 0; n < table.rows(); ++n) {
+        if (branches[n] != branch) continue;
+        const Vec3 at(x[n], y[n], z[n]);
+        if (!(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z), std::abs(radii[n])}) <= farthest_mm))
+            throw Error({file, table.lines[n], 1},
+                        fmt::format("a position or radius is beyond {:.0f} mm", farthest_mm));
+        vessel.points.push_back(at * mm);
+        vessel.radius += radii[n] * mm;
     }
     if (vessel.points.size() < 2) throw Error(fmt::format("{}: its branch {} has less than two points", file, branch));
-    vessel.radius = radii / static_cast<double>(vessel.points.size());
+    vessel.radius /= static_cast<double>(vessel.points.size());
     if (!(vessel.radius > 0.0)) throw Error(fmt::format("{}: 'radius_mm' must be above 0", file));
     return vessel;
 }
 
-FlapVessel read_vessel(const fs::path& path, VesselKind kind, int branch) {
+FlapVessel read_vessel(const fs::path& path, VesselKind kind, int branch, std::vector<std::string>& notes) {
     std::string stem = path.filename().string();
     FlapVessel vessel;
     if (stem.ends_with(".mrk.json")) {
-        if (branch != 0) throw Error(fmt::format("{}: branches are told apart in tables (.csv) only", path.string()));
+        if (branch != 0) throw Error(fmt::format("{}: only tables (.csv) have branches", path.string()));
         stem.resize(stem.size() - 9);
-        for (const MarkedPoint& mark : read_marks(path)) vessel.points.push_back(mark.at);
+        for (const MarkedPoint& mark : read_marks(path, notes)) vessel.points.push_back(mark.at);
         if (vessel.points.size() < 2) throw Error(fmt::format("{}: a vessel needs two points", path.string()));
     } else if (stem.ends_with(".csv")) {
         stem.resize(stem.size() - 4);
@@ -197,6 +138,18 @@ VesselKind kind_in(const std::string& name, const std::string& where) {
 geometry::TriangleSurface read_surface(const fs::path& path) {
     mesh::MeshOrigin origin;
     geometry::TriangleSurface surface = mesh::load_mesh(path, 1.0, &origin);
+    if (!origin.unit) {
+        // A tooth is 5 mm across, a leg 2 m: in metres, a jaw has the numbers of a grain of salt.
+        Vec3 low = surface.vertices.front(), high = low;
+        for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
+        const Vec3 size = high - low;
+        const double extent = std::max({size.x, size.y, size.z});
+        if (!(extent >= 5.0 && extent <= 2000.0))
+            throw Error(
+                fmt::format("{}: the mesh states no unit and is {:.4g} units across, which is no bone in mm; is it in "
+                            "metres? write it in mm, or convert it with 'tactus import --unit'",
+                            path.string(), extent));
+    }
     for (Vec3& v : surface.vertices) v *= origin.unit.value_or(mm);
     return surface;
 }
@@ -207,8 +160,8 @@ ReconstructionInputs read_reconstruction_inputs(const fs::path& path) {
     ReconstructionInputs all;
     all.inputs = fibula_inputs_of_text(text, where, &donor, &jaw);
     const fs::path folder = path.parent_path();
-    const Json json = parsed(text, where);
-    all.flap = flap_of_inputs(with_files_read(json, folder, where), where);
+    const Json json = file::parse_json(text, where);
+    all.flap = flap_of_inputs(with_files_read(json, folder, where, all.notes), where);
     if (const Json* tumour = json.find("tumour")) {
         if (!tumour->is_string() || tumour->as_text().empty())
             throw Error(fmt::format("{}: 'tumour' must be the path of a mesh", where));

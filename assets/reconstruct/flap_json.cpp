@@ -38,12 +38,14 @@ VesselKind kind_of(const Members& item) {
 }
 
 Screw screw_of(const Members& item) {
+    item.know({"axis"}, {"head", "length", "diameter"});
     const Screw usual;
     return {item.place("head"), item.direction("axis"), item.positive("length", usual.length),
             item.positive("diameter", usual.diameter)};
 }
 
 Plate plate_of(const Members& item) {
+    item.know({"name", "outward", "screws", "laid"}, {"width", "thickness", "points"});
     const Plate usual;
     Plate plate{item.name(),
                 item.positive("width", usual.width),
@@ -55,6 +57,7 @@ Plate plate_of(const Members& item) {
     if (plate.outward.size() != plate.points.size()) item.fail("needs a direction 'outward' for each point");
     for (const Members& screw : item.list("screws", most_things)) plate.screws.push_back(screw_of(screw));
     if (const std::optional<Members> laid = item.object("laid")) {
+        laid->know({"screws_per_segment"}, {"height"});
         const double screws = laid->number("screws_per_segment");
         if (!(screws >= 0.0 && screws <= static_cast<double>(most_things) && screws == std::floor(screws)))
             item.fail("has 'screws_per_segment' that is no whole number from 0 to 100");
@@ -76,6 +79,7 @@ double not_negative(const Members& item, const char* key, double otherwise) {
 }
 
 FlapLimits limits_of(const Members& item) {
+    item.know({"over_in_situ", "kink_radii", "twist_deg", "twist_rad"}, {"clearance", "perforator_to_cut"});
     const FlapLimits usual;
     FlapLimits limits;
     limits.clearance = not_negative(item, "clearance", usual.clearance);
@@ -103,6 +107,12 @@ Members::Members(const Json& json, std::string where, LengthUnit unit)
 }
 
 void Members::fail(const std::string& what) const { throw Error(fmt::format("{} {}", where_, what)); }
+
+void Members::know(std::initializer_list<const char*> names, std::initializer_list<const char*> lengths) const {
+    std::vector<std::string> all(names.begin(), names.end());
+    for (const char* const length : lengths) all.push_back(with_unit(length));
+    file::refuse_unknown(json_, where_, all);
+}
 
 const Json& Members::at(std::string_view key) const {
     const Json* found = json_.find(key);
@@ -226,6 +236,7 @@ std::vector<FlapVessel> vessels_in(const Members& all) {
     std::vector<FlapVessel> vessels;
     const FlapVessel usual;
     for (const Members& item : all.list("vessels", most_things)) {
+        item.know({"name", "kind", "file"}, {"radius", "points"});
         vessels.push_back(
             {item.name(), kind_of(item), item.positive("radius", usual.radius), item.places("points", most_points)});
         if (vessels.back().points.size() < 2) item.fail("needs at least two points");
@@ -251,19 +262,27 @@ Json json_of(const std::vector<FlapVessel>& vessels) {
 Flap flap_of(const Members& all) {
     Flap flap;
     flap.vessels = vessels_in(all);
-    for (const Members& item : all.list("perforators", most_things))
+    for (const Members& item : all.list("perforators", most_things)) {
+        item.know({"name"}, {"at"});
         flap.perforators.push_back({item.name(), item.place("at")});
-    for (const Members& item : all.list("sites", most_things))
+    }
+    for (const Members& item : all.list("sites", most_things)) {
+        item.know({"name", "kind"}, {"at"});
         flap.sites.push_back({item.name(), kind_of(item), item.place("at")});
+    }
     for (const Members& item : all.list("plates", most_things)) flap.plates.push_back(plate_of(item));
     const DentalImplant implant;
-    for (const Members& item : all.list("implants", most_things))
+    for (const Members& item : all.list("implants", most_things)) {
+        item.know({"name", "axis"}, {"head", "diameter", "length"});
         flap.implants.push_back({item.name(), item.place("head"), item.direction("axis"),
                                  item.positive("diameter", implant.diameter), item.positive("length", implant.length)});
+    }
     const SkinPaddle paddle;
-    if (const auto item = all.object("paddle"))
+    if (const auto item = all.object("paddle")) {
+        item->know({}, {"at", "length", "width"});
         flap.paddle = {item->place("at"), item->positive("length", paddle.length),
                        item->positive("width", paddle.width)};
+    }
     flap.margin = all.length("margin", flap.margin);
     if (flap.margin < 0.0) all.fail("has a negative margin");
     if (const auto item = all.object("limits")) flap.limits = limits_of(*item);

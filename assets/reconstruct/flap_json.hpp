@@ -6,6 +6,7 @@
 #include "dsp/core/types.hpp"
 #include "dsp/reconstruct/flap.hpp"
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@ public:
     Members(const file::Json& json, std::string where, LengthUnit unit);
 
     [[noreturn]] void fail(const std::string& what) const;
+    /// Fails at the first member that is none of these; `lengths` are without the unit.
+    void know(std::initializer_list<const char*> names, std::initializer_list<const char*> lengths) const;
     bool has(std::string_view key) const { return json_.contains(key); }
     const file::Json& at(std::string_view key) const;
     std::string text(std::string_view key) const;  ///< of one line

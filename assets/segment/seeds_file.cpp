@@ -27,6 +27,9 @@ constexpr std::size_t most_points = 1'000'000;
 constexpr const char* expected =
     R"({"labels": [{"name": "main", "colour": "#d95f02", "strokes": [{"radius_mm": 3, "points_mm": [[x, y, z], ...]}]}, ...]})";
 
+const std::vector<std::string> file_names{"frame", "unit", "labels"}, label_names{"name", "colour", "strokes"},
+    stroke_names{"radius_mm", "points_mm"};
+
 double rounded_mm(double metres) { return std::round(metres * 1e6) / 1e3; }
 
 Vec3 colour_of(const Json& json, const std::string& where) {
@@ -49,6 +52,7 @@ Vec3 point_of(const Json& json, const std::string& where) {
 }
 
 Stroke stroke_of(const Json& json, const std::string& where) {
+    file::refuse_unknown(json, where, stroke_names);
     if (!json.is_object() || !json.contains("points_mm") || !json["points_mm"].is_array() || json["points_mm"].empty())
         throw Error(fmt::format("{}: 'points_mm' must be a list of at least one point", where));
     if (json["points_mm"].size() > most_points) throw Error(fmt::format("{}: more than {} points", where, most_points));
@@ -65,6 +69,7 @@ Stroke stroke_of(const Json& json, const std::string& where) {
 
 SeedLabel label_of(const Json& json, std::size_t number, const std::string& file, SeedsUse use) {
     const std::string nth = fmt::format("{}: label {}", file, number + 1);
+    file::refuse_unknown(json, nth, label_names);
     if (!json.is_object() || !json.contains("name") || !json["name"].is_string())
         throw Error(fmt::format("{} has no 'name'", nth));
     SeedLabel label;
@@ -95,12 +100,8 @@ bool is_seed_place(const Vec3& position) {
 }
 
 std::vector<SeedLabel> seeds_of_text(std::string_view text, const std::string& file, SeedsUse use) {
-    Json json;
-    try {
-        json = Json::parse(text);
-    } catch (const file::JsonSyntaxError& error) {
-        throw Error(fmt::format("{}: byte {}: {}", file, error.byte, error.message()));
-    }
+    const Json json = file::parse_json(text, file);
+    file::refuse_unknown(json, file, file_names);
     if (!json.is_object() || !json.contains("labels") || !json["labels"].is_array())
         throw Error(fmt::format("{}: expected {}", file, expected));
     const Json& list = json["labels"];

@@ -12,6 +12,7 @@ namespace tactus::table {
 
 control::DeflectionTable load_deflection_table(const std::filesystem::path& path) {
     const NumberTable file = load_number_table(path);
+    file.know({"force_N", "loading_mm", "unloading_mm"});
     control::DeflectionTable table{file.numbers("force_N"), file.numbers("loading_mm"), file.numbers("unloading_mm")};
     for (double& x : table.loading) x *= 1e-3;
     for (double& x : table.unloading) x *= 1e-3;
@@ -21,6 +22,7 @@ control::DeflectionTable load_deflection_table(const std::filesystem::path& path
 
 simulate::LineFit load_force_calibration(const std::filesystem::path& path) {
     const NumberTable file = load_number_table(path);
+    file.know({"reading", "force_N"});
     const std::vector<double> readings = file.numbers("reading"), forces = file.numbers("force_N");
     if (std::set<double>(forces.begin(), forces.end()).size() < 3)
         throw Error({path.string(), 0, 0}, "a calibration needs at least three different forces");

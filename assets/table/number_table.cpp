@@ -37,6 +37,13 @@ std::vector<std::string_view> cells(std::string_view line, char separator) {
 
 bool NumberTable::has(std::string_view name) const { return std::ranges::find(names, name) != names.end(); }
 
+void NumberTable::know(const std::vector<std::string>& columns) const {
+    for (const std::string& name : names)
+        if (std::ranges::find(columns, name) == columns.end())
+            throw Error({file, names_line, 1}, fmt::format("unknown column '{}'{}; there may be: {}", name,
+                                                           did_you_mean(name, columns), fmt::join(columns, ", ")));
+}
+
 const std::vector<std::string>& NumberTable::text(std::string_view name) const {
     const auto at = std::ranges::find(names, name);
     if (at == names.end())
@@ -75,6 +82,7 @@ NumberTable read_number_table(std::string_view text, const std::string& file) {
             for (const char candidate : {';', '\t'})
                 if (line.find(candidate) != std::string_view::npos && line.find(',') == std::string_view::npos)
                     separator = candidate;
+            table.names_line = number;
             for (const std::string_view name : cells(line, separator)) table.names.emplace_back(name);
             table.words.resize(table.names.size());
             continue;

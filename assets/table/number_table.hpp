@@ -16,12 +16,15 @@ struct NumberTable {
 
     std::size_t rows() const { return words.empty() ? 0 : words.front().size(); }
     bool has(std::string_view name) const;
+    /// Throws Error for the first column that is not in `columns`, with its line and the name that is meant perhaps.
+    void know(const std::vector<std::string>& columns) const;
     /// The numbers of a column. Throws Error with the available columns, or with the line of a cell that is not a
     /// number.
     std::vector<double> numbers(std::string_view name) const;
     /// The cells of a column as text. Throws Error with the available columns.
     const std::vector<std::string>& text(std::string_view name) const;
 
+    int names_line = 1;  ///< line of the names in the file
     std::vector<int> lines;  ///< line in the file, per row
 };
 

@@ -20,6 +20,7 @@ double Course::median_radius() const {
 
 Course read_course(std::string_view text, const std::string& file) {
     const table::NumberTable table = table::read_number_table(text, file);
+    table.know({"branch", "x_mm", "y_mm", "z_mm", "radius_mm", "contrast", "confidence", "parent"});
     const std::vector<double> branch = table.numbers("branch"), x = table.numbers("x_mm"), y = table.numbers("y_mm"),
                               z = table.numbers("z_mm"), radius = table.numbers("radius_mm");
     Course course;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/vessel/track_file.hpp"
-#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/markup/markup.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/vessel/track_warnings.hpp"
@@ -16,8 +16,6 @@
 namespace tactus::vessel {
 
 namespace {
-
-using file::Json;
 
 constexpr std::array<Vec3, 6> colours{Vec3(0.80, 0.16, 0.14), Vec3(0.90, 0.55, 0.13), Vec3(0.20, 0.45, 0.75),
                                       Vec3(0.35, 0.62, 0.30), Vec3(0.55, 0.35, 0.65), Vec3(0.45, 0.45, 0.45)};
@@ -129,37 +127,17 @@ std::string markups(const Track& track, const std::vector<TrackWarning>& warning
             if (warning.branch == branch && warning.node == n) text += "; warning: " + warning.text;
         return text;
     };
-    Json curves = Json::array();
+    std::vector<markup::Markup> curves;
     for (std::size_t b = 0; b < track.branches.size(); ++b) {
-        Json points = Json::array();
-        for (std::size_t n = 0; n < track.branches[b].nodes.size(); ++n) {
-            const Node& node = track.branches[b].nodes[n];
-            points.push_back({{"id", fmt::format("{}", n + 1)},
-                              {"label", fmt::format("B{}-{}", b, n + 1)},
-                              {"description", description(b, n)},
-                              {"position", {node.position.x * 1e3, node.position.y * 1e3, node.position.z * 1e3}},
-                              {"selected", true},
-                              {"locked", false},
-                              {"visibility", true},
-                              {"positionStatus", "defined"}});
-        }
-        const Vec3 colour = colour_of(b);
-        curves.push_back({{"type", "Curve"},
-                          {"coordinateSystem", "LPS"},
-                          {"coordinateUnits", "mm"},
-                          {"locked", false},
-                          {"labelFormat", "%N-%d"},
-                          {"controlPoints", points},
-                          {"display",
-                           {{"visibility", true},
-                            {"color", {colour.x, colour.y, colour.z}},
-                            {"propertiesLabelVisibility", false}}}});
+        markup::Markup curve;
+        curve.kind = markup::Kind::curve;
+        curve.colour = colour_of(b);
+        for (std::size_t n = 0; n < track.branches[b].nodes.size(); ++n)
+            curve.points.push_back(
+                {fmt::format("B{}-{}", b, n + 1), track.branches[b].nodes[n].position, description(b, n)});
+        curves.push_back(std::move(curve));
     }
-    const Json json{{"@schema",
-                     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-                     "markups-schema-v1.0.3.json#"},
-                    {"markups", curves}};
-    return json.dump(2) + "\n";
+    return markup::text_of(curves);
 }
 
 bool ends_with(const std::filesystem::path& path, std::string_view end) {

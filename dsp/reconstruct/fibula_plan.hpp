@@ -75,6 +75,7 @@ enum class PlanWarning {
     short_segment,  ///< may be without blood supply
     very_short_segment,
     close_osteotomies,  ///< less space between two segments than wanted
+    wide_kerf,  ///< the bone between two segments is thinner than the two cuts that bound it
     distal_margin,
     proximal_margin,
     section_mismatch,  ///< a joint does not bisect: its two sections differ

@@ -176,6 +176,8 @@ const char* name_of(FlapTrouble trouble) {
         case FlapTrouble::near_cut: return "near-cut";
         case FlapTrouble::near_vessel: return "near-vessel";
         case FlapTrouble::near_hardware: return "near-hardware";
+        case FlapTrouble::outside_bone: return "outside-bone";
+        case FlapTrouble::leaves_bone: return "leaves-bone";
         case FlapTrouble::perforator_on_cut: return "perforator-on-cut";
         case FlapTrouble::perforator_lost: return "perforator-lost";
         case FlapTrouble::paddle_without_perforator: return "paddle-without-perforator";
@@ -195,6 +197,34 @@ const char* name_of(FlapTrouble trouble) {
 
 void add_warnings(FlapMeasures& measures, const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap) {
     Warnings(measures, inputs, plan, flap).all();
+}
+
+std::vector<FlapWarning> hardware_warnings(const Flap& flap, const rope::Obstacle& bone) {
+    constexpr double step = 0.25e-3;  // m
+    std::vector<FlapWarning> all;
+    const auto check = [&](std::string name, const Vec3& head, const Vec3& axis, double length) {
+        double least = infinity, at_tip = 0.0;
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / step)));
+        for (int n = 0; n <= steps; ++n) {
+            Vec3 normal(0.0);
+            at_tip = bone.distance(head + axis * (length * n / steps), normal);
+            least = std::min(least, at_tip);
+        }
+        if (least > 0.0) {
+            std::string text = fmt::format("{} meets no bone: the nearest is {:.1f} mm away", name, least / mm);
+            all.push_back({FlapTrouble::outside_bone, std::move(text), std::move(name), "", least});
+        } else if (at_tip > max_standing_out) {
+            std::string text = fmt::format("{} leaves the bone: its tip stands {:.1f} mm out", name, at_tip / mm);
+            all.push_back({FlapTrouble::leaves_bone, std::move(text), std::move(name), "", at_tip});
+        }
+    };
+    for (const Plate& plate : flap.plates)
+        for (std::size_t n = 0; n < plate.screws.size(); ++n)
+            check(fmt::format("screw {} of plate '{}'", n + 1, plate.name), plate.screws[n].head, plate.screws[n].axis,
+                  plate.screws[n].length);
+    for (const DentalImplant& implant : flap.implants)
+        check(fmt::format("implant '{}'", implant.name), implant.head, implant.axis, implant.length);
+    return all;
 }
 
 }  // namespace tactus::reconstruct

@@ -22,6 +22,7 @@ const char* name_of(PlanWarning warning) {
         case PlanWarning::short_segment: return "short-segment";
         case PlanWarning::very_short_segment: return "very-short-segment";
         case PlanWarning::close_osteotomies: return "close-osteotomies";
+        case PlanWarning::wide_kerf: return "wide-kerf";
         case PlanWarning::distal_margin: return "distal-margin";
         case PlanWarning::proximal_margin: return "proximal-margin";
         case PlanWarning::section_mismatch: return "section-mismatch";
@@ -60,6 +61,13 @@ void warn_of(FibulaPlan& plan, const FibulaInputs& inputs, const DonorBone& dono
                 fmt::format(
                     "between segments {} and {} there are {:.2f} mm of bone along the line, less than {:.2f} mm", n + 1,
                     n + 2, *plan.clearances[n] / mm, inputs.between / mm));
+        // The blade runs beside each segment, in the bone between them.
+        if (plan.clearances[n] && *plan.clearances[n] >= 0.0 && *plan.clearances[n] < 2.0 * inputs.kerf - 1e-6)
+            add(PlanWarning::wide_kerf, static_cast<int>(n),
+                fmt::format(
+                    "between segments {} and {} there are {:.2f} mm of bone along the line, and two cuts of {:.2f} "
+                    "mm take {:.2f} mm: a cut would run into a segment",
+                    n + 1, n + 2, *plan.clearances[n] / mm, inputs.kerf / mm, 2.0 * inputs.kerf / mm));
         if (plan.off_bisector[n] > greatest_off_bisector)
             add(PlanWarning::section_mismatch, static_cast<int>(n),
                 fmt::format("plane {} is {:.1f}° from bisecting the angle between segments {} and {}: their two "

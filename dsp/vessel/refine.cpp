@@ -7,13 +7,15 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <span>
 
 namespace tactus::vessel {
 
 namespace {
 
-/// Tubes at even distances along a spline through `tubes`.
-std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing) {
+/// Tubes at even distances along a spline through `tubes`. A spline may swing beyond its points: no radius is above
+/// `most_radius`.
+std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing, double most_radius) {
     std::vector<double> along{0.0};
     for (std::size_t n = 1; n < tubes.size(); ++n)
         along.push_back(along.back() + std::max(1e-9, glm::length(tubes[n].centre - tubes[n - 1].centre)));
@@ -34,7 +36,7 @@ std::vector<Tube> resampled(const std::vector<Tube>& tubes, double spacing) {
             tube.direction[axis] = point.slope;
         }
         tube.direction = glm::normalize(tube.direction);
-        tube.radius = std::max(1e-9, splines[3](s).value);
+        tube.radius = std::clamp(splines[3](s).value, 1e-9, std::max(1e-9, most_radius));
         out.push_back(tube);
     }
     return out;
@@ -58,7 +60,8 @@ public:
         const double axial = std::max(0.6, 2.0 * voxel_ / tube.radius);
         const double beyond = std::clamp(3.2 * q / tube.radius, 0.9, 4.5);
         const Window window = refining_window(axial, beyond);
-        FitLimits limits{0.25 * voxel_, 1.6 * tube.radius + voxel_};
+        const double least = 0.25 * voxel_;
+        FitLimits limits{least, std::max(least, std::min(1.6 * tube.radius + voxel_, search_.settings.most_radius))};
         limits.shift = std::max(0.6, voxel_ / tube.radius);
         limits.rounds = 2;
         limits.blur = q;
@@ -127,16 +130,38 @@ std::size_t kept_of(const std::vector<Seen>& nodes, double known_contrast, doubl
     return kept;
 }
 
+/// How many nodes, from the inside of a branch to its end, come before the track leaves its vessel: two in a row are wider
+/// than twice the median of those from two to twelve radii before them, as in the search. Cut back to where they widen.
+std::size_t before_leaving(std::span<const Tube> nodes) {
+    std::size_t wide = 0;
+    for (std::size_t n = 1; n < nodes.size(); ++n) {
+        double back = 0.0;
+        std::vector<double> earlier;
+        for (std::size_t k = n; k-- > 0;) {
+            back += glm::length(nodes[k + 1].centre - nodes[k].centre);
+            if (back > 12.0 * nodes[k].radius) break;
+            if (back > 2.0 * nodes[k].radius) earlier.push_back(nodes[k].radius);
+        }
+        const double usual = earlier.size() >= 3 ? median(earlier) : nodes.front().radius;
+        wide = nodes[n].radius > 2.0 * usual ? wide + 1 : 0;
+        if (wide < 2) continue;
+        std::size_t kept = n;
+        while (kept > 1 && nodes[kept - 1].radius > 1.4 * usual) --kept;
+        return kept;
+    }
+    return nodes.size();
+}
+
 }  // namespace
 
-std::vector<Node> refined_nodes(const Search& search, const std::vector<Tube>& tubes, double reference_contrast,
-                                const Vec3& inside, bool cut_start, bool cut_end) {
+Refined refined_nodes(const Search& search, const std::vector<Tube>& tubes, double reference_contrast,
+                      const Vec3& inside, bool cut_start, bool cut_end) {
     if (tubes.size() < 2) return {};
     const double voxel = search.scan.voxel();
     std::vector<double> radii;
     for (const Tube& tube : tubes) radii.push_back(tube.radius);
     const double typical = median(radii);
-    std::vector<Tube> fine = resampled(tubes, std::max(0.8 * voxel, 0.35 * typical));
+    std::vector<Tube> fine = resampled(tubes, std::max(0.8 * voxel, 0.35 * typical), search.settings.most_radius);
     std::size_t middle = 0;
     for (std::size_t n = 0; n < fine.size(); ++n)
         if (glm::length(fine[n].centre - inside) < glm::length(fine[middle].centre - inside)) middle = n;
@@ -179,7 +204,20 @@ std::vector<Node> refined_nodes(const Search& search, const std::vector<Tube>& t
     std::size_t first = 0, last = free.size();
     if (cut_end) last = middle + kept_of({seen.begin() + middle_of, seen.end()}, known, free[middle].radius);
     if (cut_start) first = middle + 1 - kept_of({seen.rend() - middle_of - 1, seen.rend()}, known, free[middle].radius);
-    std::vector<Node> nodes;
+    Refined refined;
+    if (cut_end)
+        if (const std::size_t most = before_leaving(std::span(free).subspan(middle, last - middle));
+            most < last - middle) {
+            last = middle + most;
+            refined.end = End::larger_vessel;
+        }
+    if (cut_start) {
+        const std::vector<Tube> back(free.rend() - middle_of - 1, free.rend() - static_cast<std::ptrdiff_t>(first));
+        if (const std::size_t most = before_leaving(back); most < back.size()) {
+            first = middle + 1 - most;
+            refined.start = End::larger_vessel;
+        }
+    }
     double along = 0.0;
     for (std::size_t n = first; n < last; ++n) {
         const Tube& tube = free[n];
@@ -196,9 +234,9 @@ std::vector<Node> refined_nodes(const Search& search, const std::vector<Tube>& t
         node.confidence = node.is_lost ? 0.0
                                        : std::min(1.0, std::max(0.0, tube.score) / (2.0 * search.least_mean)) *
                                              std::min(1.0, std::max(0.0, tube.contrast) / (0.8 * known));
-        nodes.push_back(node);
+        refined.nodes.push_back(node);
     }
-    return nodes;
+    return refined;
 }
 
 }  // namespace tactus::vessel

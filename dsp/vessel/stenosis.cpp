@@ -140,7 +140,9 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
             narrowing = fitted_narrowing(search, noise, branch,
                                          {branch.nodes[place.node].along, place.reference, place.depth, width});
             if (!narrowing) found.is_uncertain = true;
-            else if (narrowing->gain < least_gain) narrowing.reset();
+            // A reference beyond what a vessel may have is that of something else.
+            else if (narrowing->gain < least_gain || narrowing->reference > search.settings.most_radius)
+                narrowing.reset();
         }
         if (narrowing) {
             found.node = nearest_node(branch, narrowing->at);
@@ -158,7 +160,7 @@ std::optional<Stenosis> measured_stenosis(const Search& search, const Noise& noi
     if (fitted)
         for (Node& node : branch.nodes) {
             if (node.is_lost || std::abs(node.along - fitted->at) > fitted->width) continue;
-            node.radius = fitted->radius(node.along);
+            node.radius = std::min(fitted->radius(node.along), search.settings.most_radius);
             node.is_radius_uncertain = worst->is_uncertain;
         }
     return worst;

@@ -63,6 +63,7 @@ struct Track {
     Noise noise;                   ///< near the seed
     double background = 0.0, contrast = 0.0;  ///< at the seed
     double excluded_above = 0.0;   ///< values above are bone or stent; infinity: none
+    std::vector<std::string> doubts;  ///< why the whole may be no vessel, see doubts_of; empty: it looks like one
 
     double length() const;
 };

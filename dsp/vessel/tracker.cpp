@@ -3,6 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/vessel/refine.hpp"
 #include "dsp/vessel/stenosis.hpp"
+#include "dsp/vessel/track_doubts.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -55,6 +56,8 @@ public:
         for (Branch& branch : found_.track.branches)
             branch.stenosis = measured_stenosis(search_, found_.track.noise, branch);
         narrow_roots();
+        doubt_ends();
+        found_.track.doubts = doubts_of(scan_, found_.track, settings_.most_radius);
         found_.track.seed_node = std::min(found_.track.seed_node, found_.track.branches[0].nodes.size() - 1);
         return std::move(found_);
     }
@@ -97,10 +100,11 @@ private:
         tubes.push_back(start);
         tubes.insert(tubes.end(), ahead.tubes.begin(), ahead.tubes.end());
         Branch branch;
-        branch.nodes = refined_nodes(search_, tubes, start.contrast, start.centre, true, true);
+        Refined refined = refined_nodes(search_, tubes, start.contrast, start.centre, true, true);
+        branch.nodes = std::move(refined.nodes);
         if (!is_vessel(branch)) return false;
-        branch.start = end_at(branch.nodes.front(), tubes.front().centre, behind.end);
-        branch.end = end_at(branch.nodes.back(), tubes.back().centre, ahead.end);
+        branch.start = refined.start.value_or(end_at(branch.nodes.front(), tubes.front().centre, behind.end));
+        branch.end = refined.end.value_or(end_at(branch.nodes.back(), tubes.back().centre, ahead.end));
         for (std::size_t n = 0; n < branch.nodes.size(); ++n)
             if (glm::length(branch.nodes[n].position - seed) <
                 glm::length(branch.nodes[found_.track.seed_node].position - seed))
@@ -166,9 +170,10 @@ private:
         tubes.push_back(start);
         tubes.insert(tubes.end(), ahead.tubes.begin(), ahead.tubes.end());
         Branch branch;
-        branch.nodes = refined_nodes(search_, tubes, start.contrast, start.centre, false, true);
+        Refined refined = refined_nodes(search_, tubes, start.contrast, start.centre, false, true);
+        branch.nodes = std::move(refined.nodes);
         if (!is_vessel(branch) || branch.length() < 5e-3) return;
-        branch.end = end_at(branch.nodes.back(), tubes.back().centre, ahead.end);
+        branch.end = refined.end.value_or(end_at(branch.nodes.back(), tubes.back().centre, ahead.end));
         branch.meets = branch.end == End::meets_track ? ahead.meets : -1;
         branch.parent = static_cast<int>(index);
         attach(branch, found_.track.branches[index], leaves);
@@ -290,6 +295,19 @@ private:
                 (at_end ? branch.end : branch.start) = End::forks;
             }
         }
+    }
+
+    /// Where a vessel is not told from noise, the nodes before that are less and less sure of it, too: over eight radii, and
+    /// at most 0.9 in the whole branch.
+    void doubt_ends() {
+        for (Branch& branch : found_.track.branches)
+            for (const bool at_end : {true, false}) {
+                if ((at_end ? branch.end : branch.start) != End::noise || (!at_end && branch.parent >= 0)) continue;
+                for (Node& node : branch.nodes) {
+                    const double away = at_end ? branch.length() - node.along : node.along;
+                    node.confidence = std::min(node.confidence, std::min(0.9, away / (8.0 * node.radius)));
+                }
+            }
     }
 
     void cut_start(std::size_t index, int count) {

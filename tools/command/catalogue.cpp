@@ -61,6 +61,7 @@
     X(plan_alternative, planning)    \
     X(plan_snap, planning)           \
     X(plan_settle, planning)         \
+    X(plan_accept, planning)         \
     X(plan_assemble, planning)       \
     X(plan_mirror, planning)         \
     X(plan_gap, planning)            \

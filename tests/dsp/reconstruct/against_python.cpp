@@ -52,6 +52,7 @@ FibulaInputs random_inputs(std::uint64_t trial, const Vec3& point, const Vec3& l
     inputs.reversed = uniform() < 0.3;
     if (uniform() < 0.3) inputs.roll = 2.0 * std::numbers::pi * uniform();
     inputs.between = 3.0 * mm * uniform();
+    inputs.kerf = mm * uniform();
     inputs.distal_margin = (40.0 + 60.0 * uniform()) * mm;
     inputs.proximal_margin = (40.0 + 160.0 * uniform()) * mm;
     if (uniform() < 0.4) {
@@ -88,12 +89,12 @@ std::string line_of(const FibulaInputs& inputs, const FibulaPlan& plan) {
     for (const double angle : plan.wedges) wedges.push_back(angle / degree);
     return fmt::format(
         R"({{"inputs":{{"planes":[{}],"point":{},"direction":{},"reversed":{},"between":{},"distal_margin":{},)"
-        R"("proximal_margin":{}}},"plan":{{"segments":[{}],"warnings":[{}],"clearances":[{}],"off_bisector":[{}],)"
+        R"("proximal_margin":{},"kerf":{}}},"plan":{{"segments":[{}],"warnings":[{}],"clearances":[{}],"off_bisector":[{}],)"
         R"("wedges":[{}],"left":[{},{}]}}}})",
         fmt::join(planes, ","), text(inputs.line_point / mm), text(inputs.line_direction), inputs.reversed,
-        inputs.between / mm, inputs.distal_margin / mm, inputs.proximal_margin / mm, fmt::join(segments, ","),
-        fmt::join(warnings, ","), fmt::join(clearances, ","), fmt::join(off, ","), fmt::join(wedges, ","),
-        *plan.left_distal / mm, *plan.left_proximal / mm);
+        inputs.between / mm, inputs.distal_margin / mm, inputs.proximal_margin / mm, inputs.kerf / mm,
+        fmt::join(segments, ","), fmt::join(warnings, ","), fmt::join(clearances, ","), fmt::join(off, ","),
+        fmt::join(wedges, ","), *plan.left_distal / mm, *plan.left_proximal / mm);
 }
 
 /// The first plans of a random sequence that are accepted.

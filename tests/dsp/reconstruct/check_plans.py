@@ -116,6 +116,10 @@ def check(plan, vertices, triangles):
     for n in range(count - 1):
         # Placed segments keep the wanted space to a millionth of a metre.
         rule("close-osteotomies", n, gaps[n], given["between"] - 1e-3, 2e-3)
+        if gaps[n] > -2e-3:
+            rule("wide-kerf", n, gaps[n], 2.0 * given["kerf"] - 1e-3, 2e-3)
+        if abs(gaps[n]) < 2e-3:
+            unsure.add(("wide-kerf", n))
         rule("section-mismatch", n, -off[n], -1.0, 1e-6)
     rule("distal-margin", order[0], distal, given["distal_margin"] - 1e-3, 2e-3)
     rule("proximal-margin", order[-1], proximal, given["proximal_margin"] - 1e-3, 2e-3)
@@ -143,7 +147,7 @@ def main(path):
             for line in wrong[:3] if failures < 10 else []:
                 print(f"plan {number}: {line}")
     print(f"{plans} plans, {failures} wrong; warnings: {dict(sorted(seen.items()))}")
-    few = [code for code in ("short-segment", "very-short-segment", "close-osteotomies", "section-mismatch",
+    few = [code for code in ("short-segment", "very-short-segment", "close-osteotomies", "wide-kerf", "section-mismatch",
                              "distal-margin", "proximal-margin", "line-downwards") if seen[code] < 20]
     if few:
         print("too few to tell:", few)

@@ -151,6 +151,7 @@ Json json_of(const study::FoundVessel& result, const VesselChoice& choice) {
     if (result.run_off) json["run_off"] = json_of(*result.run_off);
     json["notes"] = result.notes;
     json["warnings"] = result.warnings;
+    json["doubts"] = track.doubts;
     return json;
 }
 
@@ -198,9 +199,10 @@ int follow(const VesselChoice& given) {
     if (result.straightened)
         picture::write_picture(*result.straightened, track.background, track.contrast, choice.straightened);
     for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    const bool is_vessel = !track.branches.empty() && track.doubts.empty();
     if (choice.json) {
         fmt::print("{}\n", json_of(result, choice).dump(2));
-        return track.branches.empty() ? answer_is_no : done;
+        return is_vessel ? done : answer_is_no;
     }
     if (track.branches.empty()) {
         fmt::print("{}\n", result.found.why);
@@ -211,7 +213,8 @@ int follow(const VesselChoice& given) {
     for (std::size_t n = 0; n < track.branches.size(); ++n) print_branch(n, track.branches[n]);
     if (result.run_off) print_run_off(*result.run_off);
     for (const std::string& note : result.notes) fmt::print("  {}\n", note);
-    return done;
+    for (const std::string& doubt : track.doubts) fmt::print("! {}: this may be no vessel\n", doubt);
+    return is_vessel ? done : answer_is_no;
 }
 
 Action declare_vessel(VerbOptions& verb) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan move: places a fragment.
+#include "assets/transform/transform_file.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 namespace tactus::command {
 
@@ -10,13 +15,21 @@ namespace {
 
 struct MoveChoice : PlanChoice {
     std::string pose;
+    std::filesystem::path transform;
 };
 
 int move_fragment(const MoveChoice& choice) {
+    if (choice.pose.empty() == choice.transform.empty()) throw Error("a place is needed: --pose or --transform");
+    const Pose pose =
+        choice.pose.empty() ? transform::read_motion(choice.transform) : pose_of_text(choice.pose, "--pose");
+    constexpr double far = 2.0;  // m: no bone is that long, nor that far from the origin of its scan
+    if (glm::length(pose.position) > far)
+        fmt::print(stderr, "note: the position is {:.1f} m from the origin of the scan; are the numbers in mm?\n",
+                   glm::length(pose.position));
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const int fragment = cases::find_fragment(plan, choice.names.front());
-    study::do_step(plan, cases::placing(plan, fragment, pose_of_text(choice.pose, "--pose"), "command"), choice.plan);
+    study::do_step(plan, cases::placing(plan, fragment, pose, "command"), choice.plan);
     return show_change(choice);
 }
 
@@ -24,7 +37,8 @@ Action declare_plan_move(VerbOptions& verb) {
     const auto choice = std::make_shared<MoveChoice>();
     add_plan_options(verb, *choice);
     add_fragments(verb, *choice, "which one").count(1);
-    verb.add("--pose", choice->pose, "X,Y,Z,QW,QX,QY,QZ: p_case = R p_file + t, in mm").required();
+    verb.add("--pose", choice->pose, "X,Y,Z,QW,QX,QY,QZ: p_case = R p_file + t, in mm");
+    verb.add("--transform", choice->transform, "transform of ITK or 3D Slicer (.tfm) that moves the file's bone there");
     return [choice] { return move_fragment(*choice); };
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/planning/plan_options.hpp"
 
+#include <fmt/format.h>
+
 namespace tactus::command {
 
 void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
@@ -25,6 +27,12 @@ study::FitWay fit_way(const PlanChoice& choice) {
 
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
     return verb.add("fragments", choice.names, about).required();
+}
+
+void print_warnings(const study::CaseWarnings& warnings) {
+    for (const bool is_fault : {true, false})
+        for (const study::CaseWarning& warning : warnings.all)
+            if (warning.is_fault == is_fault) fmt::print("{} {}\n", is_fault ? "!" : "warning:", warning.text);
 }
 
 int show_change(const PlanChoice& choice) {

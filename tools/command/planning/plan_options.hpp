@@ -4,6 +4,7 @@
 
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
 #include <filesystem>
@@ -28,6 +29,9 @@ void add_plan_options(VerbOptions& verb, PlanChoice& choice);
 void add_fit_options(VerbOptions& verb, PlanChoice& choice);
 study::FitWay fit_way(const PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
+
+/// Prints the warnings of a plan, those that 'plan check' refuses first.
+void print_warnings(const study::CaseWarnings& warnings);
 
 /// Prints the plan as text or JSON on standard output.
 int show_plan(const PlanChoice& choice);

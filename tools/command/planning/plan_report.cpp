@@ -42,9 +42,11 @@ int report(const ReportChoice& choice) {
     std::vector<study::CaseFragment> fragments = study::load_fragments(plan, folder);
     std::vector<std::optional<double>> residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
     const std::optional<fit::RegistrationTarget> healthy = study::healthy_side(cases::state_of(plan), folder);
+    const study::CaseWarnings warnings = study::case_warnings(plan, folder);
+    for (const std::string& note : warnings.notes) fmt::print(stderr, "note: {}\n", note);
     const std::vector<picture::ReportBlock> blocks =
-        picture::plan_blocks(plan, std::move(fragments), std::move(residuals), healthy ? &*healthy : nullptr,
-                             picture::flap_blocks(plan, folder));
+        picture::plan_blocks(plan, warnings.all, std::move(fragments), std::move(residuals),
+                             healthy ? &*healthy : nullptr, picture::flap_blocks(plan, folder));
     file::write_whole_file(out, picture::html::page(plan.title, picture::html_of(blocks, "plan")));
     if (!choice.pdf.empty()) file::write_whole_file(choice.pdf, picture::pdf_of(plan.title, blocks));
     file::Json written{{"report", out.string()}};

@@ -46,7 +46,10 @@ Json fit_json(const cases::PlanState& state, int fragment) {
         {"overlap_mm2", fit.overlap * 1e6}};
 }
 
-Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& problems) {
+Json json_of(const cases::CasePlan& plan, const study::CaseWarnings& warnings) {
+    Json problems = Json::array();
+    for (const study::CaseWarning& warning : warnings.all)
+        if (warning.code == "changed-file") problems.push_back(warning.text);
     const cases::PlanState state = cases::state_of(plan);
     const auto before = plan.before();
     Json json{{"title", plan.title},
@@ -60,7 +63,9 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
               {"steps_in_all", plan.steps.size()},
               {"mirror", nullptr},
               {"assemblies", study::assembly_names(plan, state)},
-              {"problems", problems}};
+              {"problems", problems},
+              {"warnings", study::json_of(warnings.all)},
+              {"measured", warnings.is_measured}};
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
         const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
         Json fragment{{"name", f.name},
@@ -104,9 +109,9 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
 
 int show_plan(const PlanChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
-    const auto problems = cases::changed_files(plan, choice.plan.parent_path());
+    const study::CaseWarnings warnings = study::known_warnings(plan, choice.plan.parent_path());
     if (choice.json) {
-        fmt::print("{}\n", json_of(plan, problems).dump(2));
+        fmt::print("{}\n", json_of(plan, warnings).dump(2));
         return done;
     }
     const cases::PlanState state = cases::state_of(plan);
@@ -130,8 +135,12 @@ int show_plan(const PlanChoice& choice) {
             fmt::print("  {}: {}, {:.1f} mm long, radius {:.2f} mm\n", v.name, reconstruct::name_of(v.kind),
                        study::length_of(v) * 1e3, v.radius * 1e3);
     if (state.reconstruction) print_reconstruction(*state.reconstruction);
-    for (const std::string& line : study::connection_words(plan, state)) fmt::print("  {}\n", line);
-    for (const std::string& problem : problems) fmt::print("! {}\n", problem);
+    if (!state.reconstruction)
+        for (const std::string& line : study::connection_words(plan, state)) fmt::print("  {}\n", line);
+    print_warnings(warnings);
+    if (!warnings.is_measured)
+        fmt::print("not measured for this version of the plan: overlaps{}; 'tactus plan check' does\n",
+                   state.reconstruction ? ", vessels, hardware" : "");
     return done;
 }
 

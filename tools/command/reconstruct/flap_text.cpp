@@ -44,7 +44,7 @@ Json reach_json(const reconstruct::SiteReach& r) {
 }  // namespace
 
 Json flap_json(const reconstruct::FlapMeasures& m) {
-    Json clearances = Json::array(), reaches = Json::array(), spans = Json::array(), warnings = Json::array();
+    Json clearances = Json::array(), reaches = Json::array(), spans = Json::array();
     for (const reconstruct::Clearance& c : m.clearances)
         clearances.push_back({{"object", c.object},
                               {"to", reconstruct::name_of(c.nearness)},
@@ -57,16 +57,10 @@ Json flap_json(const reconstruct::FlapMeasures& m) {
                          {"in_situ_mm", s.in_situ * to_mm},
                          {"path_mm", s.path * to_mm},
                          {"strain", s.strain}});
-    for (const reconstruct::FlapWarning& w : m.warnings)
-        warnings.push_back({{"code", reconstruct::name_of(w.code)},
-                            {"text", w.text},
-                            {"object", w.object},
-                            {"other", w.other.empty() ? Json(nullptr) : Json(w.other)}});
     return {{"reaches", reaches},
             {"spans", spans},
             {"clearances", clearances},
-            {"tumour_margin_mm", in_mm(m.tumour_margin)},
-            {"warnings", warnings}};
+            {"tumour_margin_mm", in_mm(m.tumour_margin)}};
 }
 
 Json candidates_json(std::span<const reconstruct::Candidate> all) {
@@ -146,7 +140,6 @@ void print_flap(const reconstruct::FlapMeasures& m) {
     for (const reconstruct::Clearance& c : m.clearances)
         fmt::print("{}: {:.1f} mm to {}\n", c.object, c.distance * to_mm, c.other);
     if (m.tumour_margin) fmt::print("tumour: {:.1f} mm to the nearest cut of the jaw\n", *m.tumour_margin * to_mm);
-    for (const reconstruct::FlapWarning& w : m.warnings) fmt::print("warning: {}\n", w.text);
 }
 
 void print_candidates(std::span<const reconstruct::Candidate> all) {

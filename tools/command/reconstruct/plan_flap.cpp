@@ -99,10 +99,19 @@ reconstruct::VesselKind kind_of(const FlapChoice& choice, const std::string& nam
 
 bool is_table(const fs::path& file) { return file.extension() == ".csv"; }
 
+void print(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
 /// One of the scan, or from a file.
 reconstruct::FlapVessel found_vessel(const FlapChoice& choice) {
-    if (choice.of_scan.empty())
-        return reconstruct::read_vessel(choice.file, reconstruct::VesselKind::artery, choice.branch);
+    if (choice.of_scan.empty()) {
+        std::vector<std::string> notes;
+        reconstruct::FlapVessel found =
+            reconstruct::read_vessel(choice.file, reconstruct::VesselKind::artery, choice.branch, notes);
+        print(notes);
+        return found;
+    }
     if (choice.branch != 0) throw Error("--branch is of a table: give --file VESSEL.csv instead of --of-scan");
     return study::vessel_of_scan(cases::load_case_plan(choice.plan), choice.of_scan);
 }
@@ -153,9 +162,11 @@ int site(const FlapChoice& choice) {
             if (choice.name.empty()) throw Error("--at needs a name");
             return add_site(all.flap, choice, choice.name, in_metres(choice.at));
         }
-        std::vector<std::string> names;
+        std::vector<std::string> names, notes;
         bool is_found = false;
-        for (const reconstruct::MarkedPoint& mark : reconstruct::read_marks(choice.file)) {
+        const std::vector<reconstruct::MarkedPoint> marks = reconstruct::read_marks(choice.file, notes);
+        print(notes);
+        for (const reconstruct::MarkedPoint& mark : marks) {
             names.push_back(mark.name);
             if (!choice.name.empty() && mark.name != choice.name) continue;
             is_found = true;
@@ -257,9 +268,10 @@ Verb plan_site_verb() {
             verb.add("name", choice->name, "name of the mark; one of that name is replaced");
             verb.add("--at", choice->at, "X Y Z, mm; sites in the frame of the jaw, perforators in the donor's")
                 .count(3);
-            verb.add("--file", choice->file,
-                     "take the mark of that name from a file of 3D Slicer (.mrk.json), or all of its marks; or a "
-                     "place on a vessel of a table of 'tactus vessel' (.csv)");
+            verb.add(
+                "--file", choice->file,
+                "take the mark of that name from a file of 3D Slicer (.mrk.json, .fcsv), or all of its marks; or a "
+                "place on a vessel of a table of 'tactus vessel' (.csv)");
             verb.add("--branch", choice->branch, "branch of the table").range(0, 10000).shows_default();
             verb.add("--of-scan", choice->of_scan, "a place on a vessel that the plan has of its scan");
             verb.add("--along", choice->along,

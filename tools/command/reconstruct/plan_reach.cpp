@@ -27,8 +27,8 @@ int take(const ReachChoice& choice) {
     const study::TakenCandidate taken = study::take_candidate(choice.plan, static_cast<std::size_t>(choice.take), name);
     if (choice.json) return show_change(choice);
     fmt::print("{}: alternative '{}': {}\n", choice.plan.string(), name, study::candidate_words(taken.candidate));
-    for (const reconstruct::FibulaWarning& w : taken.candidate.plan.warnings) fmt::print("warning: {}\n", w.text);
-    for (const reconstruct::FlapWarning& w : taken.candidate.measures.warnings) fmt::print("warning: {}\n", w.text);
+    for (const study::CaseWarning& w : study::warnings_of(taken.candidate.plan, taken.candidate.measures))
+        fmt::print("warning: {}\n", w.text);
     fmt::print("for research, not a medical device\n");
     return done;
 }
@@ -39,18 +39,21 @@ int reach(const ReachChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     study::FlapStudy study(plan, cases::state_of(plan), choice.plan.parent_path());
     const reconstruct::FlapMeasures measures = study.measures();
+    const study::CaseWarnings warnings = study::case_warnings(plan, choice.plan.parent_path());
     std::vector<reconstruct::Candidate> candidates;
     if (choice.rank) candidates = study.candidates();
     if (choice.json) {
         file::Json json = flap_json(measures);
+        json["warnings"] = study::json_of(warnings.all);
         if (choice.rank) json["candidates"] = candidates_json(candidates);
         fmt::print("{}\n", json.dump(2));
     } else {
         print_flap(measures);
+        print_warnings(warnings);
         if (choice.rank) print_candidates(candidates);
         fmt::print("for research, not a medical device\n");
     }
-    return measures.warnings.empty() ? done : answer_is_no;
+    return warnings.all.empty() ? done : answer_is_no;
 }
 
 }  // namespace

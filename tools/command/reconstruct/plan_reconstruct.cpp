@@ -16,8 +16,9 @@ struct ReconstructChoice : PlanChoice {
 };
 
 int run(const ReconstructChoice& choice) {
-    const study::MadeReconstruction made = study::make_reconstruction(
-        reconstruct::read_reconstruction_inputs(choice.inputs), choice.plan, choice.alternative);
+    const reconstruct::ReconstructionInputs inputs = reconstruct::read_reconstruction_inputs(choice.inputs);
+    for (const std::string& note : inputs.notes) fmt::print(stderr, "note: {}\n", note);
+    const study::MadeReconstruction made = study::make_reconstruction(inputs, choice.plan, choice.alternative);
     if (choice.json) return show_change(choice);
     fmt::print("{}:", choice.plan.string());
     for (const int piece : cases::state_of(made.plan).pieces)

@@ -6,6 +6,7 @@
 #include "dsp/reconstruct/pedicle.hpp"
 #include "tools/picture/flap/flap_drawing.hpp"
 #include "tools/picture/flap/flap_scene.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/flap_words.hpp"
 
@@ -257,10 +258,8 @@ ReportTable side_by_side(const std::vector<Measured>& all) {
     row("vein", [](const Measured& m) { return best_words(m, reconstruct::VesselKind::vein); });
     row("warnings", [](const Measured& m) {
         std::string codes;
-        for (const auto& w : m.study->fibula().warnings)
-            codes += (codes.empty() ? "" : ", ") + std::string(reconstruct::name_of(w.code));
-        for (const auto& w : m.measures.warnings)
-            codes += (codes.empty() ? "" : ", ") + std::string(reconstruct::name_of(w.code));
+        for (const study::CaseWarning& w : study::warnings_of(m.study->fibula(), m.measures))
+            codes += (codes.empty() ? "" : ", ") + w.code;
         return codes.empty() ? std::string("none") : codes;
     });
     return table;
@@ -299,15 +298,11 @@ std::vector<ReportBlock> flap_blocks(const cases::CasePlan& plan, const fs::path
     std::vector<ReportBlock> out;
     out.emplace_back(Heading{"Reconstruction"});
     out.emplace_back(Paragraph{fmt::format(
-        "Alternative '{}': {} of the {} fibula{}, turned by {}° about its axis. The last table has the thresholds "
-        "of the warnings, with their sources; placeholders are named.",
+        "Alternative '{}': {} of the {} fibula{}, turned by {}° about its axis. Cuts, tables and the order of the "
+        "operation are locked to the planned places of the pieces; warnings name those that lie elsewhere. The last "
+        "table has the thresholds of the warnings, with their sources; placeholders are named.",
         m.name, in.planes.size() == 2 ? "one segment" : fmt::format("{} segments", in.planes.size() - 1),
         in.leg == reconstruct::Leg::left ? "left" : "right", in.reversed ? ", reversed" : "", degrees(in.roll))});
-    if (m.study->fibula().warnings.empty() && m.measures.warnings.empty()) out.emplace_back(Paragraph{"No warnings."});
-    for (const auto& w : m.study->fibula().warnings)
-        out.emplace_back(Paragraph{fmt::format("{}: {}", reconstruct::name_of(w.code), w.text), true});
-    for (const auto& w : m.measures.warnings)
-        out.emplace_back(Paragraph{fmt::format("{}: {}", reconstruct::name_of(w.code), w.text), true});
     if (in.jaw)
         out.emplace_back(jaw_picture(plan, m, folder, true, from_front, "The jaw before; what is resected is red"));
     out.emplace_back(jaw_picture(plan, m, folder, false, from_front, "As planned, from the front"));

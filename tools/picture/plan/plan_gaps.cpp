@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/plan/plan_gaps.hpp"
 
-#include "dsp/fit/fragment_matcher.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/mutual_gap.hpp"
 #include "dsp/fit/overlap.hpp"
@@ -80,7 +79,6 @@ std::optional<LabelledPicture> gap_map(const DrawnPlan& c, std::size_t i, std::s
 }  // namespace
 
 PlanGaps gaps_of(const DrawnPlan& c) {
-    constexpr double much = 5e-9;  // m³
     PlanGaps found;
     for (std::size_t i = 0; i < c.fragments.size(); ++i)
         for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
@@ -90,9 +88,6 @@ PlanGaps gaps_of(const DrawnPlan& c) {
             const fit::MutualGap gap = fit::mutual_gap(a, b);
             const double overlap =
                 fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j));
-            if (overlap > much && fit::lie_in_each_other(a, b, fit::MatcherSettings{}.fit.most_penetration))
-                found.warnings.push_back(fmt::format("'{}' and '{}' lie in each other with {:.0f} mm³", c.name(i),
-                                                     c.name(j), overlap * 1e9));
             if (!(gap.facing > 5e-6)) continue;
             found.table.rows.push_back(
                 {c.name(i), c.name(j), fmt::format("{:.0f}", gap.facing * 1e6),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaps and overlaps of the fragments of a plan: table, maps and warnings.
+// Gaps and overlaps of the fragments of a plan: table and maps.
 #pragma once
 
 #include "tools/picture/blocks/report_block.hpp"
@@ -12,7 +12,6 @@ struct PlanGaps {
                        "overlap, mm³"},
                       {}};
     PictureGrid maps;
-    std::vector<std::string> warnings;  ///< of fragments that lie in each other
 };
 
 /// Throws Error when no picture can be made.

@@ -16,7 +16,8 @@
 
 namespace tactus::picture {
 
-std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, const std::vector<study::CaseWarning>& warnings,
+                                     std::vector<study::CaseFragment> fragments,
                                      std::vector<std::optional<double>> to_healthy,
                                      const fit::RegistrationTarget* healthy, std::vector<ReportBlock> first) {
     DrawnPlan c;
@@ -40,8 +41,8 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
     out.emplace_back(Paragraph{fmt::format("Alternative '{}', {}. Research use; not a medical device.",
                                            c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name,
                                            counted(c.fragments.size(), "fragment"))});
+    add_warnings(warnings, out);
     std::ranges::move(first, std::back_inserter(out));
-    add_warnings(c, found.warnings, out);
     add_connections(c, out);
     out.emplace_back(Heading{"Fragments"});
     out.emplace_back(fragments_table(c));
@@ -58,10 +59,11 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<st
     return out;
 }
 
-std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy, const fit::RegistrationTarget* healthy) {
-    return html::page(plan.title,
-                      html_of(plan_blocks(plan, std::move(fragments), std::move(to_healthy), healthy), "plan"));
+std::string plan_page(const cases::CasePlan& plan, const std::vector<study::CaseWarning>& warnings,
+                      std::vector<study::CaseFragment> fragments, std::vector<std::optional<double>> to_healthy,
+                      const fit::RegistrationTarget* healthy) {
+    return html::page(
+        plan.title, html_of(plan_blocks(plan, warnings, std::move(fragments), std::move(to_healthy), healthy), "plan"));
 }
 
 }  // namespace tactus::picture

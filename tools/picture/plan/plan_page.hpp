@@ -4,6 +4,7 @@
 
 #include "dsp/fit/registration/registration.hpp"
 #include "tools/picture/blocks/report_block.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <optional>
@@ -12,17 +13,18 @@
 
 namespace tactus::picture {
 
-/// `fragments`: of the plan, in its order; `to_healthy`: m, the median distance of each from the healthy side where it is
+/// `warnings`: study::case_warnings of the plan; `fragments`: of the plan, in its order; `to_healthy`: m, the median distance of each from the healthy side where it is
 /// planned, as far as there is one; `healthy`: that side in the frame of the case, for maps of the distance from it; null:
 /// none; `first`: what comes before the warnings. Throws Error when pictures cannot be made.
-std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
+std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, const std::vector<study::CaseWarning>& warnings,
+                                     std::vector<study::CaseFragment> fragments,
                                      std::vector<std::optional<double>> to_healthy = {},
                                      const fit::RegistrationTarget* healthy = nullptr,
                                      std::vector<ReportBlock> first = {});
 
 /// The same as one HTML page.
-std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments,
-                      std::vector<std::optional<double>> to_healthy = {},
+std::string plan_page(const cases::CasePlan& plan, const std::vector<study::CaseWarning>& warnings,
+                      std::vector<study::CaseFragment> fragments, std::vector<std::optional<double>> to_healthy = {},
                       const fit::RegistrationTarget* healthy = nullptr);
 
 }  // namespace tactus::picture

@@ -29,21 +29,12 @@ std::string marks_of(const DrawnPlan& c, int number) {
 
 }  // namespace
 
-void add_warnings(const DrawnPlan& c, const std::vector<std::string>& overlaps, std::vector<ReportBlock>& out) {
+void add_warnings(const std::vector<study::CaseWarning>& warnings, std::vector<ReportBlock>& out) {
+    if (warnings.empty()) return;
     ReportList all{{}, true};
-    // The pieces of a reconstruction lie where its planes say, not where surfaces fit.
-    if (!c.state.reconstruction && !study::is_in_one_part(c.state))
-        all.items.emplace_back("The fragments are not all connected by fits that hold.");
-    for (std::size_t n = 0; n < c.fragments.size(); ++n)
-        if (c.state.fits[n] && !c.state.holds(static_cast<int>(n)))
-            all.items.push_back(c.name(n) + ": " + study::fit_words(c.state, static_cast<int>(n)));
-    all.items.insert(all.items.end(), overlaps.begin(), overlaps.end());
-    for (const study::VesselClearance& v : c.vessels)
-        if (v.planned.fragment >= 0 && v.planned.gap < 0.0)
-            all.items.push_back(fmt::format("'{}' reaches {:.1f} mm into the vessel '{}'",
-                                            c.name(static_cast<std::size_t>(v.planned.fragment)), -v.planned.gap * 1e3,
-                                            v.vessel->name));
-    if (all.items.empty()) return;
+    for (const bool is_fault : {true, false})
+        for (const study::CaseWarning& warning : warnings)
+            if (warning.is_fault == is_fault) all.items.push_back(warning.text);
     out.emplace_back(Heading{"Warnings", true});
     out.emplace_back(std::move(all));
 }

@@ -4,11 +4,12 @@
 
 #include "tools/picture/blocks/report_block.hpp"
 #include "tools/picture/plan/drawn_plan.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 
 namespace tactus::picture {
 
-/// What a reader must know before anything else; `overlaps`: sentences about fragments that lie in each other.
-void add_warnings(const DrawnPlan& c, const std::vector<std::string>& overlaps, std::vector<ReportBlock>& out);
+/// What a reader must know before anything else; nothing without warnings.
+void add_warnings(const std::vector<study::CaseWarning>& warnings, std::vector<ReportBlock>& out);
 
 /// Which fragments are connected by fits.
 void add_connections(const DrawnPlan& c, std::vector<ReportBlock>& out);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/markups.hpp"
 
-#include "assets/file/json.hpp"
+#include "assets/markup/markup.hpp"
 #include "dsp/display/ruler.hpp"
 
 #include <fmt/format.h>
@@ -9,8 +9,6 @@
 #include <numbers>
 
 namespace tactus::picture {
-
-using file::Json;
 
 std::string measurement_words(const Measurement& measured) {
     const std::span points(measured.points);
@@ -24,37 +22,18 @@ std::string measurement_words(const Measurement& measured) {
 }
 
 std::string markups_text(std::span<const Measurement> all) {
-    Json markups = Json::array();
+    std::vector<markup::Markup> markups;
     for (const Measurement& one : all) {
         if (one.points.size() != 2 && one.points.size() != 3) continue;
-        Json points = Json::array();
-        for (std::size_t n = 0; n < one.points.size(); ++n) {
-            const Vec3 p = one.points[n] * 1e3;
-            points.push_back({{"id", fmt::format("{}", n + 1)},
-                              {"label", fmt::format("{}-{}", one.name, n + 1)},
-                              {"description", measurement_words(one)},
-                              {"associatedNodeID", ""},
-                              {"position", {p.x, p.y, p.z}},
-                              {"orientation", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
-                              {"selected", true},
-                              {"locked", false},
-                              {"visibility", true},
-                              {"positionStatus", "defined"}});
-        }
-        markups.push_back({{"type", one.points.size() == 2 ? "Line" : "Angle"},
-                           {"coordinateSystem", "LPS"},
-                           {"coordinateUnits", "mm"},
-                           {"locked", false},
-                           {"fixedNumberOfControlPoints", true},
-                           {"labelFormat", "%N-%d"},
-                           {"lastUsedControlPointNumber", one.points.size()},
-                           {"controlPoints", points}});
+        markup::Markup made;
+        made.kind = one.points.size() == 2 ? markup::Kind::line : markup::Kind::angle;
+        made.name = one.name;
+        made.has_fixed_count = true;
+        for (const Vec3& p : one.points)
+            made.points.push_back({fmt::format("{}-{}", one.name, made.points.size() + 1), p, measurement_words(one)});
+        markups.push_back(std::move(made));
     }
-    const Json json{{"@schema",
-                     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-                     "markups-schema-v1.0.3.json#"},
-                    {"markups", markups}};
-    return json.dump(2) + "\n";
+    return markup::text_of(markups);
 }
 
 }  // namespace tactus::picture

@@ -78,6 +78,14 @@ ResultKey& ResultKey::add(const std::string& name, double number) {
     return *this;
 }
 
+ResultKey& ResultKey::add_text(const std::string& name, const std::string& value) {
+    // A name may have a line break; the hash has none.
+    Hash hash;
+    hash.add_text(value);
+    text_ += fmt::format("\n{} {} {:016x}", name, value.size(), hash.value());
+    return *this;
+}
+
 std::filesystem::path file_of_result(const ResultKey& key) {
     const std::filesystem::path folder = cache_folder();
     if (folder.empty() || key.text().empty()) return {};
@@ -117,6 +125,50 @@ void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexc
         std::string text = std::string(format_line) + key.text() + "\n\n" + checksum(key.text(), numbers) + "\n";
         for (const double number : numbers) text += fmt::format("{:.17g}\n", number);
         file::write_whole_file(file, text);
+    } catch (const std::exception&) {
+        // A result that is not kept is computed again.
+    }
+}
+
+namespace {
+
+/// Beside the numbers: "texts/HASH.txt".
+std::filesystem::path file_of_text(const ResultKey& key) {
+    const std::filesystem::path file = file_of_result(key);
+    return file.empty() ? file : file.parent_path().parent_path() / "texts" / file.filename();
+}
+
+std::string head_of_text(const ResultKey& key, const std::string& text) {
+    Hash hash;
+    hash.add_text(key.text());
+    hash.add_text(text);
+    return fmt::format("tactus kept text 1\n{}\n\n{:016x}\n", key.text(), hash.value());
+}
+
+}  // namespace
+
+std::optional<std::string> kept_text(const ResultKey& key, std::string& note) {
+    const std::filesystem::path file = file_of_text(key);
+    std::error_code failure;
+    if (file.empty() || !std::filesystem::exists(file, failure)) return std::nullopt;
+    try {
+        const std::string whole = file::read_whole_file(file);
+        const std::size_t size = head_of_text(key, "").size();
+        std::string text = whole.size() >= size ? whole.substr(size) : "";
+        if (whole == head_of_text(key, text) + text) return text;
+    } catch (const std::exception&) {
+        // Damaged or not ours: said below, and made again.
+    }
+    note = fmt::format("{} is damaged or not a kept result; it is ignored and made again", file.string());
+    return std::nullopt;
+}
+
+void keep_text(const ResultKey& key, const std::string& text) noexcept {
+    try {
+        const std::filesystem::path file = file_of_text(key);
+        if (file.empty()) return;
+        std::filesystem::create_directories(file.parent_path());
+        file::write_whole_file(file, head_of_text(key, text) + text);
     } catch (const std::exception&) {
         // A result that is not kept is computed again.
     }

@@ -23,6 +23,7 @@ public:
     /// key: results with it are not kept. Throws Error for a file that cannot be read.
     ResultKey& add_file(const std::filesystem::path& path);
     ResultKey& add(const std::string& name, double number);
+    ResultKey& add_text(const std::string& name, const std::string& value);
 
     /// Empty when results are not kept.
     std::string text() const { return is_complete_ ? text_ : std::string(); }
@@ -37,6 +38,10 @@ std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string
 
 /// Keeps a result. The file is complete or does not exist; without room or right to write, nothing is kept.
 void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexcept;
+
+/// The same for a result that is a text.
+std::optional<std::string> kept_text(const ResultKey& key, std::string& note);
+void keep_text(const ResultKey& key, const std::string& text) noexcept;
 
 /// The file that keeps a result; empty without a folder or a key.
 std::filesystem::path file_of_result(const ResultKey& key);

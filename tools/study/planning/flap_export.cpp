@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/flap_export.hpp"
 
-#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/markup/markup.hpp"
 #include "tools/study/planning/vessel_export.hpp"
 
 #include <fmt/format.h>
@@ -15,45 +15,22 @@ namespace tactus::study {
 namespace {
 
 namespace fs = std::filesystem;
-using file::Json;
 
-Json in_mm(const Vec3& p) { return {p.x * 1e3, p.y * 1e3, p.z * 1e3}; }
+using markup::Kind;
+using markup::Markup;
 
-struct Point {
-    std::string label;
-    Vec3 at;
-};
-
-Json markup(const char* type, const std::string& name, const std::vector<Point>& points) {
-    Json list = Json::array();
-    for (std::size_t n = 0; n < points.size(); ++n)
-        list.push_back({{"id", fmt::format("{}", n + 1)},
-                        {"label", points[n].label},
-                        {"description", ""},
-                        {"associatedNodeID", ""},
-                        {"position", in_mm(points[n].at)},
-                        {"orientation", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
-                        {"selected", true},
-                        {"locked", true},
-                        {"visibility", true},
-                        {"positionStatus", "defined"}});
-    return {{"type", type},
-            {"name", name},
-            {"coordinateSystem", "LPS"},
-            {"coordinateUnits", "mm"},
-            {"locked", true},
-            {"labelFormat", "%N-%d"},
-            {"lastUsedControlPointNumber", points.size()},
-            {"controlPoints", list}};
+Markup markup_of(Kind kind, const std::string& name, std::vector<markup::ControlPoint> points) {
+    Markup made;
+    made.kind = kind;
+    made.name = name;
+    made.points = std::move(points);
+    made.is_locked = true;
+    return made;
 }
 
-Json plane_markup(const std::string& name, const reconstruct::Plane& plane) {
-    Json made = markup("Plane", name, {{name, plane.origin}});
-    made["planeType"] = "pointNormal";
-    made["sizeMode"] = "absolute";
-    made["size"] = {40.0, 40.0};
-    made["center"] = in_mm(plane.origin);
-    made["normal"] = {plane.normal.x, plane.normal.y, plane.normal.z};
+Markup plane_markup(const std::string& name, const reconstruct::Plane& plane) {
+    Markup made = markup_of(Kind::plane, name, {{name, plane.origin, ""}});
+    made.normal = glm::normalize(plane.normal);
     return made;
 }
 
@@ -61,16 +38,12 @@ class Writer {
 public:
     Writer(const fs::path& out, std::string mesh_type) : out_(out), mesh_type_(std::move(mesh_type)) {}
 
-    void write(const std::string& name, const Json& made) {
-        const Json json{{"@schema",
-                         "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/"
-                         "Schema/markups-schema-v1.0.3.json#"},
-                        {"markups", Json::array({made})}};
+    void write(const std::string& name, const Markup& made) {
         std::string file = file_name_of(name) + ".mrk.json";
         // Names that differ only in replaced characters, or are those of other things.
         for (int n = 2; std::ranges::find(files_, file) != files_.end(); ++n)
             file = fmt::format("{}-{}.mrk.json", file_name_of(name), n);
-        file::write_whole_file(out_ / file, json.dump(2) + "\n");
+        file::write_whole_file(out_ / file, markup::text_of({&made, 1}));
         files_.push_back(file);
     }
     void write_vessel(const std::string& name, const std::vector<Vec3>& line, double radius) {
@@ -84,9 +57,9 @@ private:
     std::vector<std::string> files_;
 };
 
-std::vector<Point> named(const std::string& name, const std::vector<Vec3>& line) {
-    std::vector<Point> points;
-    for (const Vec3& p : line) points.push_back({fmt::format("{}-{}", name, points.size() + 1), p});
+std::vector<markup::ControlPoint> named(const std::string& name, const std::vector<Vec3>& line) {
+    std::vector<markup::ControlPoint> points;
+    for (const Vec3& p : line) points.push_back({fmt::format("{}-{}", name, points.size() + 1), p, ""});
     return points;
 }
 
@@ -119,31 +92,31 @@ std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, co
     for (const reconstruct::PlacedVessel& vessel : measures.vessels)
         for (std::size_t n = 0; n < vessel.lines.size(); ++n) {
             const std::string name = fmt::format("vessel-{}-{}", vessel.name, n == 0 ? "on-bone" : "pedicle");
-            writer.write(name, markup("Curve", name, named(vessel.name, vessel.lines[n])));
+            writer.write(name, markup_of(Kind::curve, name, named(vessel.name, vessel.lines[n])));
             writer.write_vessel(name, vessel.lines[n], vessel.radius);
         }
     for (const reconstruct::FlapVessel& vessel : flap.vessels) {
         const std::string name = fmt::format("vessel-{}-in-leg", vessel.name);
-        writer.write(name, markup("Curve", name, named(vessel.name, vessel.points)));
+        writer.write(name, markup_of(Kind::curve, name, named(vessel.name, vessel.points)));
         writer.write_vessel(name, vessel.points, vessel.radius);
     }
     for (const reconstruct::Plate& plate : flap.plates) {
-        writer.write("plate-" + plate.name, markup("Curve", plate.name, named(plate.name, plate.points)));
+        writer.write("plate-" + plate.name, markup_of(Kind::curve, plate.name, named(plate.name, plate.points)));
         for (std::size_t n = 0; n < plate.screws.size(); ++n) {
             const reconstruct::Screw& s = plate.screws[n];
             const std::string name = fmt::format("plate-{}-screw-{}", plate.name, n + 1);
-            writer.write(name, markup("Line", name, named(name, {s.head, s.head + s.length * s.axis})));
+            writer.write(name, markup_of(Kind::line, name, named(name, {s.head, s.head + s.length * s.axis})));
         }
     }
     for (const reconstruct::DentalImplant& implant : flap.implants)
         writer.write("implant-" + implant.name,
-                     markup("Line", implant.name,
-                            named(implant.name, {implant.head, implant.head + implant.length * implant.axis})));
-    std::vector<Point> sites, perforators;
-    for (const reconstruct::RecipientSite& site : flap.sites) sites.push_back({site.name, site.at});
-    for (const reconstruct::Perforator& p : flap.perforators) perforators.push_back({p.name, p.at});
-    if (!sites.empty()) writer.write("sites", markup("Fiducial", "sites", sites));
-    if (!perforators.empty()) writer.write("perforators", markup("Fiducial", "perforators", perforators));
+                     markup_of(Kind::line, implant.name,
+                               named(implant.name, {implant.head, implant.head + implant.length * implant.axis})));
+    std::vector<markup::ControlPoint> sites, perforators;
+    for (const reconstruct::RecipientSite& site : flap.sites) sites.push_back({site.name, site.at, ""});
+    for (const reconstruct::Perforator& p : flap.perforators) perforators.push_back({p.name, p.at, ""});
+    if (!sites.empty()) writer.write("sites", markup_of(Kind::fiducial, "sites", sites));
+    if (!perforators.empty()) writer.write("perforators", markup_of(Kind::fiducial, "perforators", perforators));
     return writer.files();
 }
 

@@ -13,6 +13,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace tactus::study {
@@ -62,16 +65,20 @@ FlapStudy::FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state,
     fibula_ = reconstruct::plan_fibula(inputs_);
     for (const int piece : state.pieces) {
         const auto n = static_cast<std::size_t>(piece);
-        if (is_segment(plan.fragments[n].name)) segment_poses_.push_back(state.arrangement.pose(piece));
+        const Pose& pose = state.arrangement.pose(piece);
+        const bool is_scanned = pose.position == Vec3(0.0) && std::abs(pose.orientation.w) == 1.0;
+        if (is_segment(plan.fragments[n].name)) segments_.push_back({piece, pose, !is_scanned});
         else if (!state.arrangement.is_hidden(piece))
-            jaw_files_.emplace_back(cases::file_of(state.files[n].file, folder), state.arrangement.pose(piece));
+            jaw_files_.emplace_back(cases::file_of(state.files[n].file, folder), pose);
     }
-    if (segment_poses_.size() != fibula_.segments.size()) segment_poses_.clear();
+    if (segments_.size() != fibula_.segments.size()) segments_.clear();
 }
 
 void FlapStudy::make_obstacles() {
     if (donor_) return;
-    if (flap().sites.empty() || flap().vessels.empty()) return;
+    const bool has_reach = !flap().sites.empty() && !flap().vessels.empty(),
+               has_hardware = !flap().plates.empty() || !flap().implants.empty();
+    if (!has_reach && !has_hardware) return;
     donor_ = obstacle_of(donor_file_, {});
     for (const auto& [file, pose] : jaw_files_) jaw_.push_back(obstacle_of(file, pose));
 }
@@ -79,11 +86,18 @@ void FlapStudy::make_obstacles() {
 reconstruct::FlapMeasures FlapStudy::measures() {
     make_obstacles();
     reconstruct::FibulaPlan now = fibula_;
-    for (std::size_t n = 0; n < segment_poses_.size(); ++n) now.segments[n].donor_to_target = segment_poses_[n];
+    if (std::ranges::all_of(segments_, &SegmentPlace::is_placed))
+        for (std::size_t n = 0; n < segments_.size(); ++n) now.segments[n].donor_to_target = segments_[n].pose;
     std::vector<const rope::Obstacle*> jaw;
     for (const auto& piece : jaw_) jaw.push_back(&piece->field);
     const reconstruct::FlapObstacle bone(now, jaw, donor_ ? &donor_->field : nullptr);
-    return reconstruct::measure_flap(inputs_, now, flap(), &bone, tumour_);
+    reconstruct::FlapMeasures found = reconstruct::measure_flap(inputs_, now, flap(), &bone, tumour_);
+    // Without the jaw's mesh nothing shows where the stumps end.
+    if (!jaw_.empty()) {
+        std::vector<reconstruct::FlapWarning> of_hardware = reconstruct::hardware_warnings(flap(), bone);
+        std::ranges::move(of_hardware, std::back_inserter(found.warnings));
+    }
+    return found;
 }
 
 std::vector<reconstruct::Candidate> FlapStudy::candidates() {

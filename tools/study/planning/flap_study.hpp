@@ -27,8 +27,8 @@ struct BoneAsObstacle {
     BoneAsObstacle& operator=(const BoneAsObstacle&) = delete;
 };
 
-/// Loads the meshes that the plan names. Measures hold for the segments where the plan has them now; candidates for
-/// where the inputs place them.
+/// Loads the meshes that the plan names. Measures hold for the segments where the plan has them now, or where they are
+/// planned while one of them lies in the leg still; candidates for where the inputs place them.
 class FlapStudy {
 public:
     /// `folder`: of the plan. Throws Error when the plan's state has no reconstruction, and for files that are missing,
@@ -40,6 +40,13 @@ public:
     const reconstruct::Flap& flap() const { return all_.flap; }
     const reconstruct::Reconstruction& reconstruction() const { return all_; }
     const std::vector<Vec3>& tumour() const { return tumour_; }
+    /// Number of the fragment of each segment and its pose in the plan; empty when the plan does not have all segments.
+    struct SegmentPlace {
+        int fragment = 0;
+        Pose pose;
+        bool is_placed = false;  ///< false: it lies in the leg, as scanned
+    };
+    const std::vector<SegmentPlace>& segments() const { return segments_; }
 
     reconstruct::FlapMeasures measures();
     std::vector<reconstruct::Candidate> candidates();
@@ -50,7 +57,7 @@ private:
     reconstruct::Reconstruction all_;
     reconstruct::FibulaInputs inputs_;
     reconstruct::FibulaPlan fibula_;
-    std::vector<Pose> segment_poses_;  // in the plan, as far as its pieces are there
+    std::vector<SegmentPlace> segments_;
     std::vector<std::pair<std::filesystem::path, Pose>> jaw_files_;
     std::filesystem::path donor_file_;
     std::vector<Vec3> tumour_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_export.hpp"
 
-#include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/markup/markup.hpp"
 #include "assets/mesh/write_mesh.hpp"
+#include "assets/transform/transform_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/bones/surface_file.hpp"
@@ -13,28 +14,13 @@
 #include "tools/study/planning/vessel_export.hpp"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 
 namespace tactus::study {
 
 namespace {
-
-using file::Json;
-
-/// ITK stores the transform from the parent, which is the inverse of the motion; LPS, mm. Rows of the matrix, then the
-/// translation.
-std::string tfm_of(const Pose& placed) {
-    const Pose back = placed.inverse();
-    const Mat3 m = glm::mat3_cast(back.orientation);
-    std::string text = "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\nParameters:";
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) text += fmt::format(" {}", m[column][row]);
-    for (int axis = 0; axis < 3; ++axis) text += fmt::format(" {}", back.position[axis] * 1e3);
-    return text + "\nFixedParameters: 0 0 0\n";
-}
 
 struct Landmark {
     std::string label;
@@ -56,37 +42,14 @@ std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& poi
     return marks;
 }
 
-/// Control points of a Slicer markup, transformed by `pose`.
+/// A point list of Slicer, transformed by `pose`.
 std::string markup_of(const std::string& fragment, const std::vector<Landmark>& marks, const Pose& pose) {
-    const Mat3 m = glm::mat3_cast(pose.orientation);
-    Json orientation = Json::array(), points = Json::array();
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) orientation.push_back(m[column][row]);
-    for (std::size_t n = 0; n < marks.size(); ++n) {
-        const Vec3 p = pose.apply(marks[n].position) * 1e3;
-        points.push_back({{"id", fmt::format("{}", n + 1)},
-                          {"label", fmt::format("{} {}", fragment, marks[n].label)},
-                          {"description", ""},
-                          {"associatedNodeID", ""},
-                          {"position", {p.x, p.y, p.z}},
-                          {"orientation", orientation},
-                          {"selected", true},
-                          {"locked", true},
-                          {"visibility", true},
-                          {"positionStatus", "defined"}});
-    }
-    const Json json{{"@schema",
-                     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-                     "markups-schema-v1.0.3.json#"},
-                    {"markups", Json::array({{{"type", "Fiducial"},
-                                              {"coordinateSystem", "LPS"},
-                                              {"coordinateUnits", "mm"},
-                                              {"locked", true},
-                                              {"fixedNumberOfControlPoints", false},
-                                              {"labelFormat", "%N-%d"},
-                                              {"lastUsedControlPointNumber", marks.size()},
-                                              {"controlPoints", points}}})}};
-    return json.dump(2) + "\n";
+    markup::Markup list;
+    list.is_locked = true;
+    for (const Landmark& mark : marks)
+        list.points.push_back({fmt::format("{} {}", fragment, mark.label), pose.apply(mark.position), "",
+                               glm::mat3_cast(pose.orientation)});
+    return markup::text_of({&list, 1});
 }
 
 }  // namespace
@@ -124,7 +87,7 @@ ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::pat
         const std::vector<std::string> files{names[k] + "." + format, names[k] + ".tfm", names[k] + ".scan.mrk.json",
                                              names[k] + ".plan.mrk.json"};
         mesh::write_mesh({&surface, 1}, out / files[0]);
-        file::write_whole_file(out / files[1], tfm_of(pose));
+        file::write_whole_file(out / files[1], transform::text_of(pose));
         const auto marks = landmarks_of(loaded[k].bone.points);
         file::write_whole_file(out / files[2], markup_of(fragment.name, marks, {}));
         file::write_whole_file(out / files[3], markup_of(fragment.name, marks, pose));

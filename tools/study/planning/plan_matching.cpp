@@ -208,8 +208,16 @@ std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& sta
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair) {
     constexpr double least_depth = 5e-6;  // m
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
+    cases::check_files(plan, folder);
     const cases::PlanState state = cases::state_of(plan);
+    const std::vector<cases::PlanFragment> fragments = cases::fragments_of(plan, state);
+    std::vector<CaseFragment> loaded(fragments.size());
+    for (int n = 0; n < static_cast<int>(fragments.size()); ++n) {
+        leave_if_stopped();
+        const bool is_needed = pair ? n == pair->first || n == pair->second : !state.arrangement.is_hidden(n);
+        if (is_needed)
+            loaded[static_cast<std::size_t>(n)] = load_fragment(fragments[static_cast<std::size_t>(n)], folder);
+    }
     std::vector<PlanGap> found;
     const auto look = [&](int i, int j) {
         leave_if_stopped();

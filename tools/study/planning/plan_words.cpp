@@ -13,12 +13,16 @@ namespace tactus::study {
 std::string fit_words(const cases::PlanState& state, int fragment) {
     const auto& fit = state.fits[static_cast<std::size_t>(fragment)];
     if (!fit) return "";
+    if (state.holds(fragment) && is_accepted(*fit))
+        return fmt::format("{}, {:.2f} mm residual, beside {}", fit->verdict, fit->rms * 1e3, fit->partner);
     if (state.holds(fragment))
         return fmt::format("{} to {} ({:.2f} mm rms)", fit->verdict, fit->partner, fit->rms * 1e3);
     const fit::Arrangement::Departure away = state.arrangement.departure(fragment);
     return fmt::format("fit to {} is void: moved {:.2f} mm and {:.2f}° from it since", fit->partner,
                        away.distance * 1e3, away.angle * 180.0 / std::numbers::pi);
 }
+
+bool is_accepted(const cases::PlanFit& fit) { return fit.verdict.starts_with("accepted"); }
 
 bool is_in_one_part(const cases::PlanState& state) { return fit::assemblies(state.arrangement).size() <= 1; }
 

@@ -13,6 +13,9 @@ namespace tactus::study {
 /// fragment that was never fitted.
 std::string fit_words(const cases::PlanState& state, int fragment);
 
+/// Whether a surgeon decided on the place, rather than a fit of surfaces (plan_accept.hpp).
+bool is_accepted(const cases::PlanFit& fit);
+
 /// One line per connected part with more than one fragment, and one for all that are connected to nothing. A plan of
 /// one fragment, or with fewer shown, has none.
 std::vector<std::string> connection_words(const cases::CasePlan& plan, const cases::PlanState& state);

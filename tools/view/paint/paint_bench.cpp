@@ -43,8 +43,9 @@ std::string written_plan(const study::ScanGraph& scan, const std::vector<segment
         if (!label.strokes.empty()) painted.push_back(label);
     if (painted.size() < 2) throw Error("paint a place of each fragment first: a plan needs at least two");
     std::vector<reconstruct::FlapVessel> followed;
+    std::vector<std::string> notes;  // none: the files are tables of this program
     for (const fs::path& file : vessels)
-        followed.push_back(reconstruct::read_vessel(file, reconstruct::VesselKind::artery));
+        followed.push_back(reconstruct::read_vessel(file, reconstruct::VesselKind::artery, 0, notes));
     const study::SegmentedScan found = study::segment_scan(scan, painted, settings, seeds.string());
     study::write_segmented(scan, found, settings, seeds.filename().string(), bones);
     study::write_plan_of(bones, found, plan, followed);

@@ -55,8 +55,9 @@ std::string made(CaseRun::Study what, const fs::path& file) {
             auto residuals = study::healthy_residuals(cases::state_of(plan), folder, fragments);
             const fs::path page = folder / "case.html";
             const auto healthy = study::healthy_side(cases::state_of(plan), folder);
-            file::write_whole_file(page, picture::plan_page(plan, std::move(fragments), std::move(residuals),
-                                                            healthy ? &*healthy : nullptr));
+            file::write_whole_file(
+                page, picture::plan_page(plan, study::case_warnings(plan, folder).all, std::move(fragments),
+                                         std::move(residuals), healthy ? &*healthy : nullptr));
             return fmt::format("report: {}", page.string());
         }
         case CaseRun::Study::files: {

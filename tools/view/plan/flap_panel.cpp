@@ -140,15 +140,25 @@ bool FlapPanel::apply() {
                           {f.name, vector_of(f.at) * mm, glm::normalize(axis), static_cast<double>(f.diameter) * mm,
                            static_cast<double>(f.length) * mm});
             });
-        case Kind::vessel:
-            return flap_.change([f, kind](reconstruct::Reconstruction& all) {
+        case Kind::vessel: {
+            std::optional<reconstruct::FlapVessel> read;
+            std::vector<std::string> notes;
+            try {
+                if (!f.file.empty()) read = reconstruct::read_vessel(f.file, kind, 0, notes);
+            } catch (const Error& error) {
+                bench_.tell(error.what(), true);
+                return false;
+            }
+            for (const std::string& note : notes) bench_.tell(note);
+            return flap_.change([f, kind, read](reconstruct::Reconstruction& all) {
                 const auto known = std::ranges::find(all.flap.vessels, f.of, &reconstruct::FlapVessel::name);
-                if (f.file.empty() && known == all.flap.vessels.end()) throw Error(fmt::format("no vessel '{}'", f.of));
-                reconstruct::FlapVessel vessel = f.file.empty() ? *known : reconstruct::read_vessel(f.file, kind);
+                if (!read && known == all.flap.vessels.end()) throw Error(fmt::format("no vessel '{}'", f.of));
+                reconstruct::FlapVessel vessel = read ? *read : *known;
                 vessel.name = f.name;
                 vessel.kind = kind;
                 put_named(all.flap.vessels, f.of, std::move(vessel));
             });
+        }
         case Kind::site:
             return flap_.change([f, kind](reconstruct::Reconstruction& all) {
                 put_named(all.flap.sites, f.of, {f.name, kind, vector_of(f.at) * mm});

@@ -15,7 +15,8 @@ namespace tactus::view {
 
 class FlapPanel {
 public:
-    FlapPanel(Workbench& bench, CaseRun& run, ScenePanel& scene) : run_(run), flap_(bench, run), scene_(scene) {}
+    FlapPanel(Workbench& bench, CaseRun& run, ScenePanel& scene)
+        : bench_(bench), run_(run), flap_(bench, run), scene_(scene) {}
 
     /// Once per picture, also while it is not drawn: the scene shows what the plan has now.
     void tend();
@@ -45,6 +46,7 @@ private:
     template <class Named>
     void line(const char* what, const Named& one, Form form, std::vector<Named> reconstruct::Flap::* list);
 
+    Workbench& bench_;
     CaseRun& run_;
     FlapRun flap_;
     ScenePanel& scene_;

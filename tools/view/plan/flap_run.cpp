@@ -5,6 +5,7 @@
 #include "assets/file/json.hpp"
 #include "dsp/reconstruct/plate_line.hpp"
 #include "tools/study/leaving.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/flap_words.hpp"
 
@@ -38,7 +39,8 @@ FlapRun::Verdicts verdicts_of(const cases::CasePlan& plan, const fs::path& folde
         verdicts.lines.push_back(fmt::format("{} to {}: {:.2f} mm", c.object, c.other, c.distance * 1e3));
     if (measures.tumour_margin)
         verdicts.lines.push_back(fmt::format("tumour to the nearest cut: {:.1f} mm", *measures.tumour_margin * 1e3));
-    for (const reconstruct::FlapWarning& warning : measures.warnings) verdicts.warnings.push_back(warning.text);
+    for (const study::CaseWarning& warning : study::case_warnings(plan, folder).all)
+        verdicts.warnings.push_back(warning.text);
     return verdicts;
 }
 

@@ -2,7 +2,7 @@
 #include "tools/view/plan/plan_comparison.hpp"
 
 #include "tools/counted.hpp"
-#include "tools/study/planning/flap_study.hpp"
+#include "tools/study/planning/case_warnings.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 #include "tools/study/planning/plan_words.hpp"
 
@@ -43,7 +43,7 @@ AlternativeNumbers numbers_of_alternative(const cases::CasePlan& plan, int alter
     std::ranges::sort(gaps);
     numbers.facing = gaps.size();
     if (!gaps.empty()) numbers.gap = 0.5 * (gaps[(gaps.size() - 1) / 2] + gaps[gaps.size() / 2]);
-    if (state.reconstruction) numbers.warnings = study::FlapStudy(other, state, folder).measures().warnings.size();
+    if (state.reconstruction) numbers.warnings = study::case_warnings(other, folder).all.size();
     return numbers;
 }
 

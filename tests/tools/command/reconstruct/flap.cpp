@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verbs of a plan that change and measure a flap.
+#include "assets/transform/transform_file.hpp"
+#include "dsp/core/constants.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
+#include "tests/support/slicer_markups.hpp"
 #include "tests/tools/command/reconstruct/jaw_case.hpp"
+
+#include <glm/geometric.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <sstream>
 #include <string>
 
 using namespace tactus;
@@ -274,6 +283,121 @@ TEST_CASE("a second reconstruction of a plan is an alternative with its own piec
     const std::size_t start = bytes.rfind("startxref\n");
     REQUIRE(start != std::string::npos);
     CHECK(bytes.compare(std::stoul(bytes.substr(start + 10)), 4, "xref") == 0);
+}
+
+TEST_CASE("every exported markup and transform opens by the rules of 3D Slicer with the numbers of the plan",
+          "[slow]") {
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    REQUIRE(made.change("plate", "front --screws 1").code == 0);
+    REQUIRE(made.change("implant", "molar --at 0 -41 6 --axis 0 0 -1").code == 0);
+    const fs::path out = made.folder.path / "out";
+    REQUIRE(made.folder.tactus("plan export " + made.plan + " -o " + out.string()).code == 0);
+    std::map<std::string, test::SlicerMarkup> opened;
+    for (const fs::directory_entry& entry : fs::directory_iterator(out)) {
+        const std::string name = entry.path().filename().string(), text = test::slurp(entry.path());
+        INFO(name);
+        if (name.ends_with(".mrk.json")) opened[name] = test::read_as_slicer(text).front();
+        if (name.ends_with(".tfm")) CHECK_NOTHROW(transform::motion_of_text(text, name));
+    }
+    std::map<std::string, int> kinds;
+    for (const auto& [name, markup] : opened) ++kinds[markup.type];
+    CHECK(kinds["Plane"] == 7);  // three of the jaw, two per segment
+    CHECK((kinds["Curve"] > 4 && kinds["Line"] > 3 && kinds["Fiducial"] > 3));
+    // A cut in the donor and the transform of its segment give the plane of the jaw; Slicer has it in RAS.
+    const Pose placed = transform::read_motion(out / "segment-1.tfm");
+    const auto lps = [](const Vec3& v) { return Vec3(-v.x, -v.y, v.z); };
+    const test::SlicerMarkup &cut = opened.at("fibula-cut-1-1.mrk.json"), &jaw = opened.at("jaw-plane-1.mrk.json");
+    CHECK(glm::length(placed.apply(lps(cut.origin) * mm) - lps(jaw.origin) * mm) < 1e-9);
+    CHECK(std::abs(glm::dot(placed.rotate(lps(cut.normal)), lps(jaw.normal))) == Approx(1.0));
+    const json given = made.inputs()["mandible_planes"][0];
+    for (int axis = 0; axis < 3; ++axis)
+        CHECK(lps(jaw.origin)[axis] ==
+              Approx(given["origin"][static_cast<std::size_t>(axis)].get<double>()).margin(1e-9));
+    CHECK(std::abs(glm::dot(lps(jaw.normal), glm::normalize(Vec3(0.717, -0.697, 0.0)))) == Approx(1.0));
+    CHECK(opened.at("sites.mrk.json").labels == std::vector<std::string>{"facial artery", "facial vein"});
+    // The transform that was exported places a segment again.
+    const auto pose = [&] {
+        const json shown = json::parse(made.folder.tactus("plan show " + made.plan + " --json").out);
+        for (const json& one : shown["fragments"])
+            if (one["name"] == "segment-1") return one["pose"];
+        return json();
+    };
+    const json before = pose();
+    REQUIRE(made.change("move", "segment-1 --pose 0,0,0,1,0,0,0").code == 0);
+    CHECK(pose() != before);
+    REQUIRE(made.change("move", "segment-1 --transform " + (out / "segment-1.tfm").string()).code == 0);
+    for (const char* key : {"position_mm", "quaternion_wxyz"})
+        for (std::size_t n = 0; n < before[key].size(); ++n)
+            CHECK(pose()[key][n].get<double>() == Approx(before[key][n].get<double>()).margin(1e-9));
+    CHECK_THAT(made.change("move", "segment-1").err, ContainsSubstring("a place is needed: --pose or --transform"));
+}
+
+TEST_CASE("exported meshes and lines, read by VTK, have the size, the volume and the radius of the plan", "[slow]") {
+    if (std::system("/usr/bin/python3 -c 'import vtk' 2>/dev/null") != 0) return test::skip("no python3-vtk9 here");
+    const FlapCase made;
+    REQUIRE(made.run(made.whole()).code == 0);
+    std::vector<fs::path> files;
+    for (const char* format : {"stl", "ply"}) {
+        const fs::path out = made.folder.path / format;
+        REQUIRE(made.folder.tactus("plan export " + made.plan + " --format " + format + " -o " + out.string()).code ==
+                0);
+        for (const fs::directory_entry& entry : fs::directory_iterator(out))
+            if (const auto type = entry.path().extension(); type == ".stl" || type == ".ply" || type == ".vtp")
+                files.push_back(entry.path());
+    }
+    std::string command =
+        "/usr/bin/python3 " + (test::source_folder() / "tests/tools/command/reconstruct/read_by_vtk.py").string();
+    for (const fs::path& file : files) command += " '" + file.string() + "'";
+    const fs::path printed = made.folder.path / "vtk.txt";
+    REQUIRE(std::system((command + " >" + printed.string()).c_str()) == 0);
+    std::istringstream lines(test::slurp(printed));
+    int meshes = 0, courses = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const json found = json::parse(line);
+        const fs::path file = found["name"].get<std::string>();
+        INFO(file.string());
+        if (file.extension() == ".vtp") {
+            ++courses;
+            CHECK(found["lines"] == 1);
+            CHECK(found["points"].get<int>() >= 2);
+            const double radius = file.filename().string().find("artery") != std::string::npos ? 1.4 : 1.5;
+            CHECK(found["arrays"]["radius_mm"][0].get<double>() == Approx(radius));
+            CHECK(found["arrays"]["radius_mm"][1].get<double>() == Approx(radius));
+            continue;
+        }
+        ++meshes;
+        const mesh::Mesh own = mesh::load_mesh(file);
+        CHECK(found["triangles"] == own.triangles.size());
+        CHECK(found["points"] == own.vertices.size());
+        CHECK(found["volume"].get<double>() == Approx(mesh::volume_of(own)).epsilon(1e-4));
+        for (int axis = 0; axis < 3; ++axis) {
+            double low = 1e9, high = -1e9;
+            for (const Vec3& v : own.vertices) low = std::min(low, v[axis]), high = std::max(high, v[axis]);
+            CHECK(found["bounds"][static_cast<std::size_t>(2 * axis)].get<double>() == Approx(low).margin(1e-4));
+            CHECK(found["bounds"][static_cast<std::size_t>(2 * axis + 1)].get<double>() == Approx(high).margin(1e-4));
+        }
+    }
+    CHECK((meshes > 10 && courses > 4));
+}
+
+TEST_CASE("an undefined control point is no site, and the command names it", "[slow]") {
+    const FlapCase made;
+    made.folder.write("sites.mrk.json",
+                      R"({"markups":[{"type":"Fiducial","controlPoints":[
+                          {"label":"facial artery, left","position":[37,8,-24],"positionStatus":"defined"},
+                          {"label":"facial vein, undefined","position":[0,0,0],"positionStatus":"undefined"}]}]})");
+    const test::Outcome done = made.run(made.whole());
+    CHECK(done.code == 0);
+    CHECK_THAT(done.err,
+               ContainsSubstring("note: ") && ContainsSubstring("control point 2 ('facial vein, undefined') has no "
+                                                                "position (its status is \"undefined\"): left out"));
+    CHECK(made.shown()["sites"].size() == 1);
+    const auto old = made.folder.write("old.fcsv",
+                                       "# Markups fiducial file version = 4.10\n# CoordinateSystem = 0\n"
+                                       "1,-48,-20,-30,0,0,0,1,1,1,0,facial vein,,\n");
+    CHECK(made.change("site", "--file " + old.string()).code == 0);
+    CHECK(made.shown()["sites"][1]["name"] == "facial vein");
 }
 
 TEST_CASE("a vessel that was followed in a scan becomes a pedicle of the flap, or a site on it", "[slow]") {
