@@ -97,10 +97,12 @@ void check_partitions(Feed feed, std::initializer_list<std::uint64_t> partitions
 
 }  // namespace
 
+// Costly: every node twice.
 TEST_CASE("a partition of a run into random blocks gives the same bits", "[slow]") {
     check_partitions(Feed::ordinary, {3});
 }
 
+// Costly: every node twice.
 TEST_CASE("a partition of a run into random blocks gives the same bits, also of hostile values", "[slow]") {
     check_partitions(Feed::hostile, {2});
 }

@@ -102,6 +102,7 @@ void watch_all(const std::vector<Situation>& situations) {
 }  // namespace
 
 // Each pair of values of two properties is met once.
+// Costly: every node in four situations.
 TEST_CASE("every node is real-time safe in its first ticks, open or connected, driven, with good and bad input",
           "[slow]") {
     watch_all({{Feed::ordinary, true, true, 64},

@@ -132,7 +132,7 @@ void compare_plans(std::size_t count) {
 }  // namespace
 
 TEST_CASE("random fibula plans have the numbers and warnings that triangles cut in Python give", "[slow]") {
-    compare_plans(100);
+    compare_plans(200);
 }
 
 TEST_CASE("a thousand random fibula plans have the numbers and warnings that triangles cut in Python give", "[long]") {

@@ -148,7 +148,7 @@ def main(path):
                 print(f"plan {number}: {line}")
     print(f"{plans} plans, {failures} wrong; warnings: {dict(sorted(seen.items()))}")
     few = [code for code in ("short-segment", "very-short-segment", "close-osteotomies", "wide-kerf", "section-mismatch",
-                             "distal-margin", "proximal-margin", "line-downwards") if seen[code] < 20]
+                             "distal-margin", "proximal-margin", "line-downwards") if seen[code] < plans / 50]
     if few:
         print("too few to tell:", few)
     return 1 if failures or few else 0
