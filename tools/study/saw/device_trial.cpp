@@ -21,7 +21,7 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double tick = 1e-3, carve_rate = 60.0;  // s, Hz
+constexpr double device_tick = 1e-3, device_carve_rate = 60.0;  // s, Hz
 
 /// A hand that pushes down with a force and holds still across it.
 struct Pushing {
@@ -50,10 +50,10 @@ public:
 
     Pose move(Pushing& push, const Wrench& on_hand) {
         if (modelled_) {
-            modelled_->advance(push, on_hand, tick);
+            modelled_->advance(push, on_hand, device_tick);
             return modelled_->pose();
         }
-        simulate::advance(hand_, push, on_hand, tick);
+        simulate::advance(hand_, push, on_hand, device_tick);
         return hand_.pose;
     }
     /// What the device is given of a force.
@@ -89,12 +89,12 @@ DeviceTrialResult run_device_trial(const DeviceTrial& trial) {
     double share = 1.0, before = 0.0, measured = 0.0, above = 0.0;
     std::int64_t carved = 0;
     DeviceTrialResult result;
-    const auto settle = static_cast<std::int64_t>(trial.settle / tick);
-    const auto ticks = settle + static_cast<std::int64_t>(trial.seconds / tick);
+    const auto settle = static_cast<std::int64_t>(trial.settle / device_tick);
+    const auto ticks = settle + static_cast<std::int64_t>(trial.seconds / device_tick);
     for (std::int64_t n = 0; n < ticks; ++n) {
         if (n == settle) before = carver.removed_m3();
         const Pose pose = device.move(push, given);
-        saw::Drive drive{true, block.blade_rate, tick};
+        saw::Drive drive{true, block.blade_rate, device_tick};
         drive.rendered = share;
         const saw::SawContact now = blade.step(read, pose, drive, law);
         blade.teeth().fill(path.emplace_back(), pose, true);
@@ -107,11 +107,11 @@ DeviceTrialResult run_device_trial(const DeviceTrial& trial) {
                          rubbing = law.rub * now.teeth * block.density / law.reference_density;
             result.thrust += thrust;
             result.rubbing += rubbing;
-            above += std::max(thrust - rubbing, 0.0) * tick;
+            above += std::max(thrust - rubbing, 0.0) * device_tick;
             result.limited += share < 0.99;
             measured += 1.0;
         }
-        if (static_cast<double>(n + 1) * carve_rate * tick >= static_cast<double>(carved + 1)) {
+        if (static_cast<double>(n + 1) * device_carve_rate * device_tick >= static_cast<double>(carved + 1)) {
             ++carved;
             read = bone->publish();
             bone->reclaim(read.version);

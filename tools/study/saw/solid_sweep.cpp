@@ -17,9 +17,9 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double tick = 1e-3, step = 0.1e-3;  // s, m
-constexpr double far = 0.15;  // m from the goal to where a way begins
-constexpr double near = 12e-3;  // m of it in small steps
+constexpr double sweep_tick = 1e-3, sweep_step = 0.1e-3;  // s, m
+constexpr double way_length = 0.15;  // m from the goal to where a way begins
+constexpr double slow_length = 12e-3;  // m of it in small steps
 
 saw::SawShape shape_of(SolidTool tool) {
     saw::SawShape shape;
@@ -56,7 +56,7 @@ public:
     }
 
     Felt move(const volume::BoneSnapshot& bone, const Pose& pose) {
-        const saw::Drive still{false, 0.0, tick};
+        const saw::Drive still{false, 0.0, sweep_tick};
         if (kind_ == SolidTool::burr) {
             const saw::BurrContact now = burr_.step(bone, pose, still, {});
             return {now.wrench.force, now.magnitudes};
@@ -122,9 +122,9 @@ SolidSweepResult run_solid_sweep(SolidTool kind, const bone::Bone& bone, int pos
         const Vec3 from = glm::normalize(Vec3(random.normal(k + 4), random.normal(k + 5), random.normal(k + 6)));
         Tool tool(kind, sweep.stiffness);
         const Vec3 end = *goal - turn * tool.place(random, k + 7);
-        if (tool.depth(now, {end + far * from, turn}) > 0.0) continue;
+        if (tool.depth(now, {end + way_length * from, turn}) > 0.0) continue;
         ++result.poses;
-        Vec3 at = end + far * from, last(0.0);
+        Vec3 at = end + way_length * from, last(0.0);
         double work = 0.0, bound = 0.0;
         const auto go = [&](double away, bool approaches) {
             const Vec3 to = end + away * from, way = to - at;
@@ -134,7 +134,7 @@ SolidSweepResult run_solid_sweep(SolidTool kind, const bone::Bone& bone, int pos
             // What one step of a hand may gain from a spring that is sampled.
             bound += 0.5 * std::min(std::abs(glm::dot(felt.force - last, way)), sweep.stiffness * glm::dot(way, way));
             if (approaches) {
-                if (away < near) {
+                if (away < slow_length) {
                     const double change = glm::length(felt.force - last);
                     if (change > 0.0) steps.push_back(change);
                 }
@@ -150,13 +150,13 @@ SolidSweepResult run_solid_sweep(SolidTool kind, const bone::Bone& bone, int pos
             last = felt.force;
             at = to;
         };
-        double away = far;
-        for (; away > near; away -= 2e-3) go(away, true);
-        for (; away > 0.0; away -= step) go(away, true);
-        for (; away < near; away += step) go(away, false);
-        for (; away < far; away += 2e-3) go(away, false);
+        double away = way_length;
+        for (; away > slow_length; away -= 2e-3) go(away, true);
+        for (; away > 0.0; away -= sweep_step) go(away, true);
+        for (; away < slow_length; away += sweep_step) go(away, false);
+        for (; away < way_length; away += 2e-3) go(away, false);
         // What slid round the bone holds the hand back from behind, until it has been outside for 2 s.
-        for (int wait = 0; wait < 2300 && last != Vec3(0.0); ++wait) go(far, false);
+        for (int wait = 0; wait < 2300 && last != Vec3(0.0); ++wait) go(way_length, false);
         result.active += work > 1.1 * bound + 1e-9;
         result.held += last != Vec3(0.0);
     }
