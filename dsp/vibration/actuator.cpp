@@ -19,10 +19,15 @@ namespace {
 // 8 g peak to peak at 0.5 A, in m/s² per A.
 constexpr double mark_ii_sensitivity = 4.0 * 9.80665 / 0.5;
 
-constexpr std::array<ActuatorModel, 3> models{{
+// 2 g rms at 2.5 V rms.
+constexpr double lra_sensitivity = 2.0 * 9.80665 / 2.5;
+
+constexpr std::array<ActuatorModel, 5> models{{
     {"haptuator_small", 89.0, 0.23, 0.020, 4.4e-3, 6.0, 128e-6, 3.0, 0.5, 24.5, false, 150.0, 0.020},
     {"haptuator_large", 73.0, 0.33, 0.020, 4.4e-3, 6.0, 128e-6, 3.0, 0.5, 24.5, false, 150.0, 0.020},
     {"markII_D", 65.0, 0.38, 0.100, 4.4e-3, 4.5, 128e-6, 3.0, 0.5, mark_ii_sensitivity, true, 65.0, 0.100},
+    {"lra_10mm", 170.0, 0.065, 0.100, 1.3e-3, 12.0, 100e-6, 3.54, 0.24, lra_sensitivity, false, 170.0, 0.100},
+    {"voice_coil_14mm", 120.0, 0.3, 0.100, 5e-3, 7.8, 50e-6, 3.53, 0.45, 0.0, false, 0.0, 0.0, 2.4},
 }};
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
@@ -30,15 +35,18 @@ bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 double reduced_mass(double moving, double total) { return moving * (total - moving) / total; }
 
 void check(const ActuatorModel& model) {
-    for (const double value : {model.resonance, model.damping, model.resonance_mass, model.moving_mass,
-                               model.resistance, model.voltage_limit, model.current_limit, model.reference_acceleration,
-                               model.reference_frequency, model.reference_mass})
+    const bool by_reference = !(model.force_factor > 0.0);
+    for (const double value :
+         {model.resonance, model.damping, model.resonance_mass, model.moving_mass, model.resistance,
+          model.voltage_limit, model.current_limit, by_reference ? model.reference_acceleration : model.force_factor,
+          by_reference ? model.reference_frequency : 1.0, by_reference ? model.reference_mass : 1.0})
         if (!positive(value)) throw Error("every value of an actuator, its mass and its rate must be above 0");
     if (!(std::isfinite(model.inductance) && model.inductance >= 0.0))
         throw Error("the inductance of an actuator must not be negative");
-    if (!(model.moving_mass < model.resonance_mass && model.moving_mass < model.reference_mass))
-        throw Error(fmt::format("the moving mass of an actuator, {:g} g, must be less than its total mass",
-                                1e3 * model.moving_mass));
+    const double total = by_reference ? std::min(model.resonance_mass, model.reference_mass) : model.resonance_mass;
+    if (!(model.moving_mass < total))
+        throw Error(fmt::format("the moving mass of an actuator, {:g} g, must be less than its total mass, {:g} g",
+                                1e3 * model.moving_mass, 1e3 * total));
 }
 
 void check_mass(const ActuatorModel& model, double mass) {
@@ -95,9 +103,14 @@ const ActuatorModel& find_actuator(std::string_view name) {
 
 namespace {
 
-void check_damping(const ActuatorMechanics& mechanics, double ratio) {
-    if (!(mechanics.damping >= 0.0))
-        throw Error(fmt::format("the back-EMF of this coil alone damps more than the stated ratio of {:g}", ratio));
+/// `critical`: 2 ω0 m, N·s/m: the damping of ratio 1.
+void check_damping(const ActuatorModel& model, const ActuatorMechanics& mechanics, double ratio, double critical) {
+    if (mechanics.damping >= 0.0) return;
+    const double electrical = mechanics.force_factor * mechanics.force_factor / model.resistance;
+    throw Error(fmt::format(
+        "the back-EMF of this coil, {:.3g} N/A with {:g} ohm, alone has a damping ratio of {:.3g}, more than "
+        "the stated {:g}: give a smaller force factor, more damping or more moving mass",
+        mechanics.force_factor, model.resistance, electrical / critical, ratio));
 }
 
 }  // namespace
@@ -109,6 +122,15 @@ ActuatorMechanics mechanics_of(const ActuatorModel& model) {
     ActuatorMechanics out;
     out.stiffness = omega * omega * reduced;
     const double all = 2.0 * model.damping * omega * reduced;  // mechanical and electrical, N·s/m
+    const auto finish = [&] {
+        out.damping = all - out.force_factor * out.force_factor / model.resistance;
+        check_damping(model, out, model.damping, 2.0 * omega * reduced);
+        return out;
+    };
+    if (model.force_factor > 0.0) {
+        out.force_factor = model.force_factor;
+        return finish();
+    }
     // At the reference: the housing's acceleration is the moving mass' against it, times m/M, and that is the coil's
     // force through the spring and the dampers.
     const double there = 2.0 * pi * model.reference_frequency, total = model.reference_mass;
@@ -134,9 +156,7 @@ ActuatorMechanics mechanics_of(const ActuatorModel& model) {
         out.force_factor =
             model.reference_acceleration * model.resistance * lag * std::hypot(spring, there * all) / response;
     }
-    out.damping = all - out.force_factor * out.force_factor / model.resistance;
-    check_damping(out, model.damping);
-    return out;
+    return finish();
 }
 
 ActuatorMechanics tuned(const ActuatorModel& model, ActuatorMechanics mechanics, double mass, double frequency,
@@ -147,7 +167,7 @@ ActuatorMechanics tuned(const ActuatorModel& model, ActuatorMechanics mechanics,
     if (damping_ratio > 0.0) {
         mechanics.damping =
             2.0 * damping_ratio * omega * reduced - mechanics.force_factor * mechanics.force_factor / model.resistance;
-        check_damping(mechanics, damping_ratio);
+        check_damping(model, mechanics, damping_ratio, 2.0 * omega * reduced);
     }
     return mechanics;
 }

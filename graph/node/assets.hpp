@@ -6,6 +6,7 @@
 #include "assets/cases/case_bones.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
+#include "assets/sound/response_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "assets/table/deflection_file.hpp"
 #include "graph/node/param.hpp"
@@ -28,6 +29,12 @@ template <>
 struct AssetLoader<sound::RecordingSet> {
     static constexpr std::string_view name = "recording set";
     static sound::RecordingSet load(const std::string& path) { return sound::load_recording_set(path); }
+};
+
+template <>
+struct AssetLoader<sound::ResponseFile> {
+    static constexpr std::string_view name = "frequency response";
+    static sound::ResponseFile load(const std::string& path) { return sound::load_response(path); }
 };
 
 template <>

@@ -81,7 +81,7 @@ std::string text_of(const std::string& file, const study::TwoChannels& found) {
     for (const study::ResponsePeak& peak : found.peaks)
         fmt::format_to(std::back_inserter(text), "  peak at {:.2f} Hz: {:.2f} dB ± {:.2f}, {:.0f}°, coherence {:.3f}\n",
                        peak.hz, peak.level_db, peak.deviation_db, peak.phase * 180.0 / pi, peak.coherence);
-    if (found.peaks.empty()) text += "  no peak with a coherence of at least 0.5\n";
+    if (found.peaks.empty()) text += "  no peak with a coherence of at least 0.8\n";
     return text;
 }
 

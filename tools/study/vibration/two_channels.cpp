@@ -30,7 +30,7 @@ std::vector<ResponsePeak> peaks_of(const TwoChannels& found) {
     std::vector<ResponsePeak> peaks;
     for (std::size_t k = 1; k + 1 < h.size(); ++k) {
         const double here = std::abs(h[k]);
-        if (found.spectra.frequency(k) > found.usable || found.coherence[k] < 0.5) continue;
+        if (found.spectra.frequency(k) > found.usable || found.coherence[k] < 0.8) continue;
         if (here < std::abs(h[k - 1]) || here <= std::abs(h[k + 1])) continue;
         // Noise makes maxima everywhere: a peak stands out on both sides by 1 dB and by six standard deviations.
         const double least = 20.0 * std::log10(here) - std::max(1.0, 6.0 * 20.0 / std::log(10.0) * found.deviation[k]);

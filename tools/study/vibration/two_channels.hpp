@@ -42,7 +42,7 @@ struct TwoChannels {
     std::vector<double> coherence, deviation;  ///< per bin; the second: standard deviation of |H1|, relative
     double noise_coherence = 0.0;  ///< mean coherence of unrelated noise with as many segments
     double delay = 0.0;  ///< s, of the output: slope of the phase where the coherence is above 0.9; 0: unknown
-    std::vector<ResponsePeak> peaks;  ///< of the chosen estimate where the coherence is above one half, the highest 5
+    std::vector<ResponsePeak> peaks;  ///< of the chosen estimate where the coherence is above 0.8, the highest 5
 
     const std::vector<std::complex<double>>& chosen() const;
 };
