@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace tactus::test {
 
@@ -109,6 +110,8 @@ struct Planted {
 };
 TACTUS_NODE(Planted, pose, wrench, fault, at, stall)
 
+std::atomic<VirtualClock*> busy_clock{nullptr};
+
 /// Uses the processor for some time in each tick of an interval.
 struct Busy {
     static constexpr auto about = "A node that is busy.";
@@ -121,6 +124,7 @@ struct Busy {
     void process(const Tick& tick) noexcept {
         out = 0.0;
         if (tick.time_seconds() < from || tick.time_seconds() >= from + lasts) return;
+        if (VirtualClock* const clock = busy_clock) return clock->compute(std::llround(cost * 1e9));
         const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(cost.value);
         while (std::chrono::steady_clock::now() < end) {
         }
@@ -138,6 +142,30 @@ struct Still {
     void process(const Tick&) noexcept { pose = Pose{Vec3(0.0, 0.0, height.value), Quat(1.0, 0.0, 0.0, 0.0)}; }
 };
 TACTUS_NODE(Still, pose, height)
+
+/// Behind a call that the compiler cannot see through: a throw in a function that may not throw is a warning.
+[[gnu::noinline]] static void throw_error() { throw std::runtime_error("a planted error"); }
+
+/// Fails at a time, in one of two ways, and from then on.
+struct Faulty {
+    static constexpr auto about = "A node that fails.";
+
+    Out<Pose> pose{"rest, then none", "m"};
+    Out<Wrench> wrench{"zero, then NaN", "N, N m"};
+    Out<double> number{"zero, then NaN"};
+    Choice fault{{"nan", "throw"}, "what happens"};
+    Param from{"0 s", "0 s", "1 h", "when it happens"};
+
+    void process(const Tick& tick) noexcept {
+        const bool fails = tick.time_seconds() >= from;
+        if (fails && fault.is("throw")) throw_error();
+        const double value = fails ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+        pose = Pose{Vec3(value), Quat(1.0, 0.0, 0.0, 0.0)};
+        wrench = Wrench{Vec3(value), Vec3(value)};
+        number = value;
+    }
+};
+TACTUS_NODE(Faulty, pose, wrench, number, fault, from)
 
 static std::vector<double> kept;
 
@@ -159,9 +187,9 @@ compile::Catalogue chaos_catalogue() {
     static const std::vector<const NodeType*> types = [] {
         const compile::Catalogue all = nodes::catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
-        for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(),
-                                     &node_type_Planted(), &node_type_Still(), &node_type_Keeper(),
-                                     &node_type_Busy()})
+        for (const NodeType* type :
+             {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(), &node_type_Planted(),
+              &node_type_Still(), &node_type_Keeper(), &node_type_Busy(), &node_type_Faulty()})
             with.push_back(type);
         return with;
     }();

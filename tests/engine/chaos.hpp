@@ -3,7 +3,9 @@
 #pragma once
 
 #include "engine/run/engine.hpp"
+#include "tests/support/virtual_clock.hpp"
 
+#include <atomic>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +15,9 @@ namespace tactus::test {
 
 /// The types below plus the whole catalogue.
 compile::Catalogue chaos_catalogue();
+
+/// In whose time the node type "busy" computes while it is set: null is that of the machine.
+extern std::atomic<VirtualClock*> busy_clock;
 
 /// What the node type "keeper" has seen since it was prepared: at each tick its number, or the size of its force in N.
 /// For runs on one thread.

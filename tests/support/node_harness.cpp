@@ -138,6 +138,16 @@ NodeHarness& NodeHarness::set(const std::string& param, std::string_view text) {
     return *this;
 }
 
+NodeHarness& NodeHarness::set_value(const std::string& name, double value) {
+    for (auto& [known, param] : members_->params)
+        if (known == name) {
+            if (!(value >= param->min && value <= param->max)) throw Error("'" + name + "' is out of range");
+            param->value = value;
+            return *this;
+        }
+    throw Error("no parameter '" + name + "'");
+}
+
 NodeHarness& NodeHarness::asset(const std::string& param, std::shared_ptr<const void> loaded) {
     members_->assets.at(param)->loaded = std::move(loaded);
     return *this;

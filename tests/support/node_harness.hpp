@@ -87,6 +87,8 @@ public:
 
     /// Sets a parameter as a patch does.
     NodeHarness& set(const std::string& param, std::string_view text);
+    /// Sets a numeric parameter to a value in SI. Throws Error if it is out of range.
+    NodeHarness& set_value(const std::string& param, double value);
     NodeHarness& asset(const std::string& param, std::shared_ptr<const void> loaded);
     /// Leaves an optional input without a wire.
     NodeHarness& disconnect(const std::string& input);

@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 
 using namespace tactus;
@@ -286,54 +288,74 @@ p = { type = "probe", rate = "1 kHz" }
     CHECK(factors() == std::vector{9.0, 9.0});
 }
 
-TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay", "[virtual][slow]") {
-    const VirtualClock clock;
-    const std::string plain = four_rates();
-    // A group of another rate in each edit, which the next one drops.
-    const auto with_group = [&](int edit) {
-        constexpr std::array rates{120, 125, 150, 250, 400};
-        return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n",
-                                   rates[static_cast<std::size_t>(edit % 5)]);
-    };
-    const auto in_use = [] {
+/// Edits a live run `late` times: a group of another rate in each edit, which the next one drops. What `memory` returns
+/// after `early` of them and after all, and what the groups have counted.
+struct EditedRun {
+    std::int64_t early_bytes = 0, late_bytes = 0, ticks = 0;
+    int made = 0;
+    std::size_t groups = 0;
+
+    EditedRun(int early, int late, std::int64_t (*memory)()) {
+        const VirtualClock clock;
+        const std::string plain = four_rates();
+        const auto with_group = [&](int edit) {
+            constexpr std::array rates{120, 125, 150, 250, 400};
+            return plain + fmt::format("[nodes.extra]\ntype = \"constant\"\nrate = \"{} Hz\"\n",
+                                       rates[static_cast<std::size_t>(edit % 5)]);
+        };
+        run::EngineOptions options;
+        options.seconds = late;
+        options.live = true;
+        run::Engine engine(compile_text(plain), options);
+        std::atomic<bool> stop{false};
+        run::LiveOptions live;
+        live.stop = &stop;
+        bool is_waiting = false;
+        live.watch = [&] {
+            if (is_waiting || !engine.is_settled()) return;
+            if (made == early) early_bytes = memory();
+            if (made == late) {
+                late_bytes = memory();
+                stop = true;
+                return;
+            }
+            is_waiting = true;
+            engine.edit([&, edit = made] { return compile_text(with_group(edit)); },
+                        [&](const run::EditOutcome& outcome) {
+                            CHECK_FALSE(outcome.error);
+                            ++made;
+                            is_waiting = false;
+                        });
+        };
+        engine.run_live(live);
+        for (const auto& group : engine.groups())
+            if (group->is_over() && group->plan->name.find("Hz") != std::string::npos) ticks += group->telemetry.ticks;
+        groups = engine.groups().size();
+    }
+};
+
+TEST_CASE("edits that make and drop groups leave no memory behind, and the counts of those groups stay",
+          "[virtual][slow]") {
+    const EditedRun run(20, 60, [] {
         const auto info = ::mallinfo2();
         return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
-    };
-    constexpr int early = 20, late = 60;
-    run::EngineOptions options;
-    options.seconds = 60.0;
-    options.live = true;
-    run::Engine engine(compile_text(plain), options);
-    std::atomic<bool> stop{false};
-    run::LiveOptions live;
-    live.stop = &stop;
-    int made = 0;
-    bool is_waiting = false;
-    std::int64_t early_bytes = 0, late_bytes = 0;
-    live.watch = [&] {
-        if (is_waiting || !engine.is_settled()) return;
-        if (made == early) early_bytes = in_use();
-        if (made == late) {
-            late_bytes = in_use();
-            stop = true;
-            return;
-        }
-        is_waiting = true;
-        engine.edit([&, edit = made] { return compile_text(with_group(edit)); },
-                    [&](const run::EditOutcome& outcome) {
-                        CHECK_FALSE(outcome.error);
-                        ++made;
-                        is_waiting = false;
-                    });
-    };
-    engine.run_live(live);
-    CHECK(made == late);
-    CHECK(late_bytes - early_bytes < 150'000);  // 48 kB an edit would be 1.9 MB
-    std::int64_t ticks = 0;
-    for (const auto& group : engine.groups())
-        if (group->is_over() && group->plan->name.find("Hz") != std::string::npos) ticks += group->telemetry.ticks;
-    CHECK(ticks > 0);
-    CHECK(engine.groups().size() < 15);
+    });
+    CHECK(run.made == 60);
+    CHECK(run.late_bytes - run.early_bytes < 150'000);  // 48 kB an edit would be 1.9 MB
+    CHECK(run.ticks > 0);
+    CHECK(run.groups < 15);
+}
+
+TEST_CASE("10,000 edits take at most 10 MB more than 1,000", "[.]") {
+    const EditedRun run(1000, 10'000, [] {
+        std::int64_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages >> pages;
+        return pages * ::sysconf(_SC_PAGESIZE);
+    });
+    fmt::print("resident after 1000 edits {:.1f} MB, after 10000 {:.1f} MB\n",
+               1e-6 * static_cast<double>(run.early_bytes), 1e-6 * static_cast<double>(run.late_bytes));
+    CHECK(run.made == 10'000);
+    CHECK(run.late_bytes - run.early_bytes <= 10'000'000);
 }
 
 TEST_CASE("an edit that cannot be made leaves the old plan running", "[virtual]") {

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the command says of energy: the cap that is off, granted power, which walls a device bears, devices as they are.
+#include "dsp/control/stated_hand.hpp"
+#include "dsp/simulate/device_model.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <string>
 
 using nlohmann::json;
+namespace control = tactus::control;
+namespace simulate = tactus::simulate;
 using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::slurp;
@@ -38,7 +43,47 @@ TEST_CASE("check lists and draws which walls a device bears", "[slow]") {
             INFO(row.dump());
             CHECK(row["passive_N_per_mm"].get<double>() == Approx(row["bound_N_per_mm"].get<double>()).epsilon(0.1));
         }
+    // Each row states (b - |B|) / (T / 2 + delay) for its device, with the press at which the simulated one fails.
+    for (const simulate::DeviceModel& model : simulate::device_models()) {
+        int found = 0;
+        for (const json& row : rows) {
+            if (row["device"] != model.name) continue;
+            INFO(row.dump());
+            ++found;
+            const double period = 1.0 / row["rate_hz"].get<double>(), delay = 1e-3 * row["delay_ms"].get<double>();
+            const double b = model.viscous + control::StatedHand::damping;
+            CHECK(delay >= model.delay - 1e-9);
+            CHECK(row["bound_N_per_mm"].get<double>() ==
+                  Approx(1e-3 * std::max(0.0, b - row["damping_N_s_per_m"].get<double>()) / (0.5 * period + delay)));
+            CHECK(row["friction_N_per_mm"].get<double>() == Approx(1e-3 * 2.0 * model.friction / model.resolution));
+            CHECK(row["simulated_press_N"].get<double>() <= 0.8 * model.max_force + 1e-9);
+            CHECK(row["simulated_approach_m_per_s"].get<double>() <= 0.3);
+        }
+        CAPTURE(model.name);
+        CHECK(found >= 4);
+    }
     CHECK(slurp(figure).find("falcon") != std::string::npos);
+}
+
+TEST_CASE("check states the delay of the whole loop, and the stiffness that it permits") {
+    const Folder folder;
+    for (const simulate::DeviceModel& model : simulate::device_models()) {
+        const std::string name(model.name);
+        const json checked =
+            json::parse(folder.tactus("check touch-sphere --json --set devices.simulated.model=" + name).out);
+        int found = 0;
+        for (const json& path : checked["paths"]) {
+            if (!path.contains("stiffness_limit_N_per_mm")) continue;
+            INFO(name << ": " << path.dump());
+            ++found;
+            const double delay = 1e-3 * path["latency_ms"].get<double>();
+            const double b = path["damping_N_s_per_m"].get<double>();
+            CHECK(delay == Approx(model.delay).margin(1e-9));  // the graph of this patch adds none
+            CHECK(b >= control::StatedHand::damping);
+            CHECK(path["stiffness_limit_N_per_mm"].get<double>() == Approx(1e-3 * b / (0.5e-3 + delay)));
+        }
+        CHECK(found == 1);
+    }
 }
 
 TEST_CASE("a patch runs on a device as it is, and says what it can do") {
