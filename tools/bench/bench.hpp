@@ -41,6 +41,7 @@ Verb rope_verb();
 Verb reconstruct_verb();
 Verb peers_verb();
 Verb fundamental_verb();
+Verb identify_verb();
 Verb verdicts_verb();
 
 }  // namespace tactus::bench
