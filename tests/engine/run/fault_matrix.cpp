@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each kind of fault does to the force on a hand, for each place that a group may have in a patch, on one core and
-// on more. "the fault matrix" prints the table of docs/explanation/safety.md: ./dev faults.
+// on more.
 #include "assets/bone/bone.hpp"
 #include "graph/node/assets.hpp"
 #include "tests/devices/hosted/with_host.hpp"
