@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/local_model.hpp"
+#include "dsp/core/constants.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/vibration/identify.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 using namespace tactus;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// Acceleration per force of a resonator of unit mass, with a constant beside it.
 std::complex<double> resonator(double f, double f0, double damping, double direct) {

@@ -11,7 +11,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double rate = 48000.0, f0 = 120.0;
+constexpr double plant_rate = 48000.0, f0 = 120.0;
 
 /// Acceleration of a resonator, 5 m/s² per V far above resonance, with a latency.
 vibration::FrequencyResponse resonator(double damping, double latency) {
@@ -30,7 +30,7 @@ vibration::FrequencyResponse resonator(double damping, double latency) {
 TEST_CASE("a measured response as a filter has its gain at every frequency between the ends, and its latency") {
     for (const double damping : {0.1, 0.3})
         for (const double latency : {0.0, 0.01}) {
-            const std::vector<float> taps = vibration::impulse_response(resonator(damping, latency), rate, 4096);
+            const std::vector<float> taps = vibration::impulse_response(resonator(damping, latency), plant_rate, 4096);
             const double delay = vibration::plant_delay(resonator(damping, latency));
             CHECK(delay == Approx(1e-3).epsilon(0.02));
             REQUIRE(taps.size() == 4096);
@@ -38,7 +38,7 @@ TEST_CASE("a measured response as a filter has its gain at every frequency betwe
                 std::complex<double> sum = 0.0;
                 for (std::size_t i = 0; i < taps.size(); ++i)
                     sum += static_cast<double>(taps[i]) *
-                           std::polar(1.0, -2.0 * std::numbers::pi * f * static_cast<double>(i) / rate);
+                           std::polar(1.0, -2.0 * std::numbers::pi * f * static_cast<double>(i) / plant_rate);
                 const std::complex<double> s(0.0, f / f0);
                 const std::complex<double> wanted = 5.0 * s * s / (s * s + 2.0 * damping * s + 1.0) *
                                                     std::polar(1.0, -2.0 * std::numbers::pi * f * (latency + delay));
@@ -49,8 +49,8 @@ TEST_CASE("a measured response as a filter has its gain at every frequency betwe
 }
 
 TEST_CASE("a response that rings beyond the filter, or before its cause, is refused") {
-    CHECK_THROWS_AS(vibration::impulse_response(resonator(0.002, 0.0), rate, 4096), Error);
+    CHECK_THROWS_AS(vibration::impulse_response(resonator(0.002, 0.0), plant_rate, 4096), Error);
     vibration::FrequencyResponse early = resonator(0.3, 0.0);
     early.latency = -0.02;
-    CHECK_THROWS_AS(vibration::impulse_response(early, rate, 4096), Error);
+    CHECK_THROWS_AS(vibration::impulse_response(early, plant_rate, 4096), Error);
 }
