@@ -9,7 +9,8 @@ using study::ExposureVerdict;
 TEST_CASE("a lower bound of an exposure never gives a verdict that it is low enough") {
     for (double a8 = 0.0; a8 < 8.0; a8 += 0.1) {
         CAPTURE(a8);
-        const ExposureVerdict whole = study::judge_exposure(a8, false), bound = study::judge_exposure(a8, true);
+        const ExposureVerdict whole = study::judge_exposure(a8, signal::hand_arm_limits, false),
+                              bound = study::judge_exposure(a8, signal::hand_arm_limits, true);
         CHECK(whole == (a8 > 5.0   ? ExposureVerdict::above_limit
                         : a8 > 2.5 ? ExposureVerdict::above_action
                                    : ExposureVerdict::below_action));
