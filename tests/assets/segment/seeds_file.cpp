@@ -63,7 +63,7 @@ TEST_CASE("assets: a wrong seeds file is refused with label and stroke") {
     const std::string good = R"({"name": "b", "strokes": [{"points_mm": [[1, 2, 3]]}]})";
     const auto with = [&](const std::string& label) { return R"({"labels": [)" + label + ", " + good + "]}"; };
     CHECK(seeds_refusal(with(R"({"name": "a", "strokes": [{"points_mm": [[1, 2, 3]]}]})")) == "accepted");
-    CHECK_THAT(seeds_refusal(""), ContainsSubstring("seeds.json: byte 1"));
+    CHECK_THAT(seeds_refusal(""), ContainsSubstring("seeds.json:1:1: "));
     CHECK_THAT(seeds_refusal("[]"), ContainsSubstring("expected {\"labels\""));
     CHECK_THAT(seeds_refusal(R"({"labels": []})"), ContainsSubstring("no labels"));
     CHECK_THAT(seeds_refusal(R"({"labels": [)" + good + "]}"), ContainsSubstring("one label"));
