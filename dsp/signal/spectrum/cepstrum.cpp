@@ -26,15 +26,26 @@ std::vector<CepstralPeak> cepstral_peaks(const Cepstrum& cepstrum, std::size_t c
     std::vector<CepstralPeak> peaks;
     const std::size_t begin = 8, end = cepstrum.value.size() / 2;
     if (end < begin + 16) return peaks;
-    std::vector<double> sizes;
-    for (std::size_t k = begin; k < end; ++k) sizes.push_back(std::abs(cepstrum.value[k]));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    const double threshold = 5.0 * 1.4826 * *middle;
+    constexpr int reach = 6;
+    const auto squared_envelope = [&](std::size_t k) {
+        double sum = 0.0;
+        for (int i = 1 - reach; i < reach; ++i) {
+            const double value = cepstrum.value[static_cast<std::size_t>(static_cast<int>(k) + i)];
+            sum += (reach - std::abs(i)) * value * value;
+        }
+        return sum / reach;  // of one peak alone: its square
+    };
+    std::vector<double> squared(end + 1, 0.0);
+    for (std::size_t k = begin - 1; k <= end; ++k) squared[k] = squared_envelope(k);
+    std::vector<double> sorted(squared.begin() + begin, squared.begin() + static_cast<std::ptrdiff_t>(end));
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double threshold = 6.25 * *middle;
     for (std::size_t k = begin; k < end; ++k) {
-        const double value = cepstrum.value[k];
-        if (value > threshold && value >= cepstrum.value[k - 1] && value > cepstrum.value[k + 1])
-            peaks.push_back({cepstrum.quefrency(k), value});
+        const double before = squared[k - 1], at = squared[k], after = squared[k + 1];
+        if (!(at > threshold && at >= before && at > after)) continue;
+        const double shift = 0.5 * (before - after) / (before - 2.0 * at + after);
+        peaks.push_back({(static_cast<double>(k) + shift) * cepstrum.step, std::sqrt(at)});
     }
     // A family has peaks at all multiples of its quefrency; the first of them states its spacing.
     const std::vector<CepstralPeak> all = peaks;
@@ -42,7 +53,7 @@ std::vector<CepstralPeak> cepstral_peaks(const Cepstrum& cepstrum, std::size_t c
         return std::ranges::any_of(all, [&](const CepstralPeak& first) {
             const double multiple = std::round(peak.quefrency / first.quefrency);
             return multiple >= 2.0 && first.value > 0.5 * peak.value &&
-                   std::abs(peak.quefrency - multiple * first.quefrency) <= multiple * cepstrum.step;
+                   std::abs(peak.quefrency - multiple * first.quefrency) <= 1.5 * multiple * cepstrum.step;
         });
     });
     std::ranges::stable_sort(peaks, std::greater<>(), &CepstralPeak::value);

@@ -18,7 +18,8 @@ const auto stay = [](double, const Wrench&, const Pose&) noexcept { return simul
 /// millisecond with `delay` further ticks; the hand is a mass and a damper and starts 1 mm inside, pushed by 1 N.
 double swing_against_wall(double stiffness, double damping, int delay, double seconds) {
     simulate::Hand hand;
-    hand.dynamics = {0.2, 4e-4, 0.0, damping, 0.0, 0.0};
+    hand.dynamics = {
+        .mass = 0.2, .stiffness = 0.0, .damping = damping, .angular_stiffness = 0.0, .angular_damping = 0.0};
     const double rest = -1.0 / stiffness;
     hand.pose.position.z = rest - 1e-4;
     double held[4] = {};
@@ -48,7 +49,7 @@ TEST_CASE("a sampled wall is stable below b / (T (1/2 + D)) and unstable above")
 
 TEST_CASE("an undamped hand on its spring keeps its energy") {
     simulate::Hand hand;
-    hand.dynamics = {0.2, 4e-4, 800.0, 0.0, 2.0, 0.0};
+    hand.dynamics = {.mass = 0.2, .damping = 0.0, .angular_damping = 0.0};
     hand.pose.position.x = 5e-3;
     const auto energy = [&] {
         return 0.5 * 0.2 * glm::dot(hand.twist.linear, hand.twist.linear) +

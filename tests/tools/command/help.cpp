@@ -17,7 +17,7 @@ using tactus::test::Run;
 using tactus::test::slurp;
 using tactus::test::wait_for;
 
-TEST_CASE("--help groups verbs by job, --version says version, build type and compiler") {
+TEST_CASE("the option --help groups verbs by job, and --version says version, build type and compiler") {
     const Folder folder;
     const Outcome help = folder.tactus("--help");
     CHECK(help.code == 0);

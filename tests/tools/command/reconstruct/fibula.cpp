@@ -152,7 +152,7 @@ TEST_CASE("plan fibula refuses wrong inputs with one line") {
         changed[key] = value;
         return changed.dump();
     };
-    refused("", "byte 1");
+    refused("", ":1:1: ");
     refused("{}", "expected an object");
     refused(with("jaw_curve", json::array()), "either 'mandible_planes' or 'jaw_curve'");
     refused(with("roll_deg", 400), "'roll_deg' must be");

@@ -107,7 +107,8 @@ TEST_CASE("small patches of guides follow their laws") {
     constexpr std::size_t x = 0, y = 1, z = 2;
     check_law("soft-wall", z, [](const Row& p, const Row& v) {
         if (p[z] >= 0.0) return 0.0;
-        return std::clamp(std::min(-400.0 * p[z], 2.0) - 2.0 * v[z], 0.0, 2.0);
+        // The damper sets in over the first 0.2 mm.
+        return std::clamp(std::min(-400.0 * p[z], 2.0) - 2.0 * std::min(-p[z] / 0.2e-3, 1.0) * v[z], 0.0, 2.0);
     });
     // The nearer one of two lines along x to (15 mm, 0, 0) and from there along y; while the pull turns to the other line,
     // 50 ms, there is no law to compare with.
@@ -117,8 +118,11 @@ TEST_CASE("small patches of guides follow their laws") {
         Row operator()(const Row& p) {
             const double along = std::clamp(p[x], 0.0, 15e-3), up = std::clamp(p[y], 0.0, 20e-3);
             const double a[] = {along - p[x], -p[y], -p[z]}, b[] = {15e-3 - p[x], up - p[y], -p[z]};
-            const bool is_first = std::hypot(a[0], a[1], a[2]) <= std::hypot(b[0], b[1], b[2]);
+            const double nearer = std::hypot(b[0], b[1], b[2]) - std::hypot(a[0], a[1], a[2]);
+            const bool is_first = nearer >= 0.0;
             const double* const way = is_first ? a : b;
+            // Of two places that are as near to 0.1 mm, the hand keeps the one it had.
+            if (is_first != was_first && std::abs(nearer) < 0.1e-3) return {};
             if (std::exchange(was_first, is_first) != is_first) turning = 51;
             if (turning > 0 && turning-- > 0) return {};
             const double far = std::hypot(way[0], way[1], way[2]), pull = std::min(300.0 * far, 3.0);
@@ -132,7 +136,8 @@ TEST_CASE("small patches of guides follow their laws") {
             turned += force.empty() ? 1 : 0;
             return force.empty() ? unstated : force[axis];
         });
-        CHECK(turned == 51);
+        CHECK(turned >= 51);
+        CHECK(turned < 80);
     }
     check_law("ruler", z, [](const Row& p, const Row& v) { return -300.0 * p[z] - 2.0 * v[z]; });
     check_law("ruler", x, [](const Row& p, const Row& v) { return -150.0 * (p[x] - p[y]) - 1.0 * (v[x] - v[y]); });

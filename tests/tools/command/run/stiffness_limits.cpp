@@ -216,7 +216,7 @@ TEST_CASE("a tool's forces are scaled to hardware that is weaker than the patch,
     CHECK_THAT(mouse.out + mouse.err, !ContainsSubstring("blade.device_scale"));
 }
 
-TEST_CASE("--device-scale scales the forces on the device and leaves what is cut") {
+TEST_CASE("the option --device-scale scales the forces on the device and leaves what is cut") {
     const Folder folder;
     const auto removed = [&](const std::string& options) {
         const Outcome run = folder.tactus("render saw-training --seconds 4 --overwrite --json " + options + " --out " +
