@@ -22,14 +22,14 @@ int move_fragment(const MoveChoice& choice) {
     if (choice.pose.empty() == choice.transform.empty()) throw Error("a place is needed: --pose or --transform");
     const Pose pose =
         choice.pose.empty() ? transform::read_motion(choice.transform) : pose_of_text(choice.pose, "--pose");
-    constexpr double far = 2.0;  // m: no bone is that long, nor that far from the origin of its scan
-    if (glm::length(pose.position) > far)
-        fmt::print(stderr, "note: the position is {:.1f} m from the origin of the scan; are the numbers in mm?\n",
-                   glm::length(pose.position));
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const int fragment = cases::find_fragment(plan, choice.names.front());
     study::do_step(plan, cases::placing(plan, fragment, pose, "command"), choice.plan);
+    constexpr double far = 2.0;  // m: no bone is that long, nor that far from the origin of its scan
+    if (glm::length(pose.position) > far)
+        fmt::print(stderr, "note: the position is {:.1f} m from the origin of the scan; are the numbers in mm?\n",
+                   glm::length(pose.position));
     return show_change(choice);
 }
 
