@@ -98,8 +98,8 @@ landing() {
     phase "tests: slow" run_ctest "$preset" "$(jobs)" -L '^slow$' || status=1
     chosen=$(slice "$preset")
     [ -z "$chosen" ] || phase "tests: slice of the long ones" run_ctest "$preset" "$(jobs)" -I "0,0,0,$chosen" || status=1
+    phase "tests: display" run_ctest "$preset" "$(jobs)" -L '^display$' || status=1
     # These wait half of their time.
-    phase "tests: display" run_ctest "$preset" "$(($(jobs) * 3 / 2))" -L '^display$' || status=1
     phase "tests: kernel" run_ctest "$preset" "$(($(jobs) * 3 / 2))" -L '^kernel$' || status=1
     phase "tests: live" run_ctest "$preset" 1 -L '^live' || status=1
     print_phases
