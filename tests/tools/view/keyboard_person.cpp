@@ -212,7 +212,7 @@ file = "hand.csv"
     done.wait();
 }
 
-TEST_CASE("the keyboard alone chooses fragments of a plan and groups them", "[display]") {
+TEST_CASE("the keyboard alone chooses fragments of a plan and groups them", "[display][live]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
     folder.write("script", watching_script("size 1000 700\n", 90.0));

@@ -85,7 +85,7 @@ TEST_CASE("who comes back to the window with a key held presses it anew", "[disp
                                [](Person& person) { person.give_keyboard("Tactus"); });
 }
 
-TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display]") {
+TEST_CASE("a person with a mouse saws into the jaw, and the take repeats it", "[display][live]") {
     NEEDS_PERSON(person, display)
     const Folder folder;
     folder.write("script", R"(size 800 600

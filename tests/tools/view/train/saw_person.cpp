@@ -39,7 +39,7 @@ int letters_in(const Picture& seen, const Spot& box) {
 
 }  // namespace
 
-TEST_CASE("a trainee with a mouse saws the jaw through and reads the score", "[display]") {
+TEST_CASE("a trainee with a mouse saws the jaw through and reads the score", "[display][live]") {
     for (const WalkWindow& window : walk_windows()) {
         Walk walk(window, "saw");
         if (!walk.is_possible()) return;
