@@ -93,6 +93,18 @@ private:
         if (param > 0.0) throw Error(fmt::format("'{}' does not apply to {}; remove it", name, plant));
     }
 
+    /// Refuses what only a mass on a spring in a coil has.
+    void refuse_moving_parts(const char* plant) const {
+        refuse(moving_mass, "moving_mass", plant);
+        refuse(resonance, "resonance", plant);
+        refuse(damping, "damping", plant);
+        refuse(q, "q", plant);
+        refuse(force_factor, "force_factor", plant);
+        refuse(inductance, "inductance", plant);
+        refuse(current_limit, "current_limit", plant);
+        refuse(force_limit, "force_limit", plant);
+    }
+
     /// A mass on a spring in a coil.
     void moving(const Setup& setup) {
         vibration::ActuatorModel data =
@@ -125,15 +137,7 @@ private:
     }
 
     void rotating(const Setup& setup) {
-        constexpr const char* plant = "a rotating mass, which shakes at the rate at which it turns";
-        refuse(moving_mass, "moving_mass", plant);
-        refuse(resonance, "resonance", plant);
-        refuse(damping, "damping", plant);
-        refuse(q, "q", plant);
-        refuse(force_factor, "force_factor", plant);
-        refuse(inductance, "inductance", plant);
-        refuse(current_limit, "current_limit", plant);
-        refuse(force_limit, "force_limit", plant);
+        refuse_moving_parts("a rotating mass, which shakes at the rate at which it turns");
         vibration::RotatingMassModel data = vibration::coin_erm;
         override_with(data.resistance, resistance);
         override_with(data.voltage_limit, voltage_limit);
@@ -142,15 +146,8 @@ private:
 
     void measured(const Setup& setup) {
         constexpr const char* plant = "a measured response, which is that of one actuator on one handle";
-        refuse(moving_mass, "moving_mass", plant);
-        refuse(resonance, "resonance", plant);
-        refuse(damping, "damping", plant);
-        refuse(q, "q", plant);
-        refuse(force_factor, "force_factor", plant);
+        refuse_moving_parts(plant);
         refuse(resistance, "resistance", plant);
-        refuse(inductance, "inductance", plant);
-        refuse(current_limit, "current_limit", plant);
-        refuse(force_limit, "force_limit", plant);
         if (const std::string& unit = response->unit; !unit.empty() && !unit.starts_with("m/s^2"))
             throw Error(fmt::format("the measured response is in {}, not in m/s^2 per V", unit));
         plant_.emplace(vibration::impulse_response(response->identified.response, setup.rate(), plant_taps));
