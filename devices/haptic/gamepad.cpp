@@ -219,7 +219,7 @@ public:
     const DeviceInfo& info() const override { return info_; }
 
     void prepare(double period_s) override {
-        longest_tick_ = longest_tick_of_hand(period_s);
+        max_tick_ = max_tick_of_hand(period_s);
         hand_.pose = {};
         hand_.twist = {};
         steered_.wanted = {};
@@ -228,7 +228,7 @@ public:
     }
 
     DeviceSample acquire(double elapsed_s) noexcept override {
-        simulate::advance(hand_, steered_, force_.get(), std::min(elapsed_s, longest_tick_));
+        simulate::advance(hand_, steered_, force_.get(), std::min(elapsed_s, max_tick_));
         // A lost gamepad is a fault of the device: no sample is valid any more, which fades the force.
         const bool is_here = steered_.state.is_lost == 0;
         if (is_here) pull_->write({hand_.pose, steered_.wanted, force_.get(), steady_ns()});
@@ -247,7 +247,7 @@ private:
     PadReader reader_;
     simulate::Hand hand_;
     Steered steered_;
-    double longest_tick_ = 0.0;  // s
+    double max_tick_ = 0.0;  // s
     std::int64_t counter_ = 0;
 };
 

@@ -69,7 +69,7 @@ public:
     const DeviceInfo& info() const override { return info_; }
 
     void prepare(double period_s) override {
-        longest_tick_ = longest_tick_of_hand(period_s);
+        max_tick_ = max_tick_of_hand(period_s);
         hand_.pose = {};
         hand_.twist = {};
         intended_ = {};
@@ -88,7 +88,7 @@ public:
 
     DeviceSample acquire(double elapsed_s) noexcept override {
         listen();
-        simulate::advance(hand_, intended_, force_.get(), std::min(elapsed_s, longest_tick_));
+        simulate::advance(hand_, intended_, force_.get(), std::min(elapsed_s, max_tick_));
         const std::int64_t silence = now_ns_() - heard_ns_;
         const bool is_silent = silence > (has_heard_ ? longest_silence_of_window_ns : longest_start_ns);
         tell(is_silent);
@@ -131,7 +131,7 @@ private:
     std::uint32_t buttons_ = 0;
     std::uint64_t heard_ = 0;
     std::int64_t counter_ = 0, run_ = 0, heard_ns_ = 0;
-    double longest_tick_ = 0.0;  // s
+    double max_tick_ = 0.0;  // s
     bool has_heard_ = false;
 };
 

@@ -73,6 +73,6 @@ DeviceInfo read_info_without_motors(Options& options, simulate::HandDynamics& ha
     return info;
 }
 
-double longest_tick_of_hand(double period) noexcept { return std::max(5e-3, 2.0 * period); }
+double max_tick_of_hand(double period) noexcept { return std::max(5e-3, 2.0 * period); }
 
 }  // namespace tactus::haptic

@@ -27,7 +27,7 @@ DeviceInfo read_info_without_motors(Options& options, simulate::HandDynamics& ha
 
 /// Longest time, s, that such a hand moves in one tick of `period` s. Nothing holds it while ticks are late: it would sink
 /// into what it presses on.
-double longest_tick_of_hand(double period) noexcept;
+double max_tick_of_hand(double period) noexcept;
 
 /// The last commanded force. A watchdog may set it while the device is read.
 class SharedWrench {
