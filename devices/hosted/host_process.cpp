@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/host_process.hpp"
 
-#include "dsp/core/clock.hpp"
 #include "assets/file/part.hpp"
+#include "dsp/core/clock.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>

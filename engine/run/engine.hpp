@@ -51,8 +51,9 @@ public:
     /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over. `told`
     /// hears of the outcome from the control thread. Edits wait for each other; of those that wait the last one counts.
     void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
-    /// While a live run goes on, from `watch`, or between two `advance`: sets a parameter, "0.8 N/mm", 3 ms ahead; one on which a force depends
-    /// comes in from there, see param_ramps.hpp. Returns the logical time. Throws Error on unknown names, structural or driven parameters, and values out of range.
+    /// While a live run goes on, from `watch`, or between two `advance`: sets a parameter, "0.8 N/mm", 3 ms ahead. One on
+    /// which a force depends ramps from there (param_ramps.hpp). Returns the logical time. Throws Error on unknown names,
+    /// on structural or driven parameters, and on values out of range.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
     /// While a live run goes on, from `watch`: forces fade to zero at once and logical time stops, or it goes on and forces
     /// come in anew. A take repeats it to the bit.
