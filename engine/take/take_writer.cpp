@@ -25,7 +25,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// A killed run loses the records since the last flush. The limit in bytes is for offline runs, which compute minutes of
+// logical time in half a second.
 constexpr std::int64_t flush_every_ns = 500'000'000;
+constexpr std::uint64_t flush_every_bytes = 1 << 16;
 
 Json assets_json(const patch::Patch& patch) {
     Json assets = Json::array();
@@ -267,7 +270,7 @@ void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& n
 
 void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
     const std::int64_t now = steady_ns();
-    if (is_lost_ || now < flush_ns_) return;
+    if (is_lost_ || (now < flush_ns_ && log_->size() < flush_bytes_)) return;
     flush_ns_ = now + flush_every_ns;
     for (const Progress& group : progress) {
         TimingRecord record;
@@ -279,6 +282,7 @@ void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
     }
     try {
         log_->flush();
+        flush_bytes_ = log_->size() + flush_every_bytes;
     } catch (const Error& error) {
         lose(error.message());
     }

@@ -109,6 +109,7 @@ private:
     std::string loss_;
     std::unordered_set<std::string> files_;
     std::int64_t flush_ns_ = 0;  // of the next flush
+    std::uint64_t flush_bytes_ = 0;  // log size at which a flush is due, if not due by time
 };
 
 /// Hash of a file's bytes; for a text that names other files, their bytes too. Throws Error.

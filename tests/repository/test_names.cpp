@@ -9,9 +9,9 @@
 #include <regex>
 #include <string>
 
-TEST_CASE("names of test cases hold no semicolon, and begin with no letter that has a meaning for Catch2") {
-    // CMake cuts a name at a semicolon: a half of it names no test case, and passed. "-" begins an option ("--help shows all"
-    // printed the help and passed), "~" excludes a case, "[" begins a tag.
+TEST_CASE("test names contain no semicolon and do not start with a hyphen, a tilde or a bracket") {
+    // CMake splits a name at ';', and a part of a name matches no test case. Catch2 reads "-" as an option (a case named
+    // "--help shows all" printed the help and passed), "~" as an exclusion and "[" as a tag.
     static const std::regex name("\nTEST_CASE\\(\\s*((?:\"(?:[^\"\\\\]|\\\\.)*\"\\s*)+)");
     int names = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(tactus::test::source_folder() / "tests")) {
