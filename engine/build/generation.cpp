@@ -5,6 +5,8 @@
 #include "engine/build/generation_builder.hpp"
 #include "engine/build/survival.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -144,6 +146,11 @@ void GenerationBuilder::prepare() {
 void GenerationBuilder::prepare_node(std::size_t i) {
     if (made_->survived[i]) return;
     const compile::PlanNode& node = plan().nodes[i];
+    // A node reads its assets without a check: only their loader knows why one is missing.
+    for (const AssetParam* asset : node.assets)
+        if (!asset->name.empty() && !asset->loaded)
+            throw Error(asset->where,
+                        fmt::format("the asset '{}' of the node '{}' was not loaded", asset->name, node.name));
     const run::GroupRuntime& group = group_of(node);
     context_.host.prepare_for(group.index, group.plan->period, node.where, made_->nodes[i]->uses);
     Hash seed;

@@ -85,7 +85,8 @@ struct Generation {
     bool settled() const;
 };
 
-/// Builds what follows `before` (null: nothing). Assets must be loaded. What runs is not touched. Throws Error.
+/// Builds what follows `before` (null: nothing). What runs is not touched. Throws Error, also for an asset that is not
+/// loaded.
 std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context);
 
 }  // namespace tactus::build

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/run/engine.hpp"
+#include "graph/compile/load_assets.hpp"
 #include "tests/support/virtual_clock.hpp"
 
 #include <atomic>
@@ -36,8 +37,8 @@ struct PatchText {
     std::string toml() const;
 };
 
-/// Compiles, with REQUIRE that there are no problems.
-compile::Plan compile_text(const std::string& toml);
+/// Compiles and loads assets, into `assets` if it is given, with REQUIRE that there are no problems.
+compile::Plan compile_text(const std::string& toml, compile::AssetCache* assets = nullptr);
 
 /// 48 kHz, 1 kHz, 150 Hz and 60 Hz groups, wired in cycles across rates, with every mode of delivery.
 std::string four_rates();
