@@ -30,6 +30,7 @@ const char* describe(Fault fault) noexcept {
         case Fault::late_source: return "the window that moves the hand was too slow";
         case Fault::late_value: return "a value that the force depends on came too late";
         case Fault::old_world: return "what the force is computed against was not updated for 1 s";
+        case Fault::unusable_value: return "a value that the force depends on was not a finite number";
     }
     return "unknown fault";
 }

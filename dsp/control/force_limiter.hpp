@@ -33,17 +33,18 @@ enum class Fault : std::uint8_t {
     beyond_drive_limit,
     late_source,
     late_value,
-    old_world
+    old_world,
+    unusable_value
 };
 
-/// The machine was slow; nothing is wrong with the patch or the device.
+/// What the force needs was not there in time; nothing is wrong with the force that was computed, or with the device.
 constexpr bool is_lateness(Fault fault) noexcept {
-    return fault == Fault::late_commit || (fault >= Fault::late_source && fault <= Fault::old_world);
+    return fault == Fault::late_commit || (fault >= Fault::late_source && fault <= Fault::unusable_value);
 }
 
 /// The fault for a number on a wire; other numbers are invalid input.
 inline Fault fault_of_number(double number) noexcept {
-    for (int n = 0; n <= static_cast<int>(Fault::old_world); ++n)
+    for (int n = 0; n <= static_cast<int>(Fault::unusable_value); ++n)
         if (number == n) return static_cast<Fault>(n);
     return Fault::invalid_input;
 }

@@ -10,6 +10,8 @@
 #include <bit>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace tactus::build {
@@ -20,8 +22,8 @@ constexpr Flicks longest_lateness = flicks_per_second * 3 / 1000;  // of a value
 constexpr Flicks oldest_world = flicks_per_second;
 
 bool drives(const LiveNode& node, const DeviceSlot& slot) {
-    return std::ranges::any_of(
-        node.uses.devices, [&](const auto& use) { return use.first == &slot && use.second == DeviceUse::drive; });
+    return std::ranges::any_of(node.uses.devices,
+                               [&](const auto& use) { return use.first == &slot && use.second == DeviceUse::drive; });
 }
 
 /// Nodes from which values reach a device that `counts`, in any group.
@@ -29,9 +31,8 @@ template <class Counts>
 std::vector<bool> nodes_before(const Generation& generation, const Counts& counts) {
     std::vector<int> sinks;
     for (std::size_t i = 0; i < generation.nodes.size(); ++i)
-        if (std::ranges::any_of(generation.nodes[i]->uses.devices, [&](const auto& use) {
-                return use.second == DeviceUse::drive && counts(*use.first);
-            }))
+        if (std::ranges::any_of(generation.nodes[i]->uses.devices,
+                                [&](const auto& use) { return use.second == DeviceUse::drive && counts(*use.first); }))
             sinks.push_back(static_cast<int>(i));
     std::vector<bool> on_path;
     for (const compile::Dependence one : compile::dependence_on(generation.plan, sinks))
@@ -91,6 +92,36 @@ std::string name_source(const Generation& generation, const std::vector<compile:
     return fmt::format("node '{}' of the group '{}'", name, group_name);
 }
 
+std::string name_of(const Generation& generation, std::size_t node) {
+    const compile::PlanNode& planned = generation.plan.nodes[node];
+    return fmt::format("node '{}' of the group '{}'", planned.name,
+                       generation.plan.groups[static_cast<std::size_t>(planned.group)].name);
+}
+
+/// The links that bring values to nodes on the path. A value that is not finite is known when it is computed, long before
+/// a slow group hands it over.
+void add_wires(const Generation& generation, const std::vector<compile::Dependence>& dependence,
+               std::vector<ValueSource>& sources) {
+    std::unordered_map<const Input*, std::size_t> readers;
+    std::unordered_map<const Output*, std::size_t> writers;
+    for (std::size_t i = 0; i < generation.nodes.size(); ++i) {
+        for (const Output* output : generation.nodes[i]->outputs) writers.emplace(output, i);
+        if (dependence[i] == compile::Dependence::none) continue;
+        for (const Input* input : generation.nodes[i]->inputs) readers.emplace(input, i);
+    }
+    for (const auto& link : generation.links) {
+        ValueSource source{
+            .group = link->producer, .fault = control::Fault::unusable_value, .name = {}, .link = link.get()};
+        for (std::size_t w = 0; w < link->wires.size(); ++w) {
+            const run::LinkWire& wire = link->wires[w];
+            if (!wire.target || !readers.contains(wire.target)) continue;
+            source.wires |= run::Link::bit_of(w);
+            if (source.name.empty()) source.name = name_of(generation, writers.at(wire.source));
+        }
+        if (source.wires != 0) sources.push_back(std::move(source));
+    }
+}
+
 }  // namespace
 
 std::vector<compile::Dependence> dependence_of(const Generation& generation, const DeviceSlot& slot) {
@@ -114,14 +145,15 @@ std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSl
             if (of_group[g] != kind || generation.groups[g]->index == slot.group) continue;
             const compile::PlanGroup& group = generation.plan.groups[g];
             const bool is_force = kind == compile::Dependence::force;
-            sources.push_back(
-                {.group = generation.groups[g].get(),
-                 .latency = group.latency,
-                 .limit = is_force ? std::max(longest_lateness, compile::call_period(generation.plan, group))
-                                   : oldest_world,
-                 .fault = is_force ? control::Fault::late_value : control::Fault::old_world,
-                 .name = name_source(generation, dependence, static_cast<int>(g), kind)});
+            sources.push_back({.group = generation.groups[g].get(),
+                               .latency = group.latency,
+                               .limit = is_force
+                                            ? std::max(longest_lateness, compile::call_period(generation.plan, group))
+                                            : oldest_world,
+                               .fault = is_force ? control::Fault::late_value : control::Fault::old_world,
+                               .name = name_source(generation, dependence, static_cast<int>(g), kind)});
         }
+    add_wires(generation, dependence, sources);
     return sources;
 }
 

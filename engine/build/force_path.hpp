@@ -14,7 +14,8 @@ namespace tactus::build {
 std::vector<compile::Dependence> dependence_of(const Generation& generation, const DeviceSlot& slot);
 
 /// The other groups on whose values the force on a device depends, those of force first. A value of force may be late by
-/// 3 ms, or by one period of its group if that is longer; one of the world by 1 s.
+/// 3 ms, or by one period of its group if that is longer; one of the world by 1 s. Then the wires between groups that lead
+/// to the force, one source for each link: they may bring no value that is not finite.
 std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSlot& slot);
 
 /// Nodes from which values reach a force on a hand, in any group, in the order of generation.nodes. Motors of grippers do
@@ -32,7 +33,7 @@ std::vector<const DeviceSlot*> changed_forces(const Generation& before, const Ge
 /// When a change of a node has reached the forces that depend on it.
 struct Reach {
     Flicks device_period = 0;  ///< of the slowest device
-    Flicks latency = 0;        ///< of all groups in between
+    Flicks latency = 0;  ///< of all groups in between
 };
 /// Nothing when no force depends on the node.
 std::optional<Reach> reach_of(const Generation& generation, std::size_t node);

@@ -114,16 +114,18 @@ struct DeviceSlot {
     Flicks period = 0;  ///< of that group
     io::DeviceGuard guard;  ///< live runs
     Wrench committed;  ///< of the last tick
-    int overdue = -1;  ///< of the program's sources for it, the one whose values are too old now; −1: none
+    int overdue = -1;  ///< of the program's sources for it, the one whose values cannot be used now; −1: none
 };
 
-/// Another group, on whose values the force on a device depends.
+/// Another group, on whose values the force on a device depends; or wires from one group to another that lead to the force.
 struct ValueSource {
     const run::GroupRuntime* group = nullptr;
     Flicks latency = 0;  ///< from an activation to when its values must be there
-    Flicks limit = 0;    ///< how late they may be before the force fades
+    Flicks limit = 0;  ///< how late they may be before the force fades
     control::Fault fault = control::Fault::late_value;
     std::string name;  ///< for people: "node 'contact' of the group '500 Hz'"
+    const run::Link* link = nullptr;  ///< of the wires: their source counts when one brings a value that is not finite
+    std::uint64_t wires = 0;  ///< of the link, by Link::bit_of
 };
 
 /// A parameter of a node that goes on, and its value from now on.
@@ -172,7 +174,7 @@ struct GroupProgram {
     std::vector<Output*> event_outputs;  ///< emptied after each call
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
-    std::vector<std::vector<ValueSource>> sources;  ///< of each of them; those of force first
+    std::vector<std::vector<ValueSource>> sources;  ///< of each of them; those of force first, wires last
     std::vector<io::SoundHeard*> heard;
     std::vector<PublishedSnapshot> snapshots;
     // What to do when taking over:

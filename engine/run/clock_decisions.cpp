@@ -89,6 +89,7 @@ bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const
 int LiveDecisions::overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                            std::int64_t tick) noexcept {
     const auto is_overdue = [now = tick * period_](const build::ValueSource& source) {
+        if (source.link) return source.link->is_unusable(source.wires);
         const GroupRuntime& group = *source.group;
         return !group.is_over() && now >= group.computed() * group.plan->period + source.latency + source.limit;
     };

@@ -64,7 +64,18 @@ std::int64_t Link::publish(std::int64_t first, int count) noexcept {
             std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
     }
     for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
+    note_unusable(count);
     return lost;
+}
+
+void Link::note_unusable(int count) noexcept {
+    std::uint64_t unusable = 0;
+    for (std::size_t w = 0; w < wires.size(); ++w) {
+        const LinkWire& wire = wires[w];
+        for (int i = 0; wire.target && i < count; ++i)
+            if (!is_finite_value(*wire.type, wire.source->data + i * wire.source->stride)) unusable |= bit_of(w);
+    }
+    unusable_.store(unusable, std::memory_order_relaxed);
 }
 
 namespace {

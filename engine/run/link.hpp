@@ -104,6 +104,16 @@ public:
     /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
+    /// Some of the `wires`, a set of `bit_of`, brought a value in the last publication that is not finite. A parameter keeps
+    /// its last value then, so wires to parameters do not count. Any thread; wait-free.
+    bool is_unusable(std::uint64_t wires) const noexcept {
+        return (unusable_.load(std::memory_order_relaxed) & wires) != 0;
+    }
+    /// The wires from the 63rd on share a bit.
+    static constexpr std::uint64_t bit_of(std::size_t wire) {
+        return std::uint64_t{1} << std::min<std::size_t>(wire, 63);
+    }
+
     /// A wire of this link, or of one that it continues, brings values of `output`. Before the producer uses the link.
     bool may_hold(const Output* output) const noexcept;
 
@@ -151,6 +161,7 @@ private:
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
     void take_values(std::int64_t index) noexcept;
+    void note_unusable(int count) noexcept;
     std::int64_t publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
     void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
     /// Lists what lies between the used index and `newest`, in order.
@@ -166,6 +177,7 @@ private:
     std::int64_t used_ = -1;
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
+    std::atomic<std::uint64_t> unusable_{0};  ///< wires whose last publication has a value that is not finite
     std::atomic<bool> settled_{true};
     std::atomic<std::int64_t> first_{0};  ///< first index published here; `unknown` before the producer's switch
     alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again

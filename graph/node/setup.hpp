@@ -47,7 +47,8 @@ struct DevicePort {
     control::ForceState state = control::ForceState::unknown;  ///< of the node that writes `wrench`
     /// True before the plan changes: fade the force to zero. Ramp it in when this is false again.
     bool hold_off = false;
-    /// Fault::late_value or old_world while a value on which the force depends is overdue: fade the force to zero.
+    /// Fault::late_value, old_world or unusable_value while a value on which the force depends is overdue or not finite: fade
+    /// the force to zero.
     control::Fault overdue = control::Fault::none;
     /// How often forces came back after late ticks: an edit that replaces the node does not forget it.
     control::LateReturn late;

@@ -3,8 +3,10 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <new>
 #include <vector>
 
@@ -182,6 +184,14 @@ std::span<const ValueType* const> plain_types() {
 }  // namespace tactus::value
 
 namespace tactus {
+
+bool is_finite_value(const ValueType& type, const void* value) noexcept {
+    constexpr std::size_t most = 8;
+    std::array<double, most> numbers{};
+    if (&type == &value::event || !type.to_columns || type.columns.size() > most) return true;
+    type.to_columns(value, numbers.data());
+    return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+}
 
 ValueKinds kind_of(const ValueType& type) {
     unsigned bit = 1;

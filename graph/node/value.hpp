@@ -60,6 +60,9 @@ struct ValueType {
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
 };
 
+/// All numbers of a plain value are finite; true for snapshots and events. Wait-free.
+bool is_finite_value(const ValueType& type, const void* value) noexcept;
+
 /// A set of value types, for inputs that take several: the bits of `kinds`.
 using ValueKinds = std::uint8_t;
 

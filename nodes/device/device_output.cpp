@@ -282,7 +282,8 @@ private:
             case Fault::late_commit:
             case Fault::late_source:
             case Fault::late_value:
-            case Fault::old_world: {
+            case Fault::old_world:
+            case Fault::unusable_value: {
                 const bool waits_for_hand = port_->late.needs_hand() || (recover_after == 0.0 && !is_let());
                 if (waits_for_hand) return ForceState::by_hand;
                 return must_engage_ || !energy_cap ? ForceState::returns_freed : ForceState::returns;

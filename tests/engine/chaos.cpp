@@ -155,9 +155,10 @@ struct Faulty {
     Out<double> number{"zero, then NaN"};
     Choice fault{{"nan", "throw"}, "what happens"};
     Param from{"0 s", "0 s", "1 h", "when it happens"};
+    Param until{"1 h", "0 s", "1 h", "when it is over"};
 
     void process(const Tick& tick) noexcept {
-        const bool fails = tick.time_seconds() >= from;
+        const bool fails = tick.time_seconds() >= from && tick.time_seconds() < until;
         if (fails && fault.is("throw")) throw_error();
         const double value = fails ? std::numeric_limits<double>::quiet_NaN() : 0.0;
         pose = Pose{Vec3(value), Quat(1.0, 0.0, 0.0, 0.0)};
@@ -165,7 +166,7 @@ struct Faulty {
         number = value;
     }
 };
-TACTUS_NODE(Faulty, pose, wrench, number, fault, from)
+TACTUS_NODE(Faulty, pose, wrench, number, fault, from, until)
 
 static std::vector<double> kept;
 

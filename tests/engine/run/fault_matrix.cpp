@@ -296,13 +296,8 @@ Cell load(const Place& place) {
     return {busy_patch(place, periods(place, 0.6), "120 ms").toml(), Demand::steady, "", {}, false};
 }
 Cell not_a_number(const Place& place) {
-    Cell cell{faulty_patch(place, "nan").toml(), fades_on_path(place), "", {}, false};
-    if (std::string_view(place.group) == "world") {
-        // The value arrives when its group of 50 Hz is due.
-        cell.demand = Demand::zero;
-        cell.bound_ms += 20.0;
-    }
-    return cell;
+    const bool is_world = std::string_view(place.group) == "world";
+    return {faulty_patch(place, "nan").toml(), is_world ? Demand::zero : fades_on_path(place), "", {}, false};
 }
 Cell cable(const Place& place) {
     const std::string_view group = place.group;

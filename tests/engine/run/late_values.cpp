@@ -149,10 +149,17 @@ TEST_CASE("the sources of a force are the other groups on its path, those behind
     for (const auto& group : engine.groups())
         for (const auto& of_device : group->scheduled.front()->sources)
             for (const build::ValueSource& source : of_device) found.emplace_back(source.name, source.fault);
+    // Groups first, then wires between groups, but for those to the ear.
+    REQUIRE(found.size() == 7);
+    std::sort(found.begin() + 3, found.end());
     CHECK(found == std::vector<std::pair<std::string, control::Fault>>{
                        {"node 'spring' of the group '500 Hz'", control::Fault::late_value},
                        {"node 'place' of the group '60 Hz'", control::Fault::old_world},
-                       {"node 'near' of the group '30 Hz'", control::Fault::old_world}});
+                       {"node 'near' of the group '30 Hz'", control::Fault::old_world},
+                       {"node 'hand' of the group '1 kHz'", control::Fault::unusable_value},
+                       {"node 'near' of the group '30 Hz'", control::Fault::unusable_value},
+                       {"node 'place' of the group '60 Hz'", control::Fault::unusable_value},
+                       {"node 'spring' of the group '500 Hz'", control::Fault::unusable_value}});
 }
 
 TEST_CASE("a group on the force path that hangs takes the force away, and the fault names its node",
@@ -199,5 +206,79 @@ TEST_CASE("a group of the world that hangs is noted after 3 periods, and takes t
         CHECK(felt.faults[0].reason == control::Fault::old_world);
         CHECK(hand.ms_to_zero(felt.stalled_ns) > 1000.0);
         CHECK(hand.ms_to_zero(felt.stalled_ns) < 1060.0);
+    }
+}
+
+namespace {
+
+/// A hand of 1 kHz that a spring of 500 Hz presses, a node 'bad' that fails from 0.5 s on, and `wires` from it.
+std::string patch_of_faulty(const std::string& rate, const std::string& wires, const std::string& more) {
+    return "wires = [\"hand.pose -> spring.device\", \"spring.wrench -> sum.in1\", " + wires +
+           "\"sum.out -> out.wrench\"]\n[devices.left]\ndriver = \"left\"\n[nodes]\n"
+           "hand = {type = \"device_input\", rate = \"1 kHz\"}\nout = {type = \"device_output\", rate = \"1 kHz\"}\n"
+           "sum = {type = \"wrench_sum\", rate = \"1 kHz\"}\nend = {type = \"still\", rate = \"1 kHz\"}\n"
+           "spring = {type = \"spring\", rate = \"500 Hz\", stiffness = \"1 N/mm\"}\n"
+           "bad = {type = \"faulty\", rate = \"" +
+           rate + "\", from = \"0.5 s\"" + more;
+}
+
+}  // namespace
+
+TEST_CASE("a value that is not finite takes the force away when it is computed, at every rate of its group",
+          "[virtual][slow]") {
+    struct Wrong {
+        std::string rate, wires, more = "}\n";
+        bool is_force = true;  // it reaches the force
+    };
+    std::vector<Wrong> all{// A parameter keeps its last value.
+                           {"10 Hz", R"("bad.number -> spring.damping", "end.pose -> spring.object", )", "}\n", false},
+                           // No force depends on it.
+                           {"10 Hz", R"("bad.wrench -> ear.in", "end.pose -> spring.object", )",
+                            "}\near = {type = \"probe\", rate = \"20 Hz\"}\n", false},
+                           // The way to the force leads over another slow group.
+                           {"20 Hz", R"("bad.pose -> far.in", "far.out -> spring.object", )",
+                            "}\nfar = {type = \"inverse\", rate = \"10 Hz\"}\n"}};
+    for (const char* rate : {"4 Hz", "50 Hz", "250 Hz", "3 kHz"})
+        for (const char* wires :
+             {R"("bad.pose -> spring.object", )", R"("bad.wrench -> sum.in2", "end.pose -> spring.object", )"})
+            all.push_back({rate, wires});
+    for (const Wrong& wrong : all) {
+        CAPTURE(wrong.rate, wrong.wires);
+        const VirtualClock clock;
+        WatchedHand& hand = watched_hand("left");
+        const FeltStall felt = run_stalled(patch_of_faulty(wrong.rate, wrong.wires, wrong.more), 0.9, hand);
+        if (!wrong.is_force) {
+            CHECK(felt.faults.empty());
+            CHECK(hand.force_at(felt.stalled_ns + 300'000'000) > 1.0);
+            continue;
+        }
+        CHECK(hand.force_at(felt.stalled_ns - 1'000'000) > 1.0);
+        CHECK(hand.ms_to_zero(felt.stalled_ns) <= 13.0);
+        REQUIRE_FALSE(felt.faults.empty());
+        if (wrong.rate == "3 kHz") continue;  // it may have arrived in the same tick
+        CHECK(felt.faults.front().reason == control::Fault::unusable_value);
+        CHECK(felt.faults.front().text().find("'bad' of the group '" + wrong.rate + "'") != std::string::npos);
+    }
+}
+
+TEST_CASE("a value that was not finite and reached no force takes it away for a while, one that did for good",
+          "[virtual][slow]") {
+    for (const bool reaches : {false, true}) {
+        CAPTURE(reaches);
+        const VirtualClock clock;
+        WatchedHand& hand = watched_hand("left");
+        // A dial leaves out a frame that is none.
+        const FeltStall felt = run_stalled(
+            reaches ? patch_of_faulty("50 Hz", R"("bad.pose -> spring.object", )", ", until = \"0.54 s\"}\n")
+                    : patch_of_faulty("50 Hz",
+                                      R"("hand.pose -> dial.pose", "bad.pose -> dial.frame",
+                                         "dial.wrench -> sum.in2", "end.pose -> spring.object", )",
+                                      ", until = \"0.54 s\"}\ndial = {type = \"dial\", rate = \"1 kHz\"}\n"),
+            2.5, hand);
+        CHECK(hand.force_at(felt.stalled_ns + 20'000'000) == 0.0);
+        CHECK(hand.force_at(felt.stalled_ns + 900'000'000) == 0.0);
+        CHECK((hand.force_at(felt.stalled_ns + 1'900'000'000) > 1.0) == !reaches);
+        CHECK(felt.faults.back().reason == (reaches ? control::Fault::not_finite : control::Fault::unusable_value));
+        CHECK(felt.faults.size() == (reaches ? 2 : 1));
     }
 }
