@@ -157,6 +157,29 @@ std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSl
     return sources;
 }
 
+Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot) {
+    const std::vector<compile::Dependence> dependence = dependence_of(generation, slot);
+    const compile::Plan& plan = generation.plan;
+    std::vector<Flicks> of_group(plan.groups.size());
+    Flicks warm_up = 0;
+    for (const compile::PlanWire& wire : plan.wires) {
+        if (wire.from_node < 0 || dependence[static_cast<std::size_t>(wire.to_node)] == compile::Dependence::none)
+            continue;
+        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        const ValueType& type = *from.outputs[static_cast<std::size_t>(wire.from_output)].port->type;
+        if (type.version || &type == &value::event) continue;
+        const auto group = static_cast<std::size_t>(from.group);
+        const bool is_within = plan.nodes[static_cast<std::size_t>(wire.to_node)].group == from.group;
+        // Several delays, or groups, may lie one behind the other.
+        if (is_within) warm_up += wire.delay * plan.groups[group].period;
+        else
+            of_group[group] =
+                std::max(of_group[group], plan.groups[group].period + compile::wire_latency(plan.groups[group], wire));
+    }
+    for (const Flicks one : of_group) warm_up += one;
+    return warm_up;
+}
+
 std::vector<bool> nodes_of_forces(const Generation& generation) {
     return nodes_before(generation, [](const DeviceSlot& slot) { return slot.port.info.fingers == 0; });
 }

@@ -18,6 +18,11 @@ std::vector<compile::Dependence> dependence_of(const Generation& generation, con
 /// to the force, one source for each link: they may bring no value that is not finite.
 std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSlot& slot);
 
+/// From the first activation of all groups until what they computed has reached the force on a device. Before, wires from
+/// other groups and delayed wires bring values that no node has computed: a wrench of zero from a group in which the hand is
+/// deep inside of a body. Snapshots do not count: `prepare` has set them.
+Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot);
+
 /// Nodes from which values reach a force on a hand, in any group, in the order of generation.nodes. Motors of grippers do
 /// not count: their controllers limit how fast an object changes.
 std::vector<bool> nodes_of_forces(const Generation& generation);

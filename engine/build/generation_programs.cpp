@@ -169,16 +169,21 @@ void GenerationBuilder::make_programs() {
         assign_devices(i);
     }
     for (const auto& program : made_->programs)
-        for (const DeviceSlot* slot : program->driven) program->sources.push_back(sources_of(*made_, *slot));
+        for (const DeviceSlot* slot : program->driven) {
+            program->sources.push_back(sources_of(*made_, *slot));
+            program->warm_ups.push_back(warm_up_of(*made_, *slot));
+        }
     for (const auto& program : made_->programs)
-        for (const DeviceSlot* slot : program->driven)
-            made_->force_paths[slot] = hash_of_force_path(*made_, *slot);
+        for (const DeviceSlot* slot : program->driven) made_->force_paths[slot] = hash_of_force_path(*made_, *slot);
+    for (const auto& program : made_->programs) program->is_new_path.assign(program->driven.size(), !before_);
     if (!before_) return;
     const std::vector<const DeviceSlot*> changed = changed_forces(*before_, *made_);
+    for (const auto& program : made_->programs)
+        for (std::size_t i = 0; i < program->driven.size(); ++i)
+            program->is_new_path[i] = std::ranges::find(changed, program->driven[i]) != changed.end();
     for (std::size_t g = 0; g < made_->groups.size(); ++g)
-        made_->programs[g]->changes_force = std::ranges::any_of(changed, [&](const DeviceSlot* slot) {
-            return slot->group == made_->groups[g]->index;
-        });
+        made_->programs[g]->changes_force = std::ranges::any_of(
+            changed, [&](const DeviceSlot* slot) { return slot->group == made_->groups[g]->index; });
 }
 
 void GenerationBuilder::make_ramps() {

@@ -114,6 +114,7 @@ struct DeviceSlot {
     Flicks period = 0;  ///< of that group
     io::DeviceGuard guard;  ///< live runs
     Wrench committed;  ///< of the last tick
+    Flicks settled = 0;  ///< logical time from which on values on the force path are computed; forces are held off before
     int overdue = -1;  ///< of the program's sources for it, the one whose values cannot be used now; −1: none
 };
 
@@ -175,6 +176,8 @@ struct GroupProgram {
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
     std::vector<std::vector<ValueSource>> sources;  ///< of each of them; those of force first, wires last
+    std::vector<Flicks> warm_ups;  ///< of each of them, as build::warm_up_of
+    std::vector<bool> is_new_path;  ///< of each of them: its force path is not that of the program before
     std::vector<io::SoundHeard*> heard;
     std::vector<PublishedSnapshot> snapshots;
     // What to do when taking over:

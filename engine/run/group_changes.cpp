@@ -9,15 +9,13 @@
 
 namespace tactus::run {
 
-void GroupRuntime::hold_off() noexcept {
-    for (build::DeviceSlot* slot : program_->driven) slot->port.hold_off = fades_for_plan_ || is_paused_;
-}
-
 void GroupRuntime::apply_pause() noexcept {
     const bool wanted = decisions_->holds_off(next_, is_paused_);
     if (wanted == is_paused_) return;
     is_paused_ = wanted;
-    hold_off();
+    // The hand may have moved meanwhile: what was computed before the pause is not what it presses against.
+    for (std::size_t i = 0; !is_paused_ && i < program_->driven.size(); ++i)
+        program_->driven[i]->settled = next_ * plan->period + program_->warm_ups[i];
 }
 
 void GroupRuntime::rest() noexcept {
@@ -29,7 +27,6 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     const std::int64_t ramp_length = program_ ? decisions_->ramp_length(next_) : 0;
     if (program_) {
         fades_for_plan_ = has_let_go_ = false;
-        hold_off();
         program_->ran = ran_;
         for (build::DeviceSlot* slot : program_->driven) slot->guard.set_driven(false);
         for (build::PublishedOutput& output : next.published) {
@@ -54,12 +51,13 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     for (Link* link : next.ended) link->abandon();
     for (Link* link : next.new_inputs) link->take_over();
     for (Link* link : next.new_outputs) link->begin_at(next_);
-    for (build::DeviceSlot* slot : next.driven) {
+    for (std::size_t i = 0; i < next.driven.size(); ++i) {
+        build::DeviceSlot* const slot = next.driven[i];
         slot->guard.set_driven(true);
         slot->overdue = -1;  // of the sources of the program before
+        if (next.is_new_path[i]) slot->settled = next_ * plan->period + next.warm_ups[i];
     }
     program_ = &next;
-    if (is_paused_) hold_off();
     plan_number_.store(next.plan_number, std::memory_order_release);
 }
 
@@ -114,10 +112,7 @@ bool GroupRuntime::switch_if_due() noexcept {
         upcoming_ = nullptr;
         return true;
     }
-    if (program_ && !fades_for_plan_ && decisions_->fades_for(*upcoming_, next_)) {
-        fades_for_plan_ = true;
-        hold_off();
-    }
+    if (program_ && !fades_for_plan_ && decisions_->fades_for(*upcoming_, next_)) fades_for_plan_ = true;
     return false;
 }
 

@@ -74,6 +74,7 @@ void GroupRuntime::acquire(int frames) noexcept {
 void GroupRuntime::check_sources() noexcept {
     for (std::size_t i = 0; i < program_->driven.size(); ++i) {
         build::DeviceSlot& slot = *program_->driven[i];
+        slot.port.hold_off = fades_for_plan_ || is_paused_ || now < slot.settled;
         const std::vector<build::ValueSource>& sources = program_->sources[i];
         slot.overdue = decisions_->overdue(slot, sources, next_);
         slot.port.overdue =

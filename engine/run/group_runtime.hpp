@@ -122,7 +122,6 @@ public:
 
 private:
     int cut(int frames) const noexcept;
-    void hold_off() noexcept;
     void apply_pause() noexcept;
     /// The hands that the upcoming program reaches are without force, here and in all groups.
     bool is_let_go() noexcept;
@@ -134,7 +133,8 @@ private:
     /// Tells nodes which of their snapshots are still looked at.
     void note_readers(int frames) noexcept;
     void acquire(int frames) noexcept;
-    /// Finds for each device whose force it sends whether a value on that force's path is overdue.
+    /// Finds for each device whose force it sends whether forces are held off, and whether a value on the force's path is
+    /// overdue.
     void check_sources() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.

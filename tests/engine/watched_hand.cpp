@@ -54,7 +54,7 @@ DeviceSample WatchedHand::acquire(double elapsed_s) {
     if (blocks == Blocks::in_acquire) block();
     logical_s = logical_s + elapsed_s;
     DeviceSample sample;
-    sample.pose.position.z = logical_s < 0.02 ? 0.0 : -depth;
+    sample.pose.position.z = logical_s < rest ? 0.0 : -depth;
     ++count_;
     if (!is_stale) counter_ = count_;
     sample.counter = counter_;

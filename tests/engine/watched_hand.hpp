@@ -14,7 +14,7 @@
 
 namespace tactus::test {
 
-/// A hand that rests for 20 ms and then presses `depth` deep. Made by `watched_hand`, which never destroys it: a thread
+/// A hand that rests for `rest` and then presses `depth` deep. Made by `watched_hand`, which never destroys it: a thread
 /// that is blocked in its driver may come back after the run.
 struct WatchedHand {
     struct Given {
@@ -25,6 +25,7 @@ struct WatchedHand {
     enum class Blocks { never, in_acquire, in_commit, in_commit_of_the_guard };
 
     double depth = 2e-3;  ///< m
+    double rest = 0.1;  ///< s
     std::atomic<Blocks> blocks{Blocks::never};
     std::atomic<bool> is_blocked{false};
     std::atomic<std::int64_t> blocked_ns{0};  ///< since when

@@ -60,15 +60,15 @@ struct FeltStall {
     std::vector<io::DeviceFault> faults;
 };
 
-/// A live run of `seconds`; its log repeats it to the bit.
-FeltStall run_stalled(const std::string& toml, double seconds, WatchedHand& hand) {
+/// A live run of `seconds`, in which something happens `at` a time; its log repeats it to the bit.
+FeltStall run_stalled(const std::string& toml, double seconds, WatchedHand& hand, double at = 0.5) {
     FeltStall felt;
     const auto acquire = hand.performance.acquire;
     std::optional<DeviceSample> first;
     hand.performance.acquire = [&](std::int64_t count, double elapsed, const Wrench& force) {
         const DeviceSample sample = acquire(count, elapsed, force);
         if (!first) first = sample;
-        if (felt.stalled_ns == 0 && hand.logical_s >= 0.5) felt.stalled_ns = steady_now();
+        if (felt.stalled_ns == 0 && hand.logical_s >= at) felt.stalled_ns = steady_now();
         return sample;
     };
     const auto log = scratch("late-values");
@@ -211,7 +211,7 @@ TEST_CASE("a group of the world that hangs is noted after 3 periods, and takes t
 
 namespace {
 
-/// A hand of 1 kHz that a spring of 500 Hz presses, a node 'bad' that fails from 0.5 s on, and `wires` from it.
+/// A hand of 1 kHz that a spring of 500 Hz presses, a node 'bad' that fails from 1.5 s on, and `wires` from it.
 std::string patch_of_faulty(const std::string& rate, const std::string& wires, const std::string& more) {
     return "wires = [\"hand.pose -> spring.device\", \"spring.wrench -> sum.in1\", " + wires +
            "\"sum.out -> out.wrench\"]\n[devices.left]\ndriver = \"left\"\n[nodes]\n"
@@ -219,7 +219,7 @@ std::string patch_of_faulty(const std::string& rate, const std::string& wires, c
            "sum = {type = \"wrench_sum\", rate = \"1 kHz\"}\nend = {type = \"still\", rate = \"1 kHz\"}\n"
            "spring = {type = \"spring\", rate = \"500 Hz\", stiffness = \"1 N/mm\"}\n"
            "bad = {type = \"faulty\", rate = \"" +
-           rate + "\", from = \"0.5 s\"" + more;
+           rate + "\", from = \"1.5 s\"" + more;
 }
 
 }  // namespace
@@ -246,7 +246,8 @@ TEST_CASE("a value that is not finite takes the force away when it is computed, 
         CAPTURE(wrong.rate, wrong.wires);
         const VirtualClock clock;
         WatchedHand& hand = watched_hand("left");
-        const FeltStall felt = run_stalled(patch_of_faulty(wrong.rate, wrong.wires, wrong.more), 0.9, hand);
+        hand.rest = 1.0;  // values of 4 Hz need half a second
+        const FeltStall felt = run_stalled(patch_of_faulty(wrong.rate, wrong.wires, wrong.more), 1.9, hand, 1.5);
         if (!wrong.is_force) {
             CHECK(felt.faults.empty());
             CHECK(hand.force_at(felt.stalled_ns + 300'000'000) > 1.0);
@@ -269,12 +270,12 @@ TEST_CASE("a value that was not finite and reached no force takes it away for a 
         WatchedHand& hand = watched_hand("left");
         // A dial leaves out a frame that is none.
         const FeltStall felt = run_stalled(
-            reaches ? patch_of_faulty("50 Hz", R"("bad.pose -> spring.object", )", ", until = \"0.54 s\"}\n")
+            reaches ? patch_of_faulty("50 Hz", R"("bad.pose -> spring.object", )", ", until = \"1.54 s\"}\n")
                     : patch_of_faulty("50 Hz",
                                       R"("hand.pose -> dial.pose", "bad.pose -> dial.frame",
                                          "dial.wrench -> sum.in2", "end.pose -> spring.object", )",
-                                      ", until = \"0.54 s\"}\ndial = {type = \"dial\", rate = \"1 kHz\"}\n"),
-            2.5, hand);
+                                      ", until = \"1.54 s\"}\ndial = {type = \"dial\", rate = \"1 kHz\"}\n"),
+            3.5, hand, 1.5);
         CHECK(hand.force_at(felt.stalled_ns + 20'000'000) == 0.0);
         CHECK(hand.force_at(felt.stalled_ns + 900'000'000) == 0.0);
         CHECK((hand.force_at(felt.stalled_ns + 1'900'000'000) > 1.0) == !reaches);
