@@ -19,19 +19,13 @@ void put(const Vec3& v, double (&into)[3]) noexcept {
 
 Vec3 get(const double (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
 
-/// At most `most` long. A limit of zero lets nothing pass.
-Vec3 shorten(const Vec3& v, double most) noexcept {
-    const double length = glm::length(v);
-    return length > most ? v * (most / length) : v;
-}
-
 }  // namespace
 
 void Exchange::begin(const ForceLimits& limits, double noise, double angular_noise) noexcept {
     gate_ = {};
     gate_.fade_ns = force_fade_ns;
     gate_.is_felt = limits.is_felt;
-    limits_ = limits;
+    gate_.bounds = {limits.force, limits.torque};
     noise_ = noise;
     angular_noise_ = angular_noise;
     windowed_ns_ = 0;
@@ -100,9 +94,7 @@ Wrench Exchange::force() noexcept {
     const std::int64_t now = now_();
     force_.read(committed_, commit_number_);
     gate_.limit_ns = oldest_ns_.load(std::memory_order_relaxed);
-    const Wrench given = gate_.give(committed_, commit_number_, now);
-    if (!is_finite(given)) return {};
-    return {shorten(given.force, limits_.force), shorten(given.torque, limits_.torque)};
+    return gate_.give(committed_, commit_number_, now);
 }
 
 DeviceSample Exchange::newest() noexcept {

@@ -77,7 +77,6 @@ private:
     std::atomic<std::int64_t> published_{0}, oldest_ns_{oldest_force_ns};
     // The device's thread.
     hosted::ForceGate gate_;
-    ForceLimits limits_;
     hosted::ForceRecord committed_;
     std::uint64_t commit_number_ = 0;
     control::AdaptiveWindow speed_, spin_;

@@ -91,8 +91,7 @@ void DriverLoop::open() {
     options.finish();
     if (const auto* const pulled = dynamic_cast<const haptic::PulledDevice*>(device_.get())) pull_ = pulled->pull();
     const DeviceInfo& info = device_->info();
-    gate_.max_force = info.max_force;
-    gate_.max_torque = info.max_torque;
+    gate_.bounds = control::stated_bounds(info.max_force, info.max_torque);
     gate_.is_felt = !info.without_motors;
     fingers_ = info.fingers;
     block_.info = pack(info);
@@ -180,7 +179,7 @@ void DriverLoop::fade() noexcept {
     const std::int64_t begin = steady_ns();
     for (;;) {
         const std::int64_t now = steady_ns();
-        const double left = 1.0 - static_cast<double>(now - begin) / static_cast<double>(gate_.fade_ns);
+        const double left = control::fade_left(static_cast<double>(now - begin), static_cast<double>(gate_.fade_ns));
         if (left <= 0.0 || !is_finite(from)) break;
         device_->commit(from * left);
         sleep_until(now + step_ns);

@@ -3,18 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
-
 namespace tactus::hosted {
-
-namespace {
-
-Vec3 shorten(const Vec3& v, double length) noexcept {
-    const double excess = length > 0.0 ? glm::length(v) / length : 0.0;
-    return excess > 1.0 ? v / excess : v;
-}
-
-}  // namespace
 
 void ForceGate::close(std::int64_t fade_from_ns) noexcept {
     if (passes_) {
@@ -32,7 +21,7 @@ Wrench ForceGate::give(const ForceRecord& newest, std::uint64_t number, std::int
     const bool is_whole = is_finite(wanted);
     if (!is_felt) {
         passes_ = true;
-        return is_whole ? Wrench{shorten(wanted.force, max_force), shorten(wanted.torque, max_torque)} : Wrench{};
+        return bounds.clamp(wanted);
     }
     if (!is_young(newest.committed_ns, now_ns, limit_ns)) {
         // The age counts, not when it was noticed: after a suspend nothing is left to fade.
@@ -48,11 +37,10 @@ Wrench ForceGate::give(const ForceRecord& newest, std::uint64_t number, std::int
         if (passes_) was_lost_ = false;
     }
     if (passes_) {
-        last_ = {shorten(wanted.force, max_force), shorten(wanted.torque, max_torque)};
+        last_ = bounds.clamp(wanted);
         return last_;
     }
-    const double faded = static_cast<double>(now_ns - fade_from_ns_) / static_cast<double>(fade_ns);
-    return last_ * std::clamp(1.0 - faded, 0.0, 1.0);
+    return last_ * control::fade_left(static_cast<double>(now_ns - fade_from_ns_), static_cast<double>(fade_ns));
 }
 
 }  // namespace tactus::hosted

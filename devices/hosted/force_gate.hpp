@@ -3,6 +3,7 @@
 #pragma once
 
 #include "devices/hosted/block.hpp"
+#include "dsp/control/force_bounds.hpp"
 #include "dsp/core/types.hpp"
 
 #include <cstdint>
@@ -17,7 +18,7 @@ public:
     std::int64_t fade_ns = 5'000'000;  ///< from there to zero
     double small_force = 0.5, small_torque = 0.05;  ///< N, N·m
     int small_commits = 3;
-    double max_force = 0.0, max_torque = 0.0;  ///< of the device, N, N·m; 0: it states none
+    control::ForceBounds bounds;  ///< of the device
     bool is_felt = true;  ///< false: the device has no motors, and every force passes
 
     /// The force for the device now. `number` is that of Seqlock::read. Real-time; allocates nothing.

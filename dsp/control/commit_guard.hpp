@@ -2,6 +2,7 @@
 // Watchdog of a device: another thread takes over the output when the tick's thread stops committing forces.
 #pragma once
 
+#include "dsp/control/force_bounds.hpp"
 #include "dsp/core/types.hpp"
 
 #include <atomic>
@@ -48,9 +49,7 @@ public:
             }
             taken_ns_ = now_ns;
         }
-        const std::int64_t age = now_ns - taken_ns_;
-        const double left = age < fade_ns ? 1.0 - static_cast<double>(age) / static_cast<double>(fade_ns) : 0.0;
-        out = last_ * left;
+        out = last_ * fade_left(static_cast<double>(now_ns - taken_ns_), static_cast<double>(fade_ns));
         return true;
     }
     /// Returns the device to the tick's thread. Watchdog thread, on request of the user; wait-free.

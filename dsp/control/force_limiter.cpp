@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/force_limiter.hpp"
 
+#include "dsp/control/force_bounds.hpp"
+
 #include <algorithm>
 
 namespace tactus::control {
-namespace {
-
-/// `v` shortened to at most `length`. Scaled by its largest component first: the square of 1e200 N would overflow.
-Vec3 shorten(const Vec3& v, double length) noexcept {
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    if (largest == 0.0) return v;
-    const Vec3 unit = v / largest;
-    const double excess = glm::length(unit) * largest / length;
-    return excess > 1.0 ? unit * (length / glm::length(unit)) : v;
-}
-
-}  // namespace
-
 const char* describe(Fault fault) noexcept {
     switch (fault) {
         case Fault::none: return "no fault";
@@ -123,9 +112,7 @@ void ForceLimiter::watch_input(std::int64_t counter, bool valid) noexcept {
 
 Wrench ForceLimiter::fade(double elapsed_s) noexcept {
     faded_s_ += elapsed_s > 0.0 ? elapsed_s : period_s_;
-    // The margin allows for rounding: ten ticks of 1 ms can sum to just under 10 ms.
-    const double left = faded_s_ < limits_.fade_s * (1.0 - 1e-9) ? 1.0 - faded_s_ / limits_.fade_s : 0.0;
-    return fade_from_ * left;
+    return fade_from_ * fade_left(faded_s_, limits_.fade_s);
 }
 
 double ForceLimiter::engagement(const Wrench& raw, double elapsed_s) noexcept {
@@ -148,7 +135,7 @@ Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, d
     if (fault_ != Fault::none || held_off_) return output_ = fade(elapsed_s);
 
     const double gain = engagement(raw, elapsed_s);
-    const Wrench wanted{shorten(raw.force, limits_.max_force) * gain, shorten(raw.torque, limits_.max_torque) * gain};
+    const Wrench wanted = ForceBounds{limits_.max_force, limits_.max_torque}.clamp(raw) * gain;
     output_.force += shorten(wanted.force - output_.force, limits_.force_slew * period_s_);
     output_.torque += shorten(wanted.torque - output_.torque, limits_.torque_slew * period_s_);
     return output_;

@@ -3,8 +3,6 @@
 
 #include "dsp/core/clock.hpp"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 
 namespace tactus::io {
@@ -12,11 +10,6 @@ namespace tactus::io {
 namespace {
 
 bool is_none(const Wrench& w) noexcept { return w.force == Vec3(0.0) && w.torque == Vec3(0.0); }
-
-Vec3 shorten(const Vec3& v, double length) noexcept {
-    const double excess = length > 0.0 ? glm::length(v) / length : 0.0;
-    return excess > 1.0 ? v / excess : v;
-}
 
 }  // namespace
 
@@ -26,8 +19,7 @@ std::string DeviceFault::text() const {
 }
 
 Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept {
-    if (!is_finite(wanted)) return {};
-    return {shorten(wanted.force, device.max_force), shorten(wanted.torque, device.max_torque)};
+    return control::stated_bounds(device.max_force, device.max_torque).clamp(wanted);
 }
 
 void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept {

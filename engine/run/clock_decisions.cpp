@@ -55,7 +55,7 @@ LinkReading OfflineDecisions::read(const Link& link, const GroupRuntime& produce
 }
 
 void OfflineDecisions::commit(build::DeviceSlot& slot) noexcept {
-    slot.device->commit(io::clamp_to_device(slot.port.wrench, slot.port.info));
+    slot.device->commit(slot.port.wrench);
     if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);
 }
 

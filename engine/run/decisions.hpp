@@ -122,7 +122,7 @@ public:
                              int frames) noexcept = 0;
     /// What the call gives is not published on `link`.
     virtual bool drops(const Link& link, std::int64_t tick, int frames) noexcept;
-    /// Gives the device the force and motor speeds of its port.
+    /// Gives the device the force, which is within its bounds, and the motor speeds of its port.
     virtual void commit(build::DeviceSlot& slot) noexcept = 0;
     /// Gives the device no force, through its guard.
     void let_rest(build::DeviceSlot& slot) noexcept;

@@ -176,8 +176,11 @@ int GroupRuntime::finish_call() noexcept {
     }
     committing_ = n;
     double largest = 0.0;
-    for (const build::DeviceSlot* slot : program_->driven)
-        largest = std::max(largest, glm::length(io::clamp_to_device(slot->port.wrench, slot->port.info).force));
+    for (build::DeviceSlot* slot : program_->driven) {
+        // The node that wrote it reads here what the device was given.
+        slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
+        largest = std::max(largest, glm::length(slot->port.wrench.force));
+    }
     telemetry.note_force(largest);
     for (std::size_t i = 0; i < program_->driven.size(); ++i) {
         build::DeviceSlot* const slot = program_->driven[i];
@@ -185,8 +188,6 @@ int GroupRuntime::finish_call() noexcept {
         if (slot->overdue >= 0 && slot->port.fault == slot->port.overdue)
             source = program_->sources[i][static_cast<std::size_t>(slot->overdue)].name;
         slot->guard.note(slot->port.fault, slot->port.state, next_, glm::length(slot->committed.force), source);
-        // The node that wrote it reads here what the device was given.
-        slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
         slot->committed = slot->port.wrench;
         decisions_->commit(*slot);
         if (is_forsaken()) return 0;

@@ -117,8 +117,7 @@ TEST_CASE("a wrench that is not finite, or a stamp from the future, is no force"
 
 TEST_CASE("a device's process gives no more than its device bears") {
     Played played;
-    played.gate.max_force = 3.0;
-    played.gate.max_torque = 0.2;
+    played.gate.bounds = {3.0, 0.2};
     played.engage();
     CHECK(played.commit(4.0) == Approx(3.0));
     played.newest = pack(Wrench{{}, {0.0, 5.0, 0.0}}, played.now);
@@ -128,7 +127,7 @@ TEST_CASE("a device's process gives no more than its device bears") {
 TEST_CASE("every force of a device without motors passes, however old") {
     Played played;
     played.gate.is_felt = false;
-    played.gate.max_force = 20.0;
+    played.gate.bounds.force = 20.0;
     CHECK(played.commit(4.0) == Approx(4.0));
     CHECK(played.after(500 * ms) == Approx(4.0));
     CHECK_FALSE(played.gate.holds());
