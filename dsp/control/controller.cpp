@@ -13,20 +13,28 @@ constexpr int most_lowerings = 10;  // of a gain that is chosen here, by a fifth
 
 }  // namespace
 
+LoopModel loop_of(const ControllerSettings& settings) noexcept {
+    LoopModel loop = settings.loop;
+    loop.max_speed = settings.max_speed;
+    return loop;
+}
+
 /// The limit takes hundreds of eigenvalue estimates; it does not depend on the object's rest position or the gain.
 double AdmittanceControl::limit_for(const ControllerSettings& settings) const noexcept {
     LoopModel loop = settings.loop;
     ObjectSettings object = settings.object;
     loop.gain = settings_.loop.gain;
     object.rest = settings_.object.rest;
-    if (limit_ > 0.0 && loop == settings_.loop && object == settings_.object) return limit_;
-    return switched_gain_limit(settings.loop, settings.object);
+    if (limit_ > 0.0 && loop == settings_.loop && object == settings_.object &&
+        settings.max_speed == settings_.max_speed)
+        return limit_;
+    return switched_gain_limit(loop_of(settings), settings.object);
 }
 
 /// Between the gains that were simulated for the limit there may be one that does not settle.
 bool AdmittanceControl::settles_at(double gain, const ControllerSettings& settings) const noexcept {
     if (!settings.object.one_sided || settings.allow_unstable) return true;
-    LoopModel loop = settings.loop;
+    LoopModel loop = loop_of(settings);
     loop.gain = gain;
     return settles(loop, settings.object);
 }

@@ -25,6 +25,9 @@ struct ControllerSettings {
     bool operator==(const ControllerSettings&) const = default;
 };
 
+/// The loop as it is simulated: with the speed of the motor.
+LoopModel loop_of(const ControllerSettings& settings) noexcept;
+
 class AdmittanceControl {
 public:
     /// Takes new settings without a jump of the wanted position. False: they cannot be rendered, or the loop would be

@@ -22,6 +22,7 @@ struct LoopModel {
     double feed_forward_lag = 0.0;        ///< s, time constant of its smoothing
     bool is_wall = false;  ///< the object does not move; stiffness, damping and mass are ignored
     double stiffness = 1000.0, damping = 0.0, mass = 0.0;  ///< of the object: N/m, N·s/m, kg
+    double max_speed = 0.0;  ///< m/s of the motor; 0: no bound. Only a simulation uses it: a linear loop has none
 
     bool operator==(const LoopModel&) const = default;
 };

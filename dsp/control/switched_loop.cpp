@@ -17,7 +17,8 @@ namespace {
 struct HandMove {
     double from, to;
 };
-constexpr HandMove moves[] = {{-3.0, 3.0}, {-3.0, 0.5}, {-3.0, 0.05}, {3.0, -0.5}, {3.0, -0.05}, {-1.0, 0.0}};
+constexpr HandMove moves[] = {{-3.0, 3.0},  {-10.0, 10.0}, {-3.0, 2.0},  {-3.0, 0.5},
+                              {-3.0, 0.05}, {3.0, -0.5},   {3.0, -0.05}, {-1.0, 0.0}};
 constexpr double unit = 1e-3;  // m
 constexpr int window = 200, windows = 20;  // periods
 
@@ -45,7 +46,9 @@ bool settles_after(const HandMove& move, const LoopModel& model, const ObjectSet
     object.set(at_edge, model.period);
     object.place(move.from * unit);
     PositionLoop loop;
-    const PositionLoopSettings position{model.gain, model.feed_forward, model.feed_forward_lag, 1e9, 0.0, model.delay};
+    const double fastest = model.max_speed > 0.0 ? model.max_speed : 1e9;
+    const PositionLoopSettings position{model.gain, model.feed_forward, model.feed_forward_lag, fastest,
+                                        0.0,        model.delay};
     const int delay = std::clamp(model.delay, 0, 8);
     std::array<double, 9> under_way{};
     double x = move.from * unit, speed = 0.0, wanted = x;

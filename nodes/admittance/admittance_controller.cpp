@@ -15,7 +15,8 @@ namespace tactus::nodes {
 struct AdmittanceController {
     static constexpr auto about =
         "Admittance control: the measured force moves a virtual object, and a position loop makes the motor follow it. "
-        "Refuses settings with which the loop would be unstable. A one-sided object, which switches between two loops, is "
+        "Refuses settings with which the loop would be unstable. A one-sided object, which switches between two loops, "
+        "is "
         "simulated first.";
 
     In<double> force{"of the hand on the finger; positive closes the finger", "N"};
@@ -75,7 +76,7 @@ struct AdmittanceController {
         if (!wanted_settings.object.is_renderable())
             setup.fail("an object without stiffness, damping and mass has no force law; give a damping");
         if (!control_.set(wanted_settings)) {
-            const double limit = tactus::control::switched_gain_limit(wanted_settings.loop, wanted_settings.object);
+            const double limit = tactus::control::switched_gain_limit(loop_of(wanted_settings), wanted_settings.object);
             const double hand = hand_stiffness * 1e-3;
             if (!(limit > 0.0))
                 setup.fail(

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
 
 using namespace tactus;
 using control::ControllerSettings;
@@ -38,7 +41,8 @@ double left_over(const ControllerSettings& settings, control::AdmittanceControl&
         const double command = under_way[static_cast<std::size_t>(settings.loop.delay)];
         // The motor in 50 steps of a period.
         for (int i = 0; i < 50; ++i) {
-            const double h = period / 50.0, gained = settings.loop.motor_lag > 0.0 ? -std::expm1(-h / settings.loop.motor_lag) : 1.0;
+            const double h = period / 50.0,
+                         gained = settings.loop.motor_lag > 0.0 ? -std::expm1(-h / settings.loop.motor_lag) : 1.0;
             speed += gained * (command - speed);
             x += speed * h;
         }
@@ -77,7 +81,11 @@ TEST_CASE("a one-sided object with a mass is rendered with a gain at which a sti
 TEST_CASE("no accepted one-sided object oscillates at its edge") {
     const Random random{41};
     int judged = 0;
-    for (std::uint64_t i = 0; i < 40; ++i) {
+    std::vector<std::uint64_t> numbers(40);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    // Of the first 1600 those that a loop without a largest speed calls still: the motor saturates and they swing by 1.6 mm.
+    numbers.insert(numbers.end(), {492, 1191});
+    for (const std::uint64_t i : numbers) {
         const auto between = [&](std::uint64_t which, double low, double high) {
             return low * std::pow(high / low, random.uniform(16 * i + which));
         };
