@@ -85,11 +85,16 @@ Burr::Touch Burr::touch(const volume::BoneSnapshot& bone, const Vec3& lag, doubl
     return touch;
 }
 
-/// As far as bone allows; returns the density of the bone that stops it, 0: none.
-double Burr::follow(const volume::BoneSnapshot& bone, bool running) noexcept {
+/// As far as bone allows, in a tick in which the hand moved by `moved` m; returns the density of the bone that stops it, 0: none.
+double Burr::follow(const volume::BoneSnapshot& bone, bool running, double moved) noexcept {
     const Vec3& spacing = bone.layout().spacing;
     const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6}), ahead = 0.25 * voxel;
     double density = 0.0;
+    // The moves below end after some voxels: too few for a fast hand.
+    if (moved > voxel && is_way_free(bone, at_, target_, shape_.radius, ahead)) {
+        at_ = target_;
+        return 0.0;
+    }
     for (int move = 0; move < most_moves; ++move) {
         const Vec3 lag = target_ - at_;
         const double distance = glm::length(lag);
@@ -135,6 +140,7 @@ BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, const
     hold_.tick(drive.dt, drive.release || jumped, stuck_,
                [&] { return bone.value(pose.position) >= shape_.radius && shaft_.is_free(bone, pose); });
     last_ = pose;
+    const double moved = glm::length(pose.position - target_);
     target_ = pose.position;
     contact.state = hold_.state();
     if (hold_.state() == HoldState::engaged) {
@@ -143,7 +149,7 @@ BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, const
             fresh_ = true;
             shaft_.seat(pose);
         }
-        cut(drive, follow(bone, drive.running), law, contact);
+        cut(drive, follow(bone, drive.running, moved), law, contact);
         shaft_.follow(bone, pose, drive.running);
     } else if (!was_waiting) {
         at_ = target_ + (at_ - target_) * hold_.kept();

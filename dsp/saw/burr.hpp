@@ -50,7 +50,7 @@ private:
     struct Touch;
 
     Touch touch(const volume::BoneSnapshot& bone, const Vec3& lag, double ahead) const noexcept;
-    double follow(const volume::BoneSnapshot& bone, bool running) noexcept;
+    double follow(const volume::BoneSnapshot& bone, bool running, double moved) noexcept;
     void cut(const Drive& drive, double density, const CuttingLaw& law, BurrContact& into) noexcept;
 
     BurrShape shape_;

@@ -44,8 +44,8 @@ std::vector<BodyPoint> blade_body(const SawShape& shape, double stiffness) {
         const auto rows = static_cast<std::size_t>(std::ceil(std::max(-back - clear_of_teeth, 0.0) / spacing)) + 1;
         for (std::size_t row = 0; row < rows; ++row)
             for (std::size_t column = block; column < std::min(block + 3, columns); ++column) {
-                const double x = columns > 1 ? width * (static_cast<double>(column) / static_cast<double>(columns - 1) - 0.5)
-                                             : 0.0;
+                const double x =
+                    columns > 1 ? width * (static_cast<double>(column) / static_cast<double>(columns - 1) - 0.5) : 0.0;
                 const double front = std::max(back, -shape.behind(x) - clear_of_teeth);
                 const double share = rows > 1 ? static_cast<double>(row) / static_cast<double>(rows - 1) : 1.0;
                 add({x, front + (back - front) * share, 0.0}, radius);
@@ -58,7 +58,8 @@ std::vector<BodyPoint> shaft_body(double ball, double radius, double length) {
     std::vector<BodyPoint> points;
     const auto count = static_cast<std::size_t>(std::ceil(length / spacing));
     for (std::size_t n = 1; n <= count; ++n)
-        points.push_back({{0.0, -ball - length * static_cast<double>(n) / static_cast<double>(count) + radius, 0.0}, radius, 1.0});
+        points.push_back(
+            {{0.0, -ball - length * static_cast<double>(n) / static_cast<double>(count) + radius, 0.0}, radius, 1.0});
     return points;
 }
 
@@ -165,6 +166,12 @@ void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool r
             p.target = place(p.local);
             const double distance = glm::length(p.target - p.at);
             if (bone.value(p.at) - p.radius > distance) {
+                p.at = p.target;
+                continue;
+            }
+            // A slide ends after some voxels: too few for a fast hand.
+            if (glm::length(p.target - (from + before * p.local)) > voxel &&
+                is_way_free(bone, p.at, p.target, p.radius, 0.25 * voxel)) {
                 p.at = p.target;
                 continue;
             }

@@ -113,7 +113,9 @@ void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const 
     remember(drive);
     for (std::size_t n = 0; n < teeth_.size(); ++n) {
         Tooth& tooth = teeth_[n];
-        tooth.target = place(pose, n);
+        const Vec3 target = place(pose, n);
+        tooth.moved = glm::length(target - tooth.target);
+        tooth.target = target;
         const bool held = tooth.raw_square() > 0.0;
         if (held) tooth.lag = (goal(tooth) - tooth.at) * axes_;
         squares_[n] = held ? tooth.square() : 0.0;
@@ -191,6 +193,12 @@ void ToothRow::pursue(const Walk& walk, std::size_t n) noexcept {
     // Far from bone, or drawn back to where there is none.
     const bool far = walk.bone.value(tooth.at) > radius_ + distance + pitch_ + walk.front.ahead;
     if (far || (glm::dot(to - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(to) >= radius_)) {
+        tooth.at = to;
+        return;
+    }
+    // The moves below follow the axes one by one, and end after some voxels: too few for a fast hand.
+    if (tooth.moved > walk.voxel && is_way_free(walk.bone, tooth.at, to, radius_, walk.front.ahead) &&
+        !(walk.front.look(walk.bone, to, axes_[1], axes_[2], axes_[0] * pitch_, 0.02 * walk.voxel).density > 0.0)) {
         tooth.at = to;
         return;
     }
@@ -356,8 +364,8 @@ double ToothRow::squared_norm() noexcept {
 }
 
 /// How far a tooth advances along y in a tick. `passes`: cuts over a place in it.
-double ToothRow::advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm,
-                         double passes, double rendered) const noexcept {
+double ToothRow::advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double passes,
+                         double rendered) const noexcept {
     const double rest = tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
     const double scale = rendered * law.reference_density / (tooth.density[1] * bearing());
     const double left = left_after_cut(law, tooth.lag.y, passes, [&](double y) {
@@ -377,8 +385,9 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
     for (int round = 0; round < 2; ++round) {
         for (std::size_t n = 0; n < teeth_.size(); ++n) {
             const Tooth& tooth = teeth_[n];
-            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, passes, drive.rendered)
-                                                                 : 0.0;
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0
+                           ? advance(law, tooth, spring, norm, passes, drive.rendered)
+                           : 0.0;
             const double y = tooth.lag.y - cuts_[n];
             squares_[n] =
                 saturated_square(y * y + tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z);

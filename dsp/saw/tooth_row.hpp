@@ -22,6 +22,7 @@ namespace tactus::saw {
 struct Tooth {
     Vec3 at{0.0, 0.0, 0.0};  ///< where the bone holds it, in the bone's frame, m
     Vec3 target{0.0, 0.0, 0.0};  ///< where the blade is held
+    double moved = 0.0;  ///< m, by how far the hand moved the target in this tick
     double lifted = 0.0;  ///< m along −y: how far bone that other teeth bear on holds this one above its target
     Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, less `lifted`, m
     std::array<double, 3> density{};  ///< kg/m³ of the bone that stops it along x, y, z; 0: free
