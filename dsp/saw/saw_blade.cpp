@@ -11,7 +11,7 @@
 namespace tactus::saw {
 
 SawBlade::SawBlade(const SawShape& shape, double stiffness)
-    : shape_(shape), teeth_(shape, stiffness), body_(blade_body(shape, stiffness), stiffness) {
+    : shape_(shape), teeth_(shape, stiffness), body_(blade_body(shape, stiffness), stiffness, shape.kerf) {
     // Largest curvature of ½‖u‖₈²: as in contact::blade_contact, whose 44 teeth have 4.
     tooth_spring_ = stiffness / (4.0 * std::sqrt(std::sqrt(static_cast<double>(teeth_.teeth().size()) / 44.0)));
 }

@@ -28,7 +28,7 @@ std::vector<BodyPoint> blade_body(const SawShape& shape, double stiffness) {
     std::vector<BodyPoint> points;
     const auto add = [&](const Vec3& local, double radius) {
         const double blade = lateral_stiffness(shape, local);
-        points.push_back({local, radius, blade / (blade + stiffness)});
+        points.push_back({local, radius, radius, blade / (blade + stiffness)});
     };
     for (std::size_t n = 0; n < guides; ++n)
         for (const double side : {0.5, -0.5})
@@ -58,12 +58,15 @@ std::vector<BodyPoint> shaft_body(double ball, double radius, double length) {
     std::vector<BodyPoint> points;
     const auto count = static_cast<std::size_t>(std::ceil(length / spacing));
     for (std::size_t n = 1; n <= count; ++n)
-        points.push_back(
-            {{0.0, -ball - length * static_cast<double>(n) / static_cast<double>(count) + radius, 0.0}, radius, 1.0});
+        points.push_back({{0.0, -ball - length * static_cast<double>(n) / static_cast<double>(count) + radius, 0.0},
+                          radius,
+                          radius,
+                          1.0});
     return points;
 }
 
-ToolBody::ToolBody(std::vector<BodyPoint> points, double stiffness) : points_(std::move(points)) {
+ToolBody::ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf)
+    : points_(std::move(points)), kerf_(kerf) {
     squares_.reserve(points_.size());
     held_.reserve(points_.size());
     for (std::size_t first = 0; first < points_.size(); first += tile_balls) {
@@ -90,7 +93,19 @@ double ToolBody::square(const Vec3& lag, double bending) const noexcept {
     return glm::dot(lag, lag) - (1.0 - bending) * across * across;
 }
 
-bool ToolBody::is_free(const volume::BoneSnapshot& bone, const Pose& pose) const noexcept {
+/// Between the walls of a kerf the distance has the shape of a roof, whose ridge the interpolation between voxels cuts off by
+/// up to half a voxel: 0.17 mm of the 0.5 mm in the middle of a kerf of 1 mm in voxels of 0.33 mm. A ball as thick as the
+/// blade, 0.35 mm, stuck there.
+void ToolBody::fit_to(double voxel) noexcept {
+    if (!(kerf_ > 0.0) || voxel == voxel_) return;
+    voxel_ = voxel;
+    constexpr double cut_off = 0.52;  // voxels; the skin of a slide is in it
+    for (BodyPoint& p : points_) p.radius = std::min(p.full, std::max(0.5 * kerf_ - cut_off * voxel, 0.5 * p.full));
+}
+
+bool ToolBody::is_free(const volume::BoneSnapshot& bone, const Pose& pose) noexcept {
+    const Vec3& size = bone.layout().spacing;
+    fit_to(std::max({size.x, size.y, size.z, 1e-6}));
     for (const Tile& tile : tiles_) {
         if (bone.value(pose.apply(tile.centre)) > tile.reach) continue;
         for (std::size_t n = tile.first; n < tile.first + tile.count; ++n)
@@ -140,6 +155,7 @@ void ToolBody::release(const Pose& pose, double kept) noexcept {
 void ToolBody::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool running) noexcept {
     const Vec3& size = bone.layout().spacing;
     const double voxel = std::max({size.x, size.y, size.z, 1e-6});
+    fit_to(voxel);
     const Vec3 from = origin_;
     const Mat3 before = axes_;
     set_pose(pose);

@@ -16,7 +16,8 @@ struct SawShape;
 /// A ball of the body and the place where bone holds it.
 struct BodyPoint {
     Vec3 local{0.0, 0.0, 0.0};  ///< of its centre, tool frame, m
-    double radius = 0.0;  ///< m
+    double full = 0.0;  ///< m, radius
+    double radius = 0.0;  ///< m, in the voxels of the bone: small enough for a kerf in them
     double bending = 1.0;  ///< share of the stiffness across the tool, along z, that bending leaves
     Vec3 at{0.0, 0.0, 0.0}, target{0.0, 0.0, 0.0};  ///< bone's frame, m
 };
@@ -36,10 +37,11 @@ std::vector<BodyPoint> shaft_body(double ball, double radius, double length);
 class ToolBody {
 public:
     ToolBody() = default;
-    /// `stiffness`: N/m, upper bound of what the hand feels. Allocates.
-    ToolBody(std::vector<BodyPoint> points, double stiffness);
+    /// `stiffness`: N/m, upper bound of what the hand feels. `kerf`: m, the width that the tool cuts for itself; 0: its body
+    /// needs none. Allocates.
+    ToolBody(std::vector<BodyPoint> points, double stiffness, double kerf = 0.0);
 
-    bool is_free(const volume::BoneSnapshot& bone, const Pose& pose) const noexcept;
+    bool is_free(const volume::BoneSnapshot& bone, const Pose& pose) noexcept;
     /// Every ball rests where the tool has it.
     void seat(const Pose& pose) noexcept;
     void follow(const volume::BoneSnapshot& bone, const Pose& pose, bool running) noexcept;
@@ -71,6 +73,7 @@ private:
     Vec3 place(const Vec3& local) const noexcept { return origin_ + axes_ * local; }
     void set_pose(const Pose& pose) noexcept;
     double square(const Vec3& lag, double bending) const noexcept;
+    void fit_to(double voxel) noexcept;
     void bring_up(Tile& tile) noexcept;
     void slide(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel, bool running) const noexcept;
     void unhook(const volume::BoneSnapshot& bone, BodyPoint& p, double voxel) const noexcept;
@@ -79,7 +82,8 @@ private:
     std::vector<Tile> tiles_;
     std::vector<double> squares_;  // of the balls that bone holds
     std::vector<std::uint32_t> held_;  // which they are
-    double spring_ = 0.0, reach_ = 0.0;
+    double spring_ = 0.0, reach_ = 0.0, kerf_ = 0.0;
+    double voxel_ = 0.0;  // m, to which the balls are fitted
     Vec3 origin_{0.0, 0.0, 0.0};
     Mat3 axes_{1.0};
 };

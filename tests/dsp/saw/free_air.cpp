@@ -80,6 +80,7 @@ std::vector<Moved> tools() {
 
 }  // namespace
 
+// Costly: three tools at five speeds and three rates, past all kinds of edges.
 TEST_CASE("a tool has no force in the air at up to 10 m per s, at any rate") {
     const Random random{11};
     const auto bone = bone_block(middle_block);
