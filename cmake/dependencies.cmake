@@ -14,6 +14,7 @@ find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 find_package(ZLIB REQUIRED)
+find_package(BZip2 REQUIRED)
 pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
 pkg_check_modules(GLFW REQUIRED IMPORTED_TARGET glfw3)
@@ -21,13 +22,6 @@ pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(PORTAUDIO REQUIRED IMPORTED_TARGET portaudio-2.0)
 pkg_check_modules(JACK REQUIRED IMPORTED_TARGET jack)
 pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
-
-# Debian's teem has neither a CMake nor a pkg-config file.
-find_path(TEEM_INCLUDE teem/nrrd.h REQUIRED)
-find_library(TEEM_LIBRARY teem PATHS /usr/lib REQUIRED)
-add_library(tactus_teem INTERFACE)
-target_include_directories(tactus_teem SYSTEM INTERFACE ${TEEM_INCLUDE})
-target_link_libraries(tactus_teem INTERFACE ${TEEM_LIBRARY})
 
 # Debian's CMake files of GDCM also ask for its Python and VTK parts.
 find_path(GDCM_INCLUDE gdcmImageReader.h PATH_SUFFIXES gdcm-3.0 REQUIRED)

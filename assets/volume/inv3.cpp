@@ -157,7 +157,7 @@ public:
         if (found->size != count * type.bytes() || static_cast<double>(found->size) > file.most_bytes())
             throw Error(fmt::format("{}: cut short: its shape has {} voxels, but there are {} bytes", name, count,
                                     found->size));
-        stream_.emplace(std::vector{SampleStream::Piece{path, 0, found->at, count}}, type, false, true);
+        stream_.emplace(std::vector{SampleStream::Piece{path, 0, found->at, count}}, type, false, Packing::gzip);
     }
 
     void read(int k, std::span<float> values) override {

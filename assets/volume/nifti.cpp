@@ -213,7 +213,7 @@ public:
         const auto start = static_cast<std::uint64_t>(h.vox_offset);
         const bool packed = in_samples.is_packed();
         stream_.emplace(std::vector{SampleStream::Piece{samples, packed ? 0 : start, packed ? start : 0, count}}, type,
-                        fields.swapped, packed);
+                        fields.swapped, packed ? Packing::gzip : Packing::none);
         scaled_ = std::isfinite(h.slope) && h.slope != 0.0 && (h.slope != 1.0 || h.intercept != 0.0);
         slope_ = h.slope, intercept_ = h.intercept;
         integers_ = type.is_integer() && !scaled_;

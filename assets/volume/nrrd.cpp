@@ -7,8 +7,6 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 
-#include <teem/nrrd.h>
-
 #include <fmt/format.h>
 
 #include <glm/common.hpp>
@@ -16,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -28,79 +27,85 @@ namespace tactus::volume {
 
 namespace {
 
-using NrrdPointer = std::unique_ptr<Nrrd, Nrrd* (*)(Nrrd*)>;
-using IoPointer = std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)>;
-
-std::string teem_message() {
-    char* text = biffGetDone(NRRD);
-    std::string message = text ? text : "";
-    std::free(text);
-    while (!message.empty() && message.back() == '\n') message.pop_back();
-    return message.substr(message.rfind('\n') == std::string::npos ? 0 : message.rfind('\n') + 1);
-}
-
 // Total size of the data files of a header, bytes.
-double bytes_on_disk(const std::filesystem::path& path, const NrrdIoState& io) {
-    std::error_code failure;
+double bytes_on_disk(const std::filesystem::path& path, const NrrdHeader& header) {
     double sum = 0.0;
-    const auto add = [&](const std::filesystem::path& file) {
-        const auto size = std::filesystem::file_size(file, failure);
-        if (failure) throw Error(fmt::format("{}: its data file {} is missing", path.string(), file.string()));
-        sum += static_cast<double>(size);
-    };
-    if (io.dataFNFormat)
-        throw Error(fmt::format("{}: numbered data files are not supported; join them with 'unu'", path.string()));
-    if (io.dataFNArr && io.dataFNArr->len > 0)
-        for (unsigned n = 0; n < io.dataFNArr->len; ++n) add(path.parent_path() / io.dataFN[n]);
-    else add(path);
+    for (const std::filesystem::path& file : header.data) {
+        if (!std::filesystem::exists(file))
+            throw Error(fmt::format("{}: its data file {} is missing", path.string(), file.string()));
+        sum += static_cast<double>(file::require_file(file));
+    }
     return sum;
 }
 
 // Lower bound of file bytes per sample for an encoding; deflate compresses at most 1032 to 1.
-double least_bytes(const Nrrd& nrrd, const NrrdIoState& io) {
-    const double size = static_cast<double>(nrrdTypeSize[nrrd.type]);
-    if (io.encoding == nrrdEncodingGzip) return size / 1032.0;
-    if (io.encoding == nrrdEncodingRaw) return size;
-    if (io.encoding == nrrdEncodingAscii) return 1.5;
-    if (io.encoding == nrrdEncodingHex) return 2.0 * size;
-    return size / 10000.0;
+double least_bytes(const NrrdHeader& header) {
+    const double size = static_cast<double>(header.type.bytes());
+    switch (header.encoding) {
+        case NrrdEncoding::raw: return size;
+        case NrrdEncoding::gzip: return size / 1032.0;
+        case NrrdEncoding::bzip2: return size / 1e6;
+        case NrrdEncoding::text: return 1.5;
+        case NrrdEncoding::hex: return 2.0 * size;
+    }
+    return size;
 }
 
-// `first`: the first spatial axis; before it is the axis of the segmentation layers, if any.
-void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const std::string& file) {
-    const bool is_ras = nrrd.space == nrrdSpaceRightAnteriorSuperior;
-    if (!is_ras && nrrd.space != nrrdSpaceLeftPosteriorSuperior && nrrd.space != nrrdSpaceLeftAnteriorSuperior)
+// The three axes of space: those with a direction. Without a direction only axes of one sample are left out, and the
+// axis of the segmentation layers.
+struct Axes {
+    std::array<std::size_t, 3> space{};
+    std::size_t layers = 1;  // samples of the first axis, before those of space
+    bool has_single = false;  // an axis of one sample was left out
+};
+
+Axes axes_of(const NrrdHeader& header, bool has_segments, const std::string& file) {
+    const std::size_t dimension = header.sizes.size();
+    Axes axes;
+    std::vector<std::size_t> kept;
+    for (std::size_t n = 0; n < dimension; ++n) {
+        const bool is_direction = n < header.directions.size() && header.directions[n];
+        if (dimension > 3 && !is_direction && n == 0 && has_segments)
+            axes.layers = static_cast<std::size_t>(header.sizes[0]);
+        else kept.push_back(n);
+    }
+    for (const bool may_have_direction : {false, true})
+        for (std::size_t n = kept.size(); n-- > 0 && kept.size() > 3;) {
+            const bool is_direction = kept[n] < header.directions.size() && header.directions[kept[n]];
+            if (header.sizes[kept[n]] != 1 || (is_direction && !may_have_direction)) continue;
+            kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(n));
+            axes.has_single = true;
+        }
+    if (kept.size() != 3)
+        throw Error(fmt::format("{}: has {} axes; a CT volume must have 3 (extract one frame with 'unu slice')", file,
+                                dimension));
+    std::ranges::copy(kept, axes.space.begin());
+    return axes;
+}
+
+void read_geometry(const NrrdHeader& header, const Axes& axes, ScanVolume& volume, const std::string& file) {
+    const bool is_ras = header.space == "right-anterior-superior" || header.space == "ras";
+    const bool is_las = header.space == "left-anterior-superior" || header.space == "las";
+    if (!is_ras && !is_las && header.space != "left-posterior-superior" && header.space != "lps")
         throw Error(
             fmt::format("{}: no usable 'space' (the patient's directions are unknown); write "
                         "'space: left-posterior-superior', 'space directions' and 'space origin' into the header",
                         file));
-    for (unsigned n = 0; n < 3; ++n)
-        if (nrrd.spaceUnits[n] && *nrrd.spaceUnits[n] && std::string_view(nrrd.spaceUnits[n]) != "mm")
-            throw Error(
-                fmt::format("{}: space units '{}' are not mm; convert the header to mm", file, nrrd.spaceUnits[n]));
+    for (const std::string& unit : header.space_units)
+        if (!unit.empty() && unit != "mm")
+            throw Error(fmt::format("{}: space units '{}' are not mm; convert the header to mm", file, unit));
+    const Vec3 to_m(1e-3, is_las ? -1e-3 : 1e-3, 1e-3);
     SampleMap<Frame::lps> map;
-    for (unsigned n = 0; n < 3; ++n) {
-        const double flip = nrrd.space == nrrdSpaceLeftAnteriorSuperior && n == 1 ? -1e-3 : 1e-3;
-        const auto row = static_cast<int>(n);
-        for (unsigned axis = 0; axis < 3; ++axis)
-            map.step[static_cast<int>(axis)][row] = nrrd.axis[first + axis].spaceDirection[n] * flip;
-        map.origin[row] = nrrd.spaceOrigin[n] * flip;
+    for (int n = 0; n < 3; ++n) {
+        const std::size_t axis = axes.space[static_cast<std::size_t>(n)];
+        map.step[n] = axis < header.directions.size() ? header.directions[axis].value_or(Vec3(0.0)) * to_m : Vec3(0.0);
     }
-    if (!is_finite(map.origin)) {
-        map.origin = Vec3(0.0);
-        volume.notes.push_back("the file states no space origin: its first voxel was placed at 0");
-    }
+    map.origin = header.origin.value_or(Vec3(0.0)) * to_m;
+    if (!header.origin) volume.notes.push_back("the file states no space origin: its first voxel was placed at 0");
     volume.map = is_ras ? to_lps(SampleMap<Frame::ras>{map.step, map.origin}) : map;
     volume.file_frame = is_ras ? Frame::ras : Frame::lps;
-    volume.unit_stated = nrrd.spaceUnits[0] && *nrrd.spaceUnits[0];
+    volume.unit_stated = !header.space_units.empty() && !header.space_units.front().empty();
     check_map(volume.map, file);
-}
-
-std::string value_of(const Nrrd& nrrd, const std::string& key) {
-    char* text = nrrdKeyValueGet(&nrrd, key.c_str());
-    std::string value = text ? text : "";
-    std::free(text);
-    return value;
 }
 
 struct Layered {
@@ -110,167 +115,182 @@ struct Layered {
 };
 
 // Segments as 3D Slicer describes them in a .seg.nrrd: Segment0_Name, Segment0_LabelValue, Segment0_Color, ...
-std::vector<Layered> segments_of(const Nrrd& nrrd) {
+std::vector<Layered> segments_of(const NrrdHeader& header) {
     std::vector<Layered> found;
     for (int n = 0; n < 100000; ++n) {
-        const std::string prefix = fmt::format("Segment{}_", n), label = value_of(nrrd, prefix + "LabelValue");
-        if (label.empty() && value_of(nrrd, prefix + "ID").empty()) break;
+        const std::string prefix = fmt::format("Segment{}_", n), label = header.value(prefix + "LabelValue");
+        if (label.empty() && header.value(prefix + "ID").empty()) break;
         Layered& entry = found.emplace_back();
         entry.segment.label = label.empty() ? n + 1 : std::atoi(label.c_str());
-        entry.layer = std::atoi(value_of(nrrd, prefix + "Layer").c_str());
-        entry.segment.name = value_of(nrrd, prefix + "Name");
+        entry.layer = std::atoi(header.value(prefix + "Layer").c_str());
+        entry.segment.name = header.value(prefix + "Name");
         Vec3 c;
-        if (std::sscanf(value_of(nrrd, prefix + "Color").c_str(), "%lf %lf %lf", &c.x, &c.y, &c.z) == 3 && is_finite(c))
+        if (std::sscanf(header.value(prefix + "Color").c_str(), "%lf %lf %lf", &c.x, &c.y, &c.z) == 3 && is_finite(c))
             entry.segment.colour = glm::clamp(c, 0.0, 1.0);
     }
     return found;
 }
 
-void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path, unsigned first) {
+void check_size(const NrrdHeader& header, const Axes& axes, const std::filesystem::path& path) {
     const std::string file = path.string();
-    if (nrrdTypeBlock == header.type) throw Error(fmt::format("{}: the samples are blocks, not numbers", file));
     std::array<std::int64_t, 3> size{};
-    for (unsigned axis = 0; axis < 3; ++axis)
-        size[axis] = static_cast<std::int64_t>(std::min<std::size_t>(header.axis[first + axis].size, 1u << 30));
-    double count = 1.0;
-    for (unsigned axis = 0; axis < header.dim; ++axis) count *= static_cast<double>(header.axis[axis].size);
-    if (count * least_bytes(header, io) > bytes_on_disk(path, io) + 64.0)
+    for (std::size_t n = 0; n < 3; ++n) size[n] = header.sizes[axes.space[n]];
+    const double count = header.count();
+    if (count * least_bytes(header) > bytes_on_disk(path, header) + 64.0)
         throw Error(
             fmt::format("{}: cut short: its header states {:.0f} voxels, more than the file can hold", file, count));
     checked_count(size, file);
     if (count > 2e9) throw Error(fmt::format("{}: too many samples in its layers: {:.0f}", file, count));
 }
 
-// Start of the samples in a file with attached header: after the first empty line.
-std::uint64_t end_of_header(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string line;
-    std::uint64_t at = 0;
-    while (std::getline(file, line)) {
-        at += line.size() + 1;
-        if (line.empty() || line == "\r") return at;
-    }
-    throw Error(fmt::format("{}: cut short: the header has no end", path.string()));
-}
-
-std::optional<SampleType> type_of(int type) {
-    switch (type) {
-        case nrrdTypeChar: return SampleType{SampleType::int8};
-        case nrrdTypeUChar: return SampleType{SampleType::uint8};
-        case nrrdTypeShort: return SampleType{SampleType::int16};
-        case nrrdTypeUShort: return SampleType{SampleType::uint16};
-        case nrrdTypeInt: return SampleType{SampleType::int32};
-        case nrrdTypeUInt: return SampleType{SampleType::uint32};
-        case nrrdTypeLLong: return SampleType{SampleType::int64};
-        case nrrdTypeULLong: return SampleType{SampleType::uint64};
-        case nrrdTypeFloat: return SampleType{SampleType::float32};
-        case nrrdTypeDouble: return SampleType{SampleType::float64};
-        default: return {};
-    }
-}
-
 // Start of the samples in a data file, after the skipped lines and bytes; `bytes`: length of unpacked samples.
-std::uint64_t start_of_samples(const std::filesystem::path& path, std::uint64_t start, const NrrdIoState& io,
-                               double bytes) {
+std::uint64_t start_of_samples(const std::filesystem::path& path, const NrrdHeader& header, double bytes) {
+    std::uint64_t start = header.start;
     const auto cut_short = [&] { return Error(fmt::format("{}: cut short; copy the file again", path.string())); };
-    if (io.lineSkip > 0) {
+    if (header.line_skip > 0) {
         std::ifstream file(path, std::ios::binary);
         file.seekg(static_cast<std::streamoff>(start));
-        for (unsigned n = 0; n < io.lineSkip; ++n)
-            if (!file.ignore(std::numeric_limits<std::streamsize>::max(), '\n') || file.eof()) throw cut_short();
+        for (std::uint64_t n = 0; n < header.line_skip; ++n)
+            if (!file.ignore(std::numeric_limits<std::streamsize>::max(), '\n') || file.eof())
+                throw Error(fmt::format("{}: cut short: it ends in line {} of {} to skip", path.string(), n + 1,
+                                        header.line_skip));
         start = static_cast<std::uint64_t>(file.tellg());
     }
-    if (io.encoding != nrrdEncodingRaw) return start;
-    if (io.byteSkip >= 0) return start + static_cast<std::uint64_t>(io.byteSkip);
+    if (header.encoding != NrrdEncoding::raw && header.encoding != NrrdEncoding::hex) return start;
+    if (header.byte_skip >= 0) return start + static_cast<std::uint64_t>(header.byte_skip);
     // A negative skip counts from the end: -1 means that the samples end the file.
-    const double from_end = static_cast<double>(std::filesystem::file_size(path)) - bytes + (double(io.byteSkip) + 1.0);
+    const double from_end =
+        static_cast<double>(std::filesystem::file_size(path)) - bytes + (double(header.byte_skip) + 1.0);
     if (from_end < static_cast<double>(start)) throw cut_short();
     return static_cast<std::uint64_t>(from_end);
 }
 
-// Streams the samples of raw or gzipped files: teem would load the whole file, and leaks zlib's buffers on damaged
-// data. None for encodings that only teem reads.
-std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
-                                      std::size_t samples) {
-    const bool is_gzip = io.encoding == nrrdEncodingGzip;
-    const std::optional<SampleType> type = type_of(header.type);
-    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw)) return {};
-    const bool is_apart = io.dataFNArr && io.dataFNArr->len > 0;
-    const std::size_t files = is_apart ? io.dataFNArr->len : 1;
-    if (samples % files != 0)
-        throw Error(fmt::format("{}: its samples cannot be divided evenly among {} data files", path.string(), files));
-    if (is_gzip && io.byteSkip < 0)
+std::size_t samples_per_file(const NrrdHeader& header, std::size_t samples, const std::filesystem::path& path) {
+    if (samples % header.data.size() != 0)
+        throw Error(fmt::format("{}: its samples cannot be divided evenly among {} data files", path.string(),
+                                header.data.size()));
+    return samples / header.data.size();
+}
+
+SampleStream stream_of(const NrrdHeader& header, const std::filesystem::path& path, std::size_t samples) {
+    const bool is_packed = header.encoding != NrrdEncoding::raw;
+    if (is_packed && header.byte_skip < 0)
         throw Error(
             fmt::format("{}: a negative byte skip needs an unpacked file; unpack it with 'unu save "
                         "-f nrrd -e raw'",
                         path.string()));
-    const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian() && type->bytes() > 1;
     std::vector<SampleStream::Piece> pieces;
-    for (std::size_t n = 0; n < files; ++n) {
-        SampleStream::Piece piece{is_apart ? path.parent_path() / io.dataFN[n] : path, 0, 0, samples / files};
-        const double bytes = static_cast<double>(piece.samples) * static_cast<double>(type->bytes());
-        piece.start = start_of_samples(piece.file, is_apart ? 0 : end_of_header(path), io, bytes);
-        if (is_gzip) piece.skip = static_cast<std::uint64_t>(io.byteSkip);
+    for (const std::filesystem::path& file : header.data) {
+        SampleStream::Piece piece{file, 0, 0, samples_per_file(header, samples, path)};
+        const double bytes = static_cast<double>(piece.samples) * static_cast<double>(header.type.bytes());
+        piece.start = start_of_samples(file, header, bytes);
+        if (is_packed) piece.skip = static_cast<std::uint64_t>(header.byte_skip);
         pieces.push_back(std::move(piece));
     }
-    return SampleStream(std::move(pieces), *type, swapped, is_gzip);
+    const Packing packing = header.encoding == NrrdEncoding::raw    ? Packing::none
+                            : header.encoding == NrrdEncoding::gzip ? Packing::gzip
+                                                                    : Packing::bzip2;
+    return SampleStream(std::move(pieces), header.type, header.is_swapped && header.type.bytes() > 1, packing);
 }
 
-// teem reads text numbers into a buffer of fixed size without checking their length.
-void check_text(const std::filesystem::path& path, std::uint64_t start) {
-    constexpr std::size_t longest = 500;
-    std::ifstream file(path, std::ios::binary);
-    file.seekg(static_cast<std::streamoff>(start));
-    std::array<char, 1 << 16> block;
-    std::size_t length = 0;
-    do {
-        leave_if_stopped();
-        file.read(block.data(), block.size());
-        for (const char c : std::span(block).first(static_cast<std::size_t>(file.gcount()))) {
-            length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
-            if (length > longest)
-                throw Error(fmt::format("{}: a text number has more than {} characters", path.string(), longest));
+// Characters of a data file, in blocks.
+class Characters {
+public:
+    Characters(const std::filesystem::path& path, std::uint64_t start) : file_(path, std::ios::binary) {
+        file_.seekg(static_cast<std::streamoff>(start));
+    }
+    /// -1 at the end.
+    int next() {
+        if (at_ == size_) {
+            leave_if_stopped();
+            file_.read(block_.data(), static_cast<std::streamsize>(block_.size()));
+            at_ = 0, size_ = static_cast<std::size_t>(file_.gcount());
+            if (size_ == 0) return -1;
         }
-    } while (file);
+        return static_cast<unsigned char>(block_[at_++]);
+    }
+
+private:
+    std::ifstream file_;
+    std::vector<char> block_ = std::vector<char>(1 << 16);
+    std::size_t at_ = 0, size_ = 0;
+};
+
+// Numbers as text, separated by blanks or commas.
+void read_text(const std::filesystem::path& path, std::uint64_t start, std::span<float> values) {
+    constexpr std::size_t longest = 500;
+    Characters characters(path, start);
+    std::string word;
+    for (std::size_t count = 0; count < values.size();) {
+        const int c = characters.next();
+        const bool is_between = c < 0 || std::isspace(c) || c == ',';
+        if (!is_between) {
+            word += static_cast<char>(c);
+            if (word.size() > longest)
+                throw Error(fmt::format("{}: a text number has more than {} characters", path.string(), longest));
+            continue;
+        }
+        if (!word.empty()) {
+            double number = 0.0;
+            const char* const first = word.data() + (word.front() == '+');
+            const auto [end, failure] = std::from_chars(first, word.data() + word.size(), number);
+            if (failure == std::errc::result_out_of_range)
+                number = word.find_first_of("eE") + 1 < word.size() && word[word.find_first_of("eE") + 1] == '-'
+                             ? 0.0
+                             : std::numeric_limits<double>::infinity();
+            if (failure == std::errc::invalid_argument || end != word.data() + word.size())
+                throw Error(
+                    fmt::format("{}: '{}' at sample {} is not a number", path.string(), word.substr(0, 40), count + 1));
+            values[count++] = static_cast<float>(number);
+            word.clear();
+        } else if (c < 0) {
+            throw Error(fmt::format("{}: cut short; copy the file again", path.string()));
+        }
+    }
+}
+
+// Two digits per byte; blanks between them are skipped.
+std::string read_hex(const std::filesystem::path& path, std::uint64_t start, std::size_t bytes) {
+    Characters characters(path, start);
+    std::string out(bytes, '\0');
+    for (std::size_t digit = 0; digit < 2 * bytes;) {
+        const int c = characters.next();
+        if (c < 0) throw Error(fmt::format("{}: cut short; copy the file again", path.string()));
+        if (std::isspace(c)) continue;
+        const int value = c >= '0' && c <= '9'                     ? c - '0'
+                          : (c | 0x20) >= 'a' && (c | 0x20) <= 'f' ? (c | 0x20) - 'a' + 10
+                                                                   : -1;
+        if (value < 0)
+            throw Error(
+                fmt::format("{}: a character that is no hexadecimal digit, in byte {}", path.string(), digit / 2 + 1));
+        char& byte = out[digit / 2];
+        byte = static_cast<char>(static_cast<unsigned char>(byte) << 4 | value);
+        ++digit;
+    }
+    return out;
 }
 
 class NrrdSlices final : public SliceReader {
 public:
     explicit NrrdSlices(const std::filesystem::path& path) {
         const std::string file = path.string();
-        check_nrrd_header(path);
-        const NrrdPointer header(nrrdNew(), nrrdNuke);
-        const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
-        nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
-        if (nrrdLoad(header.get(), file.c_str(), io.get())) refuse(file);
-        segments_ = segments_of(*header);
-        unsigned first = header->dim == 4 && !segments_.empty() ? 1 : 0;
-        bool has_single = false;
-        if (header->dim == 4 && segments_.empty()) {
-            has_single = header->axis[0].size == 1 || header->axis[3].size == 1;
-            if (header->axis[0].size == 1 && header->axis[3].size > 1) first = 1;
-        }
-        if (header->dim != 3 + first && !has_single)
-            throw Error(fmt::format("{}: has {} axes; a CT volume must have 3 (extract one frame with 'unu slice')",
-                                    file, header->dim));
+        const NrrdHeader header = read_nrrd_header(path);
+        segments_ = segments_of(header);
+        const Axes axes = axes_of(header, !segments_.empty(), file);
         about.format = "NRRD";
         about.source = path.filename().string();
-        about.encoding = io->encoding->name;
-        read_geometry(*header, first, about, file);
-        check_header(*header, *io, path, first);
-        for (unsigned axis = 0; axis < 3; ++axis) about.size[axis] = static_cast<int>(header->axis[first + axis].size);
-        layers_ = first == 1 ? header->axis[0].size : 1;
-        if (has_single) about.notes.push_back("a fourth axis of one sample was left out");
-        integers_ = nrrdTypeIsIntegral[header->type] != 0;
+        about.encoding = name_of(header.encoding);
+        read_geometry(header, axes, about, file);
+        check_size(header, axes, path);
+        for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(header.sizes[axes.space[n]]);
+        layers_ = axes.layers;
+        if (axes.has_single) about.notes.push_back("a fourth axis of one sample was left out");
+        integers_ = header.type.is_integer();
         flatten_segments();
-        stream_ = stream_of(*header, *io, path, about.count() * layers_);
-        if (stream_) return;
-        if (io->encoding == nrrdEncodingAscii) {
-            const unsigned files = io->dataFNArr ? io->dataFNArr->len : 0;
-            for (unsigned n = 0; n < files; ++n) check_text(path.parent_path() / io->dataFN[n], 0);
-            if (files == 0) check_text(path, end_of_header(path));
-        }
-        read_by_teem(file);
+        const std::size_t samples = about.count() * layers_;
+        if (header.encoding == NrrdEncoding::text || header.encoding == NrrdEncoding::hex)
+            read_whole(header, samples, path);
+        else stream_ = stream_of(header, path, samples);
     }
 
     void read(int k, std::span<float> values) override {
@@ -309,10 +329,6 @@ public:
     }
 
 private:
-    [[noreturn]] static void refuse(const std::string& file) {
-        throw Error(fmt::format("{}: cannot be read as NRRD: {}", file, teem_message()));
-    }
-
     // Overlapping segments are stored in layers; in one label map each gets its own number, and later segments
     // overwrite earlier ones.
     void flatten_segments() {
@@ -329,17 +345,19 @@ private:
         }
     }
 
-    // Text and bzip2 are read at once.
-    void read_by_teem(const std::string& file) {
-        // The numbers in the type of the file, and as float.
-        file::require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
-        const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
-        if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
-        const auto lookup = nrrdFLookup[nrrd->type];
-        whole_.resize(about.count() * layers_);
-        for (std::size_t n = 0; n < whole_.size(); ++n) {
-            if (n % (1 << 20) == 0) leave_if_stopped();
-            whole_[n] = lookup(nrrd->data, n);
+    // Samples as text and as hexadecimal digits are read at once.
+    void read_whole(const NrrdHeader& header, std::size_t samples, const std::filesystem::path& path) {
+        const bool is_hex = header.encoding == NrrdEncoding::hex;
+        const double bytes = sizeof(float) + (is_hex ? double(header.type.bytes()) : 0.0);
+        file::require_room(bytes * static_cast<double>(samples), path, "its samples");
+        whole_.resize(samples);
+        const std::size_t each = samples_per_file(header, samples, path);
+        for (std::size_t n = 0; n < header.data.size(); ++n) {
+            const std::span<float> values = std::span(whole_).subspan(n * each, each);
+            const std::size_t size = each * header.type.bytes();
+            const std::uint64_t start = start_of_samples(header.data[n], header, 2.0 * double(size));
+            if (is_hex) unpack_samples(read_hex(header.data[n], start, size), header.type, header.is_swapped, values);
+            else read_text(header.data[n], start, values);
         }
     }
 

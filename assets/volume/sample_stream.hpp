@@ -22,19 +22,20 @@ public:
         std::size_t samples = 0;
     };
 
-    SampleStream(std::vector<Piece> pieces, SampleType type, bool swapped, bool packed)
-        : pieces_(std::move(pieces)), type_(type), swapped_(swapped), packed_(packed) {}
+    SampleStream(std::vector<Piece> pieces, SampleType type, bool swapped, Packing packing)
+        : pieces_(std::move(pieces)), type_(type), swapped_(swapped), packing_(packing) {}
 
     /// Reads samples from `first` on. Packed files are fast in ascending order; going back unpacks from the start. The
     /// checksum of a packed file is verified with its last sample. Throws Error for truncated or damaged data.
     void read(std::size_t first, std::span<float> values);
 
-    bool in_any_order() const { return !packed_; }
+    bool in_any_order() const { return packing_ == Packing::none; }
 
 private:
     std::vector<Piece> pieces_;
     SampleType type_;
-    bool swapped_, packed_;
+    bool swapped_;
+    Packing packing_;
     std::unique_ptr<PackedFile> file_;  // open file of pieces_[piece_]; at_ is its next sample
     std::size_t piece_ = 0, at_ = 0;
 };

@@ -6,12 +6,6 @@
 
 #include <cstdlib>
 
-// Teem forgets its array when a quoted string of the header does not end (_nrrdGetQuotedString), and libbz2's stream when
-// bzip2'ed samples are damaged (_nrrdEncodingBzip2_read). Both are functions without symbols in a package, so what they
-// call is named.
-extern "C" const char* __lsan_default_suppressions() { return "leak:airArrayNew\nleak:libbz2\n"; }
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "v.nrrd");
     try {
