@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace tactus::bone {
@@ -69,7 +70,10 @@ volume::Grid ct_layout(const volume::Grid& ct, const Range& crop, std::optional<
 // "1 (femur), 2": the labels of a label map with their names.
 std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally& tally) {
     std::vector<std::string> words;
-    for (const int label : tally.labels) {
+    // In the one map of overlapping segments some are hidden.
+    std::set<int> labels = tally.labels;
+    for (const volume::Segment& segment : about.segments) labels.insert(segment.label);
+    for (const int label : labels) {
         if (label == 0) continue;
         const auto named = std::find_if(about.segments.begin(), about.segments.end(),
                                         [&](const volume::Segment& s) { return s.label == label && !s.name.empty(); });
@@ -79,7 +83,7 @@ std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally&
     }
     return words.empty()
                ? "it holds none"
-               : fmt::format("it holds {}{}", fmt::join(words, ", "), tally.labels.size() > 13 ? ", ..." : "");
+               : fmt::format("it holds {}{}", fmt::join(words, ", "), labels.size() > 13 ? ", ..." : "");
 }
 
 }  // namespace

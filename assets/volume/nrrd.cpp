@@ -310,6 +310,9 @@ public:
                     values[n] = in_one;
                 }
         }
+        if (counts)
+            for (std::size_t n = 0; n < layered.size(); ++n)
+                unnamed_ += layered[n] != 0.0f && !names(n % layers_, layered[n]);
         counted_ += counts;
     }
 
@@ -324,11 +327,20 @@ public:
         if (covered_ > 0)
             about.notes.push_back(
                 fmt::format("{} voxels lie in several segments; the last segment takes them", covered_));
-        covered_ = 0;
+        if (unnamed_ > 0)
+            about.notes.push_back(
+                fmt::format("{} voxels have values that no segment names; they were left out", unnamed_));
+        covered_ = unnamed_ = 0;
         settle_meaning(about, tally, integers_);
     }
 
 private:
+    bool names(std::size_t layer, float value) const {
+        return std::ranges::any_of(segments_, [&](const Layered& each) {
+            return static_cast<std::size_t>(each.layer) == layer && static_cast<float>(each.label) == value;
+        });
+    }
+
     // Overlapping segments are stored in layers; in one label map each gets its own number, and later segments
     // overwrite earlier ones.
     void flatten_segments() {
@@ -369,7 +381,7 @@ private:
     std::vector<Layered> segments_;
     std::optional<SampleStream> stream_;
     std::vector<float> whole_;
-    std::size_t layers_ = 1, covered_ = 0;
+    std::size_t layers_ = 1, covered_ = 0, unnamed_ = 0;
     int shown_ = -1;   // layer; -1: all
     int counted_ = 0;  // slices whose overlapping voxels are counted
     bool integers_ = false;

@@ -30,7 +30,7 @@ struct InfoChoice {
 file::Json json_of(const Inspection& found) {
     file::Json parts = file::Json::array();
     for (const InspectedPart& part : found.parts)
-        parts.push_back({{"volume_mm3", part.volume_mm3}, {"bounds_mm", part.bounds_mm}});
+        parts.push_back({{"name", part.name}, {"volume_mm3", part.volume_mm3}, {"bounds_mm", part.bounds_mm}});
     file::Json json{{"kind", found.kind},
                     {"frame", found.frame},
                     {"size", found.size},
@@ -42,7 +42,8 @@ file::Json json_of(const Inspection& found) {
                     {"suggested_threshold", nullptr},
                     {"unit", nullptr},
                     {"unit_question", nullptr},
-                    {"components", parts}};
+                    {"components", parts},
+                    {"notes", found.notes}};
     if (found.threshold) json["suggested_threshold"] = *found.threshold;
     if (!found.unit.empty()) json["unit"] = found.unit;
     if (!found.unit_question.empty()) json["unit_question"] = found.unit_question;

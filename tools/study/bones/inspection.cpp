@@ -14,6 +14,7 @@
 #include <glm/common.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -90,8 +91,8 @@ void inspect_ct(Inspection& found, volume::HuKind hu) {
                     std::max(*found.threshold * 3.0, *found.threshold + 200.0)};
 }
 
-void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
-    const volume::Grid& grid = found.grey;
+// Adds the labels of a map, which are those of one layer when segments overlap.
+void inspect_labels(Inspection& found, const volume::Grid& grid, const volume::ScanVolume& volume) {
     struct Seen {
         std::size_t voxels = 0;
         volume::Components::Box box{};
@@ -125,8 +126,30 @@ void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
     found.is_labels = true;
 }
 
+void inspect_segments(Inspection& found, volume::SliceReader& reader) {
+    const std::size_t named = reader.about.segments.size();
+    if (reader.layer_count() < 2) inspect_labels(found, found.grey, reader.about);
+    for (int layer = 0; layer < reader.layer_count() && reader.layer_count() > 1; ++layer) {
+        reader.show_layer(layer);
+        volume::ReorientedVolume layers(reader, on_threads());
+        if (layers.is_turned()) layers.settle();
+        inspect_labels(found, volume::whole_of(layers), reader.about);
+    }
+    std::vector<std::string> empty;
+    for (const volume::Segment& segment : reader.about.segments)
+        if (std::ranges::none_of(found.parts, [&](const InspectedPart& part) {
+                return part.name == fmt::format("label {}", segment.label) ||
+                       part.name.starts_with(fmt::format("label {}: ", segment.label));
+            }))
+            empty.push_back(segment.name.empty() ? fmt::format("label {}", segment.label) : segment.name);
+    if (!empty.empty())
+        found.notes.push_back(
+            fmt::format("of {} named segments {} have no voxels: {}", named, empty.size(), fmt::join(empty, ", ")));
+}
+
 Inspection inspect_volume(const std::filesystem::path& path, const InspectionOptions& options) {
-    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {options.series, options.unit, options.fill_gaps});
+    const std::unique_ptr<volume::SliceReader> reader =
+        volume::open_volume(path, {options.series, options.unit, options.fill_gaps});
     volume::ReorientedVolume layers(*reader, on_threads());
     layers.set_line(options.rescale);
     if (layers.is_turned()) layers.settle();
@@ -147,7 +170,7 @@ Inspection inspect_volume(const std::filesystem::path& path, const InspectionOpt
     found.range = {layers.range().first, layers.range().second};
     found.unit_question = volume::unit_question(about);
     found.unit = found.unit_question.empty() ? "mm" : "";
-    if (about.kind == volume::VolumeKind::labels) inspect_labels(found, about);
+    if (about.kind == volume::VolumeKind::labels) inspect_segments(found, *reader);
     else inspect_ct(found, about.hu);
     return found;
 }

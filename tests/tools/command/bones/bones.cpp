@@ -12,10 +12,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 namespace fs = std::filesystem;
 using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
 
 namespace {
@@ -59,9 +61,11 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
                         folder / "two.vdb")
                 .code == 0);
     REQUIRE(folder.tactus("export " + folder / "two.vdb" + " -o " + folder / "two.stl").code == 0);
-    const char* keys[] = {"kind",     "frame",        "size",  "spacing_mm",          "uniform",
-                          "tilt_deg", "hu",           "range", "suggested_threshold", "components",
-                          "unit",     "unit_question"};
+    const char* keys[] = {"kind",       "frame",   "size",
+                          "spacing_mm", "uniform", "tilt_deg",
+                          "hu",         "range",   "suggested_threshold",
+                          "components", "unit",    "unit_question",
+                          "notes"};
     for (const auto& [file, kind] : {std::pair<std::string, std::string>{"ct.nrrd", "ct"},
                                      {"labels.nrrd", "labels"},
                                      {"two.stl", "mesh"},
@@ -125,4 +129,33 @@ TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mes
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
     CHECK(summary["carve"]["removed_mm3"] > 5.0);
     CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);
+}
+
+TEST_CASE("info lists each of overlapping segments from its own layer, and those without voxels") {
+    const BoneFolder folder;
+    std::string samples;
+    for (int n = 0; n < 64; ++n) {
+        samples += static_cast<char>(n < 8 ? 1 : n < 12 ? 7 : 0);
+        samples += static_cast<char>(n < 32 ? 1 : 0);
+    }
+    std::ofstream(folder / "s.seg.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 4 4 4\n"
+           "space directions: none (2,0,0) (0,2,0) (0,0,2)\nspace units: \"mm\" \"mm\" \"mm\"\nencoding: raw\nspace "
+           "origin: (0,0,0)\n"
+           "Segment0_ID:=a\nSegment0_Name:=Small\nSegment0_Layer:=0\nSegment0_LabelValue:=1\n"
+           "Segment1_ID:=b\nSegment1_Name:=Empty\nSegment1_Layer:=0\nSegment1_LabelValue:=2\n"
+           "Segment2_ID:=c\nSegment2_Name:=Large\nSegment2_Layer:=1\nSegment2_LabelValue:=1\n\n"
+        << samples;
+    const json found = folder.answer("info " + folder / "s.seg.nrrd --json");
+    REQUIRE(found["components"].size() == 2);
+    CHECK(found["components"][0]["name"] == "label 1: Small");
+    CHECK(found["components"][0]["volume_mm3"] == 64.0);
+    CHECK(found["components"][1]["name"] == "label 3: Large");
+    CHECK(found["components"][1]["volume_mm3"] == 256.0);
+    const std::string notes = found["notes"].dump();
+    CHECK_THAT(notes, ContainsSubstring("of 3 named segments 1 have no voxels: Empty"));
+    CHECK_THAT(notes, ContainsSubstring("4 voxels have values that no segment names"));
+    // What to choose from is all that the file names.
+    const test::Outcome refused = folder.tactus("import " + folder / "s.seg.nrrd -o " + folder / "x.vdb");
+    CHECK_THAT(refused.err, ContainsSubstring("1 (Small), 2 (Empty), 3 (Large)"));
 }
