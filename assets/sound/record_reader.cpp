@@ -25,14 +25,15 @@ bool is_log(const std::filesystem::path& path) {
            extension == ".lvm" || extension == ".asc" || extension == ".dat";
 }
 
-/// Values at the ends of a converter of 16 bits, when all are whole numbers of it.
-std::size_t rows_at_limit(std::span<const double> values) {
-    std::size_t count = 0;
-    for (const double x : values) {
-        if (x != std::round(x) || x > 32768.0 || x < -32768.0) return 0;
-        count += x >= 32767.0 || x == -32768.0;
+/// The first row of a log that is not before `time`, s.
+std::size_t row_at(const table::PackedColumn& times, double time) {
+    std::size_t low = 0, high = times.size();
+    while (low < high) {
+        const std::size_t middle = low + (high - low) / 2;
+        if (times[middle] < time) low = middle + 1;
+        else high = middle;
     }
-    return count;
+    return low;
 }
 
 /// Keeps the rows of a stretch; times stay as they are.
@@ -43,17 +44,11 @@ ReadStretch cut(table::SampleLog& log, const Stretch& stretch, const std::filesy
     const double length = rows > 1.0 ? span * rows / (rows - 1.0) : 0.0;
     if (stretch.is_whole()) return {0.0, length, length};
     const ReadStretch read = stretch_within(stretch, length, length > 0.0 ? rows / length : 1.0, path);
-    const auto row_at = [&](double time) {
-        return std::lower_bound(log.times.begin(), log.times.end(), start + time) - log.times.begin();
-    };
-    const std::ptrdiff_t first = row_at(read.from),
-                         last = read.to < length ? row_at(read.to) : static_cast<std::ptrdiff_t>(log.times.size());
-    const auto keep = [&](std::vector<double>& values) {
-        values.assign(values.begin() + first, values.begin() + last);
-    };
-    if (first == last) throw Error(fmt::format("{}: there is no row from {}", path.string(), read.text()));
-    keep(log.times);
-    for (std::vector<double>& column : log.columns) keep(column);
+    const std::size_t first = row_at(log.times, start + read.from),
+                      end = read.to < length ? row_at(log.times, start + read.to) : log.times.size();
+    if (first == end) throw Error(fmt::format("{}: there is no row from {}", path.string(), read.text()));
+    log.times.cut(first, end);
+    for (table::PackedColumn& column : log.columns) column.cut(first, end);
     return read;
 }
 
@@ -90,15 +85,31 @@ Calibration counting(const std::optional<Calibration>& option, const Calibration
     return out;
 }
 
-double deviation_of_steps(std::span<const double> times, double longest) {
-    double sum = 0.0, squares = 0.0, count = 0.0;
-    for (std::size_t i = 1; i < times.size(); ++i) {
-        const double step = times[i] - times[i - 1];
-        if (step > longest) continue;
-        sum += step, squares += step * step, ++count;
+/// Counts the values at the ends of a converter of 16 bits, while all are whole numbers of it.
+class LimitCount {
+public:
+    void push(std::span<const double> values) {
+        for (const double x : values) {
+            is_whole_ = is_whole_ && x == std::round(x) && x <= 32768.0 && x >= -32768.0;
+            count_ += x >= 32767.0 || x == -32768.0;
+        }
     }
-    const double mean = count > 0.0 ? sum / count : 0.0;
-    return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0.0;
+    std::size_t count() const { return is_whole_ ? count_ : 0; }
+
+private:
+    bool is_whole_ = true;
+    std::size_t count_ = 0;
+};
+
+/// Calls use(values) for a column in blocks.
+template <class Use>
+void for_each_block(const table::PackedColumn& column, const Use& use) {
+    std::vector<double> values;
+    for (std::size_t first = 0; first < column.size(); first += block_frames) {
+        values.resize(std::min(block_frames, column.size() - first));
+        column.read(first, values);
+        use(values);
+    }
 }
 
 }  // namespace
@@ -108,8 +119,12 @@ bool LogFacts::is_even() const { return longest_step - shortest_step < 1e-3 * lo
 struct RecordReader::Source {
     std::filesystem::path path;
     std::optional<SoundReader> sound;
-    signal::EvenRecord even;
-    std::size_t piece = 0, at = 0, frames = 0;
+    table::SampleLog rows;                   // of a log
+    std::optional<signal::Regulariser> even;  // of those rows
+    std::vector<std::vector<double>> open;   // its last block
+    std::size_t at = 0;                      // in that block
+    bool after_gap = false;                  // of that block
+    std::size_t frames = 0;
     std::size_t first = 0, done = 0;  // of a sound: first frame of the stretch, frames read of it
     ReadStretch stretch;
     double rate = 0.0;
@@ -154,18 +169,23 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         calibrate(calibration, sensitivity);
         source_->calibration.file_note = source_->sound->note();
     } else {
-        table::SampleLog log = table::load_sample_log(path, selection);
+        table::SampleLog& log = source_->rows = table::load_sample_log(path, selection);
         source_->stretch = cut(log, stretch, path);
         try {
-            source_->even = signal::regularise(log.times, log.columns);
+            source_->even.emplace(
+                signal::TimedSamples{log.times.size(), log.columns.size(),
+                                     [&log](std::size_t first, std::span<double> out) { log.times.read(first, out); },
+                                     [&log](std::size_t channel, std::size_t first, std::span<double> out) {
+                                         log.columns[channel].read(first, out);
+                                     }});
         } catch (const Error& error) {
             throw Error(fmt::format("{}: {}", path.string(), error.message()));
         }
-        signal::EvenRecord& even = source_->even;
-        // Times that are computed from a rate give it back but for the last digits.
-        if (selection.rate && even.gaps == 0 && log.lost_rows == 0) even.rate = *selection.rate;
+        const signal::EvenFacts& even = source_->even->facts();
         source_->rate = even.rate;
-        for (const auto& piece : even.pieces) source_->frames += piece.front().size();
+        // Times that are computed from a rate give it back but for the last digits.
+        if (selection.rate && even.gaps == 0 && log.lost_rows == 0) source_->rate = *selection.rate;
+        source_->frames = even.frames;
         source_->names = log.names;
         source_->calibration = calibration_of_columns(log, source_->factors);
         const bool is_voltage = log.units.front() && log.units.front()->is_voltage();
@@ -185,17 +205,21 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
                                 .lost_seconds = even.lost,
                                 .shortest_step = even.shortest_step,
                                 .longest_step = even.longest_step,
-                                .step_deviation = deviation_of_steps(log.times, even.longest_step),
+                                .step_deviation = even.step_deviation,
                                 .clock_step = even.clock_step,
                                 .levels = {},
                                 .at_limit = {},
                                 .form = log.form,
                                 .usable = even.usable};
         for (std::size_t c = 0; c < log.columns.size(); ++c) {
-            std::vector<double> scaled = log.columns[c];
-            for (double& x : scaled) x *= source_->factors[c];
-            source_->log->levels.emplace_back().push(scaled);
-            source_->log->at_limit.push_back(rows_at_limit(log.columns[c]));
+            signal::Level& level = source_->log->levels.emplace_back();
+            LimitCount at_limit;
+            for_each_block(log.columns[c], [&](std::vector<double>& values) {
+                at_limit.push(values);
+                for (double& x : values) x *= source_->factors[c];
+                level.push(values);
+            });
+            source_->log->at_limit.push_back(at_limit.count());
         }
     }
 }
@@ -230,7 +254,9 @@ void RecordReader::rewind() {
         source_->sound.emplace(source_->path);
         source_->sound->skip(source_->first);
     }
-    source_->piece = source_->at = source_->done = 0;
+    if (source_->even) source_->even->rewind();
+    source_->open.clear();
+    source_->at = source_->done = 0;
 }
 
 bool RecordReader::next(RecordBlock& block) {
@@ -251,17 +277,19 @@ bool RecordReader::next(RecordBlock& block) {
         }
         return count > 0;
     }
-    if (source.piece == source.even.pieces.size()) return false;
-    const auto& piece = source.even.pieces[source.piece];
-    const std::size_t count = std::min(block_frames, piece.front().size() - source.at);
-    block.after_gap = source.at == 0 && source.piece > 0;
+    const auto left = [&] { return source.open.empty() ? 0 : source.open.front().size() - source.at; };
+    if (left() == 0) {
+        if (!source.even->next(source.open, source.after_gap)) return false;
+        source.at = 0;
+        block.after_gap = source.after_gap;
+    }
+    const std::size_t count = std::min(block_frames, left());
     for (std::size_t c = 0; c < channels; ++c) {
-        const auto begin = piece[c].begin() + static_cast<std::ptrdiff_t>(source.at);
+        const auto begin = source.open[c].begin() + static_cast<std::ptrdiff_t>(source.at);
         block.channels[c].assign(begin, begin + static_cast<std::ptrdiff_t>(count));
         for (double& x : block.channels[c]) x *= source.factors[c];
     }
     source.at += count;
-    if (source.at == piece.front().size()) ++source.piece, source.at = 0;
     return true;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <utility>
 
 namespace tactus::table {
 
@@ -53,21 +55,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string_view without_mark(std::string_view text, std::string& converted) {
-    if (text.starts_with("\xef\xbb\xbf")) return text.substr(3);
-    const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");
-    if (!little && !big) return text;
-    converted.clear();
-    converted.reserve(text.size() / 2);
-    for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
-        const auto first = static_cast<unsigned char>(text[i]), second = static_cast<unsigned char>(text[i + 1]);
-        const std::uint32_t code = little ? first | second << 8u : second | first << 8u;
-        // Letters beyond the basic plane have no meaning in a log.
-        append_utf8(converted, code >= 0xd800 && code < 0xe000 ? 0xfffd : code);
-    }
-    return converted;
-}
-
 std::string as_utf8(std::string_view text) {
     if (is_utf8(text)) return std::string(text);
     std::string out;
@@ -84,6 +71,80 @@ bool LogLines::next(std::string_view& line) {
     while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
     ++number_;
     return true;
+}
+
+LogBlocks::LogBlocks(Source source) : source_(std::move(source)) {}
+
+bool LogBlocks::fill() {
+    if (has_ended_) return false;
+    constexpr std::size_t at_once = std::size_t{1} << 20;
+    text_.erase(0, at_);
+    newline_ -= std::min(newline_, at_);
+    at_ = 0;
+    const std::size_t before = text_.size(), left = raw_.size();
+    if (coding_ == Coding::bytes) {
+        text_.resize(before + at_once);
+        const std::size_t count = source_(std::span(text_).subspan(before));
+        text_.resize(before + count);
+        has_ended_ = count < at_once;
+        return count > 0;
+    }
+    raw_.resize(left + at_once);
+    raw_.resize(left + source_(std::span(raw_).subspan(left)));
+    has_ended_ = raw_.size() < left + at_once;
+    std::size_t start = 0;
+    if (coding_ == Coding::unknown) {
+        coding_ = raw_.starts_with("\xff\xfe")   ? Coding::little
+                  : raw_.starts_with("\xfe\xff") ? Coding::big
+                                                 : Coding::bytes;
+        start = coding_ != Coding::bytes ? 2 : raw_.starts_with("\xef\xbb\xbf") ? 3 : 0;
+    }
+    if (coding_ == Coding::bytes) {
+        text_.append(raw_, start);
+        raw_.clear();
+        return text_.size() > before;
+    }
+    std::size_t i = start;
+    for (; i + 1 < raw_.size(); i += 2) {
+        const auto first = static_cast<unsigned char>(raw_[i]), second = static_cast<unsigned char>(raw_[i + 1]);
+        const std::uint32_t code = coding_ == Coding::little ? first | second << 8u : second | first << 8u;
+        // Letters beyond the basic plane have no meaning in a log.
+        append_utf8(text_, code >= 0xd800 && code < 0xe000 ? 0xfffd : code);
+    }
+    raw_.erase(0, i);
+    return text_.size() > before;
+}
+
+std::string_view LogBlocks::head(std::size_t size) {
+    while (text_.size() < size && fill()) {
+    }
+    return std::string_view(text_).substr(0, size);
+}
+
+bool LogBlocks::next(std::string_view& line) {
+    std::size_t searched = at_;
+    for (;;) {
+        if (newline_ < searched || (newline_ < text_.size() && text_[newline_] != '\n')) {
+            const void* const found = std::memchr(text_.data() + searched, '\n', text_.size() - searched);
+            newline_ = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
+        }
+        const void* const found = std::memchr(text_.data() + searched, '\r', newline_ - searched);
+        std::size_t end = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : newline_;
+        // The end of the line, or whether LF follows CR, may lie in the next block.
+        if (end + 1 >= text_.size() && end - at_ <= max_line && !has_ended_) {
+            const std::size_t in_line = std::min(end, text_.size()) - at_;
+            fill();
+            searched = at_ + in_line;
+            continue;
+        }
+        if (end == text_.size() && end == at_) return false;
+        line = std::string_view(text_).substr(at_, end - at_);
+        const bool both = end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n';
+        at_ = std::min(end + (both ? 2 : 1), text_.size());
+        while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
+        ++number_;
+        return true;
+    }
 }
 
 bool is_comment(std::string_view line, char separator) {

@@ -2,6 +2,9 @@
 // Lines and fields of the text that data loggers write.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +14,6 @@ namespace tactus::table {
 /// Without blanks and quotes at the ends.
 std::string_view trimmed(std::string_view text);
 
-/// Text without a byte-order mark. UTF-16 with a mark is converted into `converted`, which then holds the result.
-std::string_view without_mark(std::string_view text, std::string& converted);
 /// Valid UTF-8 as it is, other text as Latin-1, so that "m/s²" is read from either.
 std::string as_utf8(std::string_view text);
 
@@ -27,6 +28,36 @@ public:
 
 private:
     std::string_view rest_;
+    int number_ = 0;
+};
+
+/// The same for text that is read in blocks, so that a long log is never in memory. A byte-order mark is left out, UTF-16
+/// with a mark is converted.
+class LogBlocks {
+public:
+    /// Fills the span and returns how many bytes; fewer than asked for only at the end.
+    using Source = std::function<std::size_t(std::span<char>)>;
+    explicit LogBlocks(Source source);
+
+    /// The first `size` bytes, or all; only before the first line.
+    std::string_view head(std::size_t size);
+    /// The next line without its end and without blanks there, valid until the next call; false at the end of the text. Of a line
+    /// that is longer than `max_line` only a part that is longer, too.
+    bool next(std::string_view& line);
+    int number() const { return number_; }  ///< of the last line, from 1
+    bool at_end() { return at_ == text_.size() && !fill(); }
+
+    static constexpr std::size_t max_line = 65536;
+
+private:
+    bool fill();
+
+    Source source_;
+    std::string text_, raw_;
+    std::size_t at_ = 0;
+    std::size_t newline_ = 0;  // the first LF not before at_, or the end of text_
+    enum class Coding { unknown, bytes, little, big } coding_ = Coding::unknown;
+    bool has_ended_ = false;
     int number_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "assets/table/time_unit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,34 +26,36 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace tactus::table {
 
 namespace {
 
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
-constexpr int max_trailer_lines = 100;  // lines
+constexpr int max_trailer_lines = 100, max_lines = 2'000'000'000;
+constexpr std::size_t rows_between_checks = std::size_t{1} << 20;
 constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file, const LogSelection& selection)
-        : text_(without_mark(text, converted_)),
+    Reader(LogBlocks::Source source, const std::string& file, const LogSelection& selection)
+        : lines_(std::move(source)),
           file_(file),
           selection_(selection),
-          shape_(find_log_shape(text_, file, selection.skip_rows)),
+          shape_(find_log_shape(lines_.head(std::size_t{4} << 20), file, selection.skip_rows)),
           sign_(shape_.separator) {}
 
     SampleLog read() {
-        LogLines lines(text_);
         std::string_view line;
-        while (lines.number() + 1 < shape_.first_row) lines.next(line);
+        while (lines_.number() + 1 < shape_.first_row) lines_.next(line);
         bool is_first = true;
-        while (lines.next(line)) {
-            if (line.size() > 65536)
-                fail_at(lines.number(), 1, "the line is longer than 64 KiB; this is not a CSV log");
+        while (lines_.next(line)) {
+            if (line.size() > LogBlocks::max_line)
+                fail_at(lines_.number(), 1, "the line is longer than 64 KiB; this is not a CSV log");
             if (trimmed(line).empty() || is_comment(line, shape_.separator)) continue;
-            line_ = lines.number();
+            line_ = lines_.number();
+            if (line_ == max_lines) fail_at(line_, 1, "the log has more than 2e9 lines; cut it");
             split_fields(line, shape_.separator, fields_);
             if (is_first) choose();
             is_first = false;
@@ -61,7 +64,7 @@ public:
                     fail_at(line_, 1, "rows follow below a row of statistics; cut the file there");
                 continue;
             }
-            if (is_selected()) row(line, lines.at_end());
+            if (is_selected()) row(line, lines_.at_end());
         }
         check_sources();
         check_clocks();
@@ -101,9 +104,9 @@ private:
         if (field.empty() || (field.front() >= '0' && field.front() <= '9') || field.front() == '-' || rows_ == 0)
             return false;
         const std::string word = lower(field.substr(0, field.find_first_of(" :._(")));
-        constexpr std::array<std::string_view, 16> words{"mean", "average", "avg", "min", "max", "minimum", "maximum",
-                                                         "std", "stddev", "rms", "sum", "total", "median", "statistics",
-                                                         "mittelwert", "summary"};
+        constexpr std::array<std::string_view, 16> words{
+            "mean",   "average", "avg", "min",   "max",    "minimum",    "maximum",    "std",
+            "stddev", "rms",     "sum", "total", "median", "statistics", "mittelwert", "summary"};
         return std::ranges::find(words, word) != words.end();
     }
 
@@ -144,10 +147,10 @@ private:
         for (const auto& [value, rows] : source.rows)
             if (values.size() < 8) values.push_back(fmt::format("{} ({} rows)", as_utf8(value), rows));
         const std::string& name = shape_.names[source.column];
-        fail_at(shape_.header_line, static_cast<int>(source.column) + 1,
-                fmt::format("the rows are from {} sensors, by column '{}': {}; choose one, as --where \"{}={}\"",
-                            source.rows.size(), name, fmt::join(values, ", "), name,
-                            as_utf8(source.rows.begin()->first)));
+        fail_at(
+            shape_.header_line, static_cast<int>(source.column) + 1,
+            fmt::format("the rows are from {} sensors, by column '{}': {}; choose one, as --where \"{}={}\"",
+                        source.rows.size(), name, fmt::join(values, ", "), name, as_utf8(source.rows.begin()->first)));
     }
 
     void check_sources() const {
@@ -173,9 +176,10 @@ private:
             std::vector<std::string> names;
             for (const std::size_t column : columns_.clocks) names.push_back(shape_.names[column]);
             fail_at(shape_.header_line, static_cast<int>(columns_.clocks[i]) + 1,
-                    fmt::format("the columns follow clocks of different rates: {}; choose one with --time-column, or columns "
-                                "that follow one clock with --column; there are {}",
-                                fmt::join(names, ", "), fmt::join(shape_.names, ", ")));
+                    fmt::format(
+                        "the columns follow clocks of different rates: {}; choose one with --time-column, or columns "
+                        "that follow one clock with --column; there are {}",
+                        fmt::join(names, ", "), fmt::join(shape_.names, ", ")));
         }
     }
 
@@ -213,12 +217,22 @@ private:
             return;
         }
         if (!log_.times.empty()) note_advance(*time, line);
-        log_.times.push_back(*time);
+        last_time_ = *time;
+        // Times that follow from a rate are kept as the numbers of their rows, which take no memory.
+        log_.times.push_back(columns_.time ? *time : index);
         for (std::size_t i = 0; i < values_.size(); ++i) log_.columns[i].push_back(values_[i]);
+        if (rows_ % rows_between_checks == 0) require_room();
+    }
+
+    void require_room() const {
+        std::size_t bytes = log_.times.bytes();
+        for (const PackedColumn& column : log_.columns) bytes += column.bytes();
+        file::require_room(static_cast<double>(bytes), file_, "its rows");
+        leave_if_stopped();
     }
 
     void note_advance(double time, std::string_view line) {
-        const double last = log_.times.back();
+        const double last = last_time_;
         const int column = columns_.time ? static_cast<int>(fields_[*columns_.time].data() - line.data()) + 1 : 1;
         if (time < last)
             for (const Source& source : sources_)
@@ -244,10 +258,11 @@ private:
     /// Without a stated or named unit the rate of the samples decides, if only one unit makes it plausible.
     void settle_time_unit() {
         double seconds = 1.0;
+        if (!columns_.time) log_.times.scale(1.0, columns_.rate);
         if (columns_.time && !has_clock_) {
             if (!columns_.unit) columns_.unit = guessed_unit();
             seconds = columns_.unit->seconds;
-            for (double& time : log_.times) time *= seconds;
+            log_.times.scale(seconds);
         }
         if (longest_step_.length * seconds > longest_pause)
             fail_at(longest_step_.line, longest_step_.column,
@@ -256,7 +271,9 @@ private:
     }
 
     TimeUnit guessed_unit() {
-        const double step = mean_step(std::span(log_.times).first(std::min(log_.times.size(), most_steps)));
+        std::vector<double> first(std::min(log_.times.size(), most_steps));
+        log_.times.read(0, first);
+        const double step = mean_step(first);
         if (step == 0.0) return time_units().front();
         const TimeUnitGuess guess = guess_time_unit(static_cast<double>(origin_) + log_.times.front(), step);
         const auto at_rate = [&](const TimeUnit& unit) {
@@ -277,16 +294,15 @@ private:
         }
         std::vector<std::string> rates;
         for (const TimeUnit& unit : guess.fitting) rates.push_back(at_rate(unit));
-        fail_at(shape_.header_line > 0 ? shape_.header_line : shape_.first_row,
-                static_cast<int>(*columns_.time) + 1,
-                fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}",
-                            log_.time_name,
-                            rates.empty()
-                                ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
-                                : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
-                            rates.empty() ? ": s, ms, us or ns"
-                                          : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
-                                                        guess.fitting.back().symbol)));
+        fail_at(
+            shape_.header_line > 0 ? shape_.header_line : shape_.first_row, static_cast<int>(*columns_.time) + 1,
+            fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}", log_.time_name,
+                        rates.empty()
+                            ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
+                            : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
+                        rates.empty() ? ": s, ms, us or ns"
+                                      : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
+                                                    guess.fitting.back().symbol)));
     }
 
     /// None: the field has no value.
@@ -414,8 +430,7 @@ private:
         }
     }
 
-    std::string converted_;
-    std::string_view text_;
+    LogBlocks lines_;
     std::string file_;
     const LogSelection& selection_;
     LogShape shape_;
@@ -431,8 +446,8 @@ private:
     // Times of the clock.
     bool has_clock_ = false, has_numbers_ = false, has_day_ = false, has_zone_ = false;
     std::int64_t first_day_ = 0;
-    std::string_view date_;
-    double wraps_ = 0.0, last_clock_ = -1e300;
+    std::string date_;
+    double wraps_ = 0.0, last_clock_ = -1e300, last_time_ = 0.0;
     // Times that are numbers, in the unit of their column.
     std::int64_t origin_ = 0;  // whole units that are subtracted
     std::string unit_reason_;  // why this unit; empty: stated or named
@@ -442,7 +457,7 @@ private:
     } longest_step_;
     // The last unit behind a value.
     std::size_t cell_column_ = 0;
-    std::string_view cell_text_;
+    std::string cell_text_;
     double cell_factor_ = 1.0;
 };
 
@@ -472,22 +487,35 @@ std::string describe(const LogForm& form) {
     return text + "; time: " + form.time;
 }
 
-SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection) {
+namespace {
+
+SampleLog read_blocks(LogBlocks::Source source, const std::string& file, const LogSelection& selection) {
     if (selection.rate && (!(*selection.rate > 0.0) || !std::isfinite(*selection.rate)))
         throw Error(fmt::format("{}: the rate of the rows must be above 0", file));
-    return Reader(text, file, selection).read();
+    return Reader(std::move(source), file, selection).read();
+}
+
+}  // namespace
+
+SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection) {
+    const auto source = [rest = text](std::span<char> out) mutable {
+        const std::size_t count = rest.copy(out.data(), out.size());
+        rest.remove_prefix(count);
+        return count;
+    };
+    return read_blocks(source, file, selection);
 }
 
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection) {
-    const std::uintmax_t size = file::require_file(path);
-    if (size > std::uintmax_t{1} << 32)
-        throw Error(fmt::format("{}: a log of more than 4 GiB; cut it first", path.string()));
-    file::require_room(static_cast<double>(size), path, "its rows");
+    file::require_file(path);
     std::ifstream file(path, std::ios::binary);
-    std::string text(static_cast<std::size_t>(size), '\0');
-    if (!file.read(text.data(), static_cast<std::streamsize>(size)))
-        throw Error(fmt::format("{}: cannot be read", path.string()));
-    return read_sample_log(text, path.string(), selection);
+    if (!file) throw Error(fmt::format("{}: cannot be read", path.string()));
+    const auto source = [&](std::span<char> out) {
+        file.read(out.data(), static_cast<std::streamsize>(out.size()));
+        if (file.bad()) throw Error(fmt::format("{}: cannot be read", path.string()));
+        return static_cast<std::size_t>(file.gcount());
+    };
+    return read_blocks(source, path.string(), selection);
 }
 
 }  // namespace tactus::table

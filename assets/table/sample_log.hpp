@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/table/column_unit.hpp"
+#include "assets/table/packed_column.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -41,10 +42,10 @@ struct LogForm {
 std::string describe(const LogForm& form);
 
 struct SampleLog {
-    std::vector<double> times;  ///< s, never decreasing; epochs are counted from the whole unit of the first time
+    PackedColumn times;  ///< s, never decreasing; epochs are counted from the whole unit of the first time
     std::vector<std::string> names;  ///< names of the chosen columns, without units in brackets
     std::vector<std::optional<ColumnUnit>> units;  ///< of the chosen columns, as stated in the file
-    std::vector<std::vector<double>> columns;  ///< values per chosen column, as many as times
+    std::vector<PackedColumn> columns;  ///< values per chosen column, as many as times
     std::string time_name;           ///< empty: no time column
     std::string sensitivity;         ///< of the sensor, as the file states it, "100 mV/g"; empty: it does not
     std::size_t lost_rows = 0;  ///< rows without a number in a chosen column, or an incomplete last row
@@ -60,7 +61,8 @@ struct SampleLog {
 /// holds several sensors in turn, unless `where` chooses one, or chosen columns with clocks of different rates. Throws Error with file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
-/// The same for a file of at most 4 GiB.
+/// The same for a file of at most 2e9 lines, which is read in blocks: what is in memory are the numbers of the chosen columns. Throws
+/// file::NoRoom when those need more than the limit.
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection);
 
 }  // namespace tactus::table

@@ -2,12 +2,17 @@
 #include "dsp/signal/filter/regularise.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 #include "dsp/geometry/spline.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -16,31 +21,71 @@ namespace tactus::signal {
 
 namespace {
 
-/// A clock coarser than the samples gives several samples the same time.
-std::vector<double> spread_equal_times(std::span<const double> times) {
-    std::vector<double> spread(times.begin(), times.end());
-    for (std::size_t i = 0; i < spread.size();) {
-        std::size_t end = i + 1;
-        while (end < times.size() && times[end] == times[i]) ++end;
-        // The last run has no next time: its samples keep the step of the previous run.
-        const std::size_t before = i > 0 ? i - 1 : 0;
-        const double step =
-            end < times.size() ? (times[end] - times[i]) / static_cast<double>(end - i) : spread[i] - spread[before];
-        for (std::size_t j = i + 1; j < end; ++j) spread[j] = spread[j - 1] + step;
-        i = end;
+constexpr std::size_t block_size = 65536, overlap = 512, max_at_once = 131072;
+
+/// Times read in blocks: fast for places that ascend.
+class TimeBlocks {
+public:
+    explicit TimeBlocks(const TimedSamples& samples) : samples_(&samples) {}
+    double operator[](std::size_t index) {
+        if (index < first_ || index >= first_ + block_.size()) {
+            leave_if_stopped();
+            first_ = index;
+            block_.resize(std::min(block_size, samples_->count - first_));
+            samples_->times(first_, block_);
+        }
+        return block_[index - first_];
     }
-    return spread;
+
+private:
+    const TimedSamples* samples_;
+    std::vector<double> block_;
+    std::size_t first_ = 0;
+};
+
+/// The values at `ranks` (ascending) of a sequence of numbers >= 0 in ascending order, as selection from the sorted numbers would
+/// give them, without keeping the numbers: their bits are in the order of their values, so that four passes that
+/// count 16 bits each find them. `pass(use)` calls use(number) for all of them.
+template <class Pass>
+std::vector<double> select(const std::vector<std::size_t>& ranks, const Pass& pass) {
+    struct Search {
+        std::uint64_t prefix = 0;
+        std::size_t rank = 0;
+        std::vector<std::size_t> counts;
+    };
+    std::vector<Search> searches;
+    for (const std::size_t rank : ranks) searches.push_back({0, rank, {}});
+    for (int shift = 48; shift >= 0; shift -= 16) {
+        for (Search& search : searches) search.counts.assign(65536, 0);
+        const auto above = [&](std::uint64_t bits) { return shift == 48 ? 0 : bits >> (shift + 16); };
+        pass([&](double number) {
+            const auto bits = std::bit_cast<std::uint64_t>(number);
+            for (Search& search : searches)
+                if (above(bits) == search.prefix) ++search.counts[bits >> shift & 0xffff];
+        });
+        for (Search& search : searches) {
+            std::size_t digit = 0;
+            while (digit < 65535 && search.rank >= search.counts[digit]) search.rank -= search.counts[digit++];
+            search.prefix = search.prefix << 16 | digit;
+        }
+    }
+    std::vector<double> found;
+    for (const Search& search : searches) found.push_back(std::bit_cast<double>(search.prefix));
+    return found;
 }
 
 /// The step of the clock itself: the largest length of which all steps are whole multiples. 0 if there is none above a
 /// thousandth of the mean step, or if nothing shows it.
-double clock_step(std::span<const double> times) {
-    const double least = 1e-3 * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+double clock_step(const TimedSamples& samples, double first, double last) {
+    TimeBlocks times(samples);
+    const double least = 1e-3 * (last - first) / static_cast<double>(samples.count - 1);
     // Times are rounded to the digits of a double.
-    const double error = std::max(1e-4 * least, 8e-16 * std::max(std::abs(times.front()), std::abs(times.back())));
-    double common = 0.0;
-    for (std::size_t i = 1; i < times.size(); ++i) {
-        double a = common, b = times[i] - times[i - 1];
+    const double error = std::max(1e-4 * least, 8e-16 * std::max(std::abs(first), std::abs(last)));
+    double common = 0.0, before = first;
+    for (std::size_t i = 1; i < samples.count; ++i) {
+        const double time = times[i];
+        double a = common, b = time - before;
+        before = time;
         while (b > 2.0 * error) {
             if (a == 0.0) {
                 a = b;
@@ -55,66 +100,131 @@ double clock_step(std::span<const double> times) {
     return common;
 }
 
+/// Even times of the samples [first, end) between two gaps.
+struct TimeLine {
+    std::size_t first = 0, end = 0;
+    double start = 0.0, slope = 0.0, middle = 0.0;  // time = start + slope * (index - first - middle)
+    bool is_even = false;  // false: the times as they are
+};
+
 /// Times of an even sampling that a coarse clock rounded to its own steps: a line explains them within one step. Returns
-/// the times on that line, piece by piece between gaps; none if the steps themselves are uneven, or if the clock is so
+/// those lines, piece by piece between gaps; none if the steps themselves are uneven, or if the clock is so
 /// fine that its rounding does not matter.
-std::optional<std::vector<double>> without_rounding(std::span<const double> times) {
-    const double step = clock_step(times);
-    const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& samples, double step, double first_time,
+                                                      double last_time) {
+    const std::size_t size = samples.count;
+    const double mean = (last_time - first_time) / static_cast<double>(size - 1);
     if (step < 0.01 * mean) return std::nullopt;
-    std::vector<double> steps;
     std::map<long, std::size_t> counts;  // steps by their length in steps of the clock
-    for (std::size_t i = 1; i < times.size(); ++i) {
-        const double length = times[i] - times[i - 1];
-        ++counts[std::lround(std::min(length / step, 1e6))];
-        if (length > 0.0) steps.push_back(length);
+    std::array<std::size_t, 64> short_counts{};
+    std::size_t positive = 0;
+    TimeBlocks times(samples);
+    double before = first_time;
+    for (std::size_t i = 1; i < size; ++i) {
+        const double length = times[i] - before;
+        before = times[i];
+        const long whole = std::lround(std::min(length / step, 1e6));
+        if (whole < long(short_counts.size())) ++short_counts[static_cast<std::size_t>(whole)];
+        else ++counts[whole];
+        positive += length > 0.0;
     }
+    for (std::size_t n = 0; n < short_counts.size(); ++n)
+        if (short_counts[n] > 0) counts[long(n)] = short_counts[n];
     // Even times in which a few samples are missing: the other steps are multiples of the usual one. Rounding makes steps
     // that differ by one.
     const auto usual = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
     std::size_t multiples = 0;
     for (const auto& [length, count] : counts)
         if (usual->first > 0 && length > usual->first && length % usual->first == 0) multiples += count;
-    if (20 * usual->second > 19 * (times.size() - 1) && usual->second + multiples == times.size() - 1)
-        return std::nullopt;
+    if (20 * usual->second > 19 * (size - 1) && usual->second + multiples == size - 1) return std::nullopt;
     // A clock whose step divides the mean step rounds all samples alike: other steps are jitter of the samples.
-    const double drift = std::abs(mean / step - std::round(mean / step)) * static_cast<double>(times.size() - 1);
-    if (drift < 2.0 && usual->second + 8 < times.size() - 1) return std::nullopt;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    const double gap = 5.0 * steps[steps.size() / 2];
-    std::vector<double> even(times.begin(), times.end());
+    const double drift = std::abs(mean / step - std::round(mean / step)) * static_cast<double>(size - 1);
+    if (drift < 2.0 && usual->second + 8 < size - 1) return std::nullopt;
+    const double gap = 5.0 * select({positive / 2}, [&](const auto& use) {
+                                 TimeBlocks again(samples);
+                                 double last = first_time;
+                                 for (std::size_t i = 1; i < size; ++i) {
+                                     const double time = again[i];
+                                     if (time > last) use(time - last);
+                                     last = time;
+                                 }
+                             }).front();
+    std::vector<TimeLine> lines;
     bool is_changed = false;
-    for (std::size_t first = 0; first < times.size();) {
+    TimeBlocks ahead(samples);
+    for (std::size_t first = 0; first < size;) {
         std::size_t end = first + 1;
-        while (end < times.size() && times[end] - times[end - 1] <= gap) ++end;
-        if (end - first < 8) {
-            first = end;
-            continue;
+        const double start = ahead[first];
+        double sum = 0.0, moment = 0.0, last = start;
+        // Moments about the first sample, moved to the middle afterwards: the end is not known yet.
+        for (; end < size && ahead[end] - last <= gap; ++end) {
+            last = ahead[end];
+            sum += last - start, moment += static_cast<double>(end - first) * (last - start);
         }
-        const auto count = static_cast<double>(end - first);
-        double sum = 0.0, moment = 0.0;
-        const double middle = 0.5 * (count - 1.0);
-        for (std::size_t i = first; i < end; ++i) {
-            const double time = times[i] - times[first], place = static_cast<double>(i - first) - middle;
-            sum += time, moment += place * time;
+        lines.push_back({first, end, start, 0.0, 0.0, false});
+        if (end - first >= 8) {
+            const auto count = static_cast<double>(end - first);
+            const double middle = 0.5 * (count - 1.0);
+            const double slope = (moment - middle * sum) / (count * (count * count - 1.0) / 12.0),
+                         mean_time = sum / count;
+            double low = 0.0, high = 0.0;
+            for (std::size_t i = first; i < end; ++i) {
+                const double line = mean_time + slope * (static_cast<double>(i - first) - middle);
+                const double off = times[i] - start - line;
+                low = std::min(low, off), high = std::max(high, off);
+            }
+            // Rounding, up, down or to the nearest, moves a time by less than one step; the fitted line lies within it.
+            if (high - low > 1.2 * step) return std::nullopt;
+            is_changed = true;
+            lines.back() = {first, end, start + mean_time, slope, middle, true};
         }
-        const double slope = moment / (count * (count * count - 1.0) / 12.0), mean_time = sum / count;
-        double low = 0.0, high = 0.0;
-        for (std::size_t i = first; i < end; ++i) {
-            const double line = mean_time + slope * (static_cast<double>(i - first) - middle);
-            const double off = times[i] - times[first] - line;
-            low = std::min(low, off), high = std::max(high, off);
-        }
-        // Rounding, up, down or to the nearest, moves a time by less than one step; the fitted line lies within it.
-        if (high - low > 1.2 * step) return std::nullopt;
-        is_changed = true;
-        for (std::size_t i = first; i < end; ++i)
-            even[i] = times[first] + mean_time + slope * (static_cast<double>(i - first) - middle);
         first = end;
     }
     if (!is_changed) return std::nullopt;
-    return even;
+    return lines;
 }
+
+/// The times that are used, in ascending order: those on lines, or with equal times spread up to the next.
+class UsedTimes {
+public:
+    UsedTimes(const TimedSamples& samples, const std::vector<TimeLine>* lines)
+        : samples_(&samples), lines_(lines), times_(samples) {}
+
+    /// The next time; to be called `count` times.
+    double next() {
+        const double time = lines_ ? on_line() : spread();
+        ++at_;
+        return time;
+    }
+
+private:
+    double on_line() {
+        while (at_ >= (*lines_)[line_].end) ++line_;
+        const TimeLine& line = (*lines_)[line_];
+        if (!line.is_even) return times_[at_];
+        return line.start + line.slope * (static_cast<double>(at_ - line.first) - line.middle);
+    }
+
+    double spread() {
+        if (at_ < end_) return last_ += step_;
+        const std::size_t first = end_;
+        const double time = times_[first];
+        end_ = first + 1;
+        while (end_ < samples_->count && times_[end_] == time) ++end_;
+        // The last run has no next time: its samples keep the step of the previous run.
+        const double before = step_;
+        step_ = end_ < samples_->count ? (times_[end_] - time) / static_cast<double>(end_ - first)
+                                       : (first > 0 ? time - last_ : before);
+        return last_ = time;
+    }
+
+    const TimedSamples* samples_;
+    const std::vector<TimeLine>* lines_;
+    TimeBlocks times_;
+    std::size_t at_ = 0, line_ = 0;
+    std::size_t end_ = 0;  // of the run of equal times
+    double step_ = 0.0, last_ = 0.0;
+};
 
 /// Band-limited interpolation between even values: sinc with a Kaiser window of 16 zero crossings to each side.
 class Interpolation {
@@ -191,61 +301,249 @@ void fit_samples(std::span<const double> places, std::span<const double> values,
     }
 }
 
+std::size_t samples_in(const std::vector<std::vector<double>>& block) {
+    return block.empty() ? 0 : block.front().size();
+}
+
+/// Samples between two gaps.
+struct Piece {
+    std::size_t first = 0, end = 0;
+    double start = 0.0, length = 0.0;  // s
+    std::size_t frames = 0;
+};
+
 }  // namespace
 
-EvenRecord regularise(std::span<const double> times, std::span<const std::vector<double>> channels) {
-    if (times.size() < 4) throw Error(fmt::format("there are {} samples; a spectrum needs at least 4", times.size()));
-    for (std::size_t i = 1; i < times.size(); ++i)
-        if (!(times[i] >= times[i - 1])) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
-    if (!(times.back() > times.front())) throw Error("time stands still: every sample has the same time");
-    const std::optional<std::vector<double>> unrounded = without_rounding(times);
-    const std::vector<double> spread = unrounded ? *unrounded : spread_equal_times(times);
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < spread.size(); ++i) steps.push_back(spread[i] - spread[i - 1]);
-    std::vector<double> sorted = steps;
-    std::sort(sorted.begin(), sorted.end());
-    const double gap = 5.0 * sorted[sorted.size() / 2];
+struct Regulariser::State {
+    TimedSamples samples;
+    std::optional<std::vector<TimeLine>> lines;
+    EvenFacts facts;
+    std::vector<Piece> pieces;
+    // Of the next block.
+    std::unique_ptr<UsedTimes> cursor;
+    std::vector<double> times;  // those used, of the samples from `first` on
+    std::size_t first = 0, read = 0;  // samples; `read`: those that the cursor has passed
+    std::size_t piece = 0, part = 0;
+    // Small records are computed once.
+    struct Kept {
+        std::vector<std::vector<double>> block;
+        bool after_gap;
+    };
+    static constexpr std::size_t max_kept = std::size_t{1} << 23;  // numbers
+    std::vector<Kept> kept;
+    std::size_t next_kept = 0;
+    bool keeps = false, is_complete = false;
 
-    EvenRecord even;
-    if (unrounded) even.clock_step = clock_step(times);
+    const std::vector<TimeLine>* used_lines() const { return lines ? &*lines : nullptr; }
+
+    void examine();
+    void deviation_of_steps(double longest);
+    bool compute(std::vector<std::vector<double>>& block, bool& after_gap);
+    void load_times(std::size_t from, std::size_t to);
+};
+
+void Regulariser::State::examine() {
+    const std::size_t size = samples.count;
+    if (size < 4) throw Error(fmt::format("there are {} samples; a spectrum needs at least 4", size));
+    TimeBlocks times(samples);
+    const double first = times[0];
+    double last = first;
+    for (std::size_t i = 1; i < size; ++i) {
+        const double time = times[i];
+        if (!(time >= last)) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
+        last = time;
+    }
+    if (!(last > first)) throw Error("time stands still: every sample has the same time");
+    const double clock = clock_step(samples, first, last);
+    lines = without_rounding(samples, clock, first, last);
+    if (lines) facts.clock_step = clock;
+    const auto for_each_step = [&](const auto& use) {
+        UsedTimes used(samples, used_lines());
+        double before = used.next();
+        for (std::size_t i = 1; i < size; ++i) {
+            const double time = used.next();
+            use(time - before);
+            before = time;
+        }
+    };
+    const double gap = 5.0 * select({(size - 1) / 2}, [&](const auto& use) {
+                                 for_each_step([&](double step) { use(std::max(step, 0.0)); });
+                             }).front();
+    facts.shortest_step = std::numeric_limits<double>::infinity();
     double present = 0.0;
-    for (const double step : steps) {
+    UsedTimes used(samples, used_lines());
+    Piece open{0, 0, used.next(), 0.0, 0};
+    double before = open.start;
+    const auto close = [&](std::size_t end) {
+        open.end = end, open.length = before - open.start;
+        // A sum of all steps would gather their rounding.
+        present += open.length;
+        if (end - open.first >= 4) pieces.push_back(open);
+    };
+    for (std::size_t i = 1; i < size; ++i) {
+        const double time = used.next(), step = time - before;
+        facts.shortest_step = std::min(facts.shortest_step, step);
         if (step > gap) {
-            ++even.gaps;
-            even.lost += step;
+            ++facts.gaps;
+            facts.lost += step;
+            close(i);
+            open = {i, 0, time, 0.0, 0};
         } else {
-            present += step;
-            even.longest_step = std::max(even.longest_step, step);
+            facts.longest_step = std::max(facts.longest_step, step);
         }
+        before = time;
     }
-    even.shortest_step = sorted.front();
-    const std::size_t counted = steps.size() - even.gaps;
+    close(size);
+    const std::size_t counted = size - 1 - facts.gaps;
     if (!(present > 0.0)) throw Error("time stands still: no two samples follow each other");
-    even.rate = static_cast<double>(counted) / present;
-    even.usable =
-        0.5 / std::max(sorted[static_cast<std::size_t>(0.99 * static_cast<double>(counted - 1))], 1.0 / even.rate);
-    for (std::size_t first = 0; first < spread.size();) {
-        std::size_t end = first + 1;
-        while (end < spread.size() && steps[end - 1] <= gap) ++end;
-        if (end - first >= 4) {
-            const double length = spread[end - 1] - spread[first];
-            const auto count = static_cast<std::size_t>(std::floor(length * even.rate * (1.0 + 1e-12))) + 1;
-            std::vector<std::vector<double>>& piece = even.pieces.emplace_back();
-            for (const std::vector<double>& values : channels) {
-                const auto from = static_cast<std::ptrdiff_t>(first), to = static_cast<std::ptrdiff_t>(end);
-                const geometry::Spline curve({spread.begin() + from, spread.begin() + to},
-                                             {values.begin() + from, values.begin() + to});
-                std::vector<double>& out = piece.emplace_back(count);
-                for (std::size_t i = 0; i < count; ++i)
-                    out[i] = curve(spread[first] + static_cast<double>(i) / even.rate).value;
-                std::vector<double> places;
-                for (std::size_t i = first; i < end; ++i) places.push_back((spread[i] - spread[first]) * even.rate);
-                fit_samples(places, std::span(values).subspan(first, end - first), out);
-            }
-        }
-        first = end;
+    facts.rate = static_cast<double>(counted) / present;
+    const auto rank = static_cast<std::size_t>(0.99 * static_cast<double>(counted - 1));
+    const double long_step =
+        facts.longest_step - facts.shortest_step > 1e-9 * facts.longest_step
+            ? select({rank}, [&](const auto& use) { for_each_step([&](double step) { use(std::max(step, 0.0)); }); })
+                  .front()
+            : facts.longest_step;
+    facts.usable = 0.5 / std::max(long_step, 1.0 / facts.rate);
+    deviation_of_steps(facts.longest_step);
+    for (Piece& piece : pieces) {
+        piece.frames = static_cast<std::size_t>(std::floor(piece.length * facts.rate * (1.0 + 1e-12))) + 1;
+        facts.frames += piece.frames;
     }
-    if (even.pieces.empty()) throw Error("no four samples follow each other without a gap");
+    if (pieces.empty()) throw Error("no four samples follow each other without a gap");
+    keeps = facts.frames * samples.channels <= max_kept;
+}
+
+void Regulariser::State::deviation_of_steps(double longest) {
+    TimeBlocks times(samples);
+    double sum = 0.0, squares = 0.0, count = 0.0, before = times[0];
+    for (std::size_t i = 1; i < samples.count; ++i) {
+        const double time = times[i], step = time - before;
+        before = time;
+        if (step > longest) continue;
+        sum += step, squares += step * step, ++count;
+    }
+    const double mean = count > 0.0 ? sum / count : 0.0;
+    facts.step_deviation = count > 0.0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0.0;
+}
+
+/// Makes `times` those of the samples [from, to). Both ascend from call to call.
+void Regulariser::State::load_times(std::size_t from, std::size_t to) {
+    if (!cursor) cursor = std::make_unique<UsedTimes>(samples, used_lines());
+    if (from >= first + times.size()) times.clear(), first = from;
+    else times.erase(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(from - first)), first = from;
+    for (; read < to; ++read) {
+        const double time = cursor->next();
+        if (read >= from) times.push_back(time);
+    }
+}
+
+bool Regulariser::State::compute(std::vector<std::vector<double>>& block, bool& after_gap) {
+    if (piece == pieces.size()) return false;
+    leave_if_stopped();
+    const Piece& of = pieces[piece];
+    const std::size_t size = of.end - of.first, parts = size <= max_at_once ? 1 : size / block_size;
+    const std::size_t begin = of.first + part * block_size, end = part + 1 == parts ? of.end : begin + block_size;
+    const std::size_t from = std::max(of.first, begin - std::min(begin, overlap)), to = std::min(of.end, end + overlap);
+    load_times(from, to);
+    const auto place_of = [&](std::size_t i) { return (times[i - from] - of.start) * facts.rate; };
+    // A place off by this share of a step changes a component at half the rate by -110 dB.
+    bool is_even = true;
+    for (std::size_t i = from; i < to && is_even; ++i)
+        is_even = std::abs(place_of(i) - static_cast<double>(i - of.first)) < 1e-6;
+    // The first frame of a part, the same for the parts before and behind, also if one of them is even.
+    const auto frame_at = [&](std::size_t i) {
+        return i == of.first ? 0
+               : i == of.end
+                   ? of.frames
+                   : std::min(of.frames, static_cast<std::size_t>(std::ceil(std::max(0.0, place_of(i) - 1e-5))));
+    };
+    block.resize(samples.channels);
+    if (is_even && (end != of.end || of.frames == size)) {
+        for (std::size_t c = 0; c < samples.channels; ++c) {
+            block[c].resize(end - begin);
+            samples.values(c, begin, block[c]);
+        }
+    } else {
+        const std::size_t first_frame = frame_at(begin), end_frame = frame_at(end);
+        // The grid of the part: from its first frame on, as far as its samples reach.
+        const std::size_t grid =
+            std::min(first_frame, from == of.first ? 0 : static_cast<std::size_t>(std::ceil(place_of(from))));
+        const std::size_t grid_end =
+            to == of.end ? of.frames : static_cast<std::size_t>(std::floor(place_of(to - 1))) + 1;
+        std::vector<double> places, values(to - from);
+        for (std::size_t i = from; i < to; ++i) places.push_back(place_of(i) - static_cast<double>(grid));
+        for (std::size_t c = 0; c < samples.channels; ++c) {
+            samples.values(c, from, values);
+            std::vector<double> out(grid_end - grid);
+            const geometry::Spline curve(times, values);
+            for (std::size_t n = 0; n < out.size(); ++n)
+                out[n] = curve(of.start + static_cast<double>(grid + n) / facts.rate).value;
+            fit_samples(places, values, out);
+            block[c].assign(out.begin() + static_cast<std::ptrdiff_t>(first_frame - grid),
+                            out.begin() + static_cast<std::ptrdiff_t>(end_frame - grid));
+        }
+    }
+    after_gap = part == 0 && piece > 0;
+    if (++part == parts) ++piece, part = 0;
+    return true;
+}
+
+Regulariser::Regulariser(TimedSamples samples) : state_(std::make_unique<State>()) {
+    state_->samples = std::move(samples);
+    state_->examine();
+}
+Regulariser::~Regulariser() = default;
+Regulariser::Regulariser(Regulariser&&) noexcept = default;
+Regulariser& Regulariser::operator=(Regulariser&&) noexcept = default;
+
+const EvenFacts& Regulariser::facts() const noexcept { return state_->facts; }
+
+bool Regulariser::next(std::vector<std::vector<double>>& block, bool& after_gap) {
+    State& state = *state_;
+    if (state.is_complete) {
+        if (state.next_kept == state.kept.size()) return false;
+        const State::Kept& kept = state.kept[state.next_kept++];
+        block = kept.block, after_gap = kept.after_gap;
+        return true;
+    }
+    // A gap before a part without frames belongs to the next part.
+    bool is_after_gap = false;
+    do {
+        bool gap = false;
+        if (!state.compute(block, gap)) {
+            state.is_complete = state.keeps;
+            state.next_kept = state.kept.size();
+            return false;
+        }
+        is_after_gap = is_after_gap || gap;
+    } while (samples_in(block) == 0);
+    after_gap = is_after_gap;
+    if (state.keeps) state.kept.push_back({block, after_gap});
+    return true;
+}
+
+void Regulariser::rewind() {
+    State& state = *state_;
+    state.cursor.reset();
+    state.times.clear();
+    state.first = state.read = state.piece = state.part = state.next_kept = 0;
+    if (!state.is_complete) state.kept.clear();
+}
+
+EvenRecord regularise(std::span<const double> times, std::span<const std::vector<double>> channels) {
+    const auto copy = [](std::span<const double> from, std::size_t first, std::span<double> out) {
+        std::ranges::copy(from.subspan(first, out.size()), out.begin());
+    };
+    Regulariser source(
+        {times.size(), channels.size(), [&](std::size_t first, std::span<double> out) { copy(times, first, out); },
+         [&](std::size_t channel, std::size_t first, std::span<double> out) { copy(channels[channel], first, out); }});
+    EvenRecord even{source.facts(), {}};
+    std::vector<std::vector<double>> block;
+    for (bool after_gap = false; source.next(block, after_gap);) {
+        if (even.pieces.empty() || after_gap) even.pieces.emplace_back(block.size());
+        for (std::size_t c = 0; c < block.size(); ++c)
+            even.pieces.back()[c].insert(even.pieces.back()[c].end(), block[c].begin(), block[c].end());
+    }
     return even;
 }
 

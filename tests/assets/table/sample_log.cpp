@@ -34,7 +34,8 @@ TEST_CASE(
     selection.columns = {"temp", "2"};
     const table::SampleLog log = read("t_s;a;temp\r\n0,5;1;20,25\r\n1,0;2;20,5\r\n", selection);
     CHECK(log.times == std::vector{0.5, 1.0});
-    CHECK(log.columns == std::vector<std::vector<double>>{{20.25, 20.5}, {1.0, 2.0}});
+    CHECK(log.columns[0] == std::vector{20.25, 20.5});
+    CHECK(log.columns[1] == std::vector{1.0, 2.0});
     CHECK(read("0\t5\n1\t6\n").columns[0] == std::vector{5.0, 6.0});
     selection.columns = {"a"};
     selection.time_unit = "us";

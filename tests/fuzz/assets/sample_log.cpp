@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
@@ -18,7 +19,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             tactus::table::read_sample_log({reinterpret_cast<const char*>(data), size}, "l.csv", {});
         for (const auto& column : log.columns)
             if (column.size() != log.times.size()) std::abort();
-        const tactus::signal::EvenRecord even = tactus::signal::regularise(log.times, log.columns);
+        std::vector<std::vector<double>> columns;
+        for (const auto& column : log.columns) columns.push_back(column.values());
+        const tactus::signal::EvenRecord even = tactus::signal::regularise(log.times.values(), columns);
         if (!(even.rate > 0.0)) std::abort();
     } catch (const tactus::Error& error) {
         if (std::string_view(error.what()).empty()) std::abort();
