@@ -90,6 +90,7 @@ class LimitCount {
 public:
     void push(std::span<const double> values) {
         for (const double x : values) {
+            if (!is_whole_) return;
             is_whole_ = is_whole_ && x == std::round(x) && x <= 32768.0 && x >= -32768.0;
             count_ += x >= 32767.0 || x == -32768.0;
         }

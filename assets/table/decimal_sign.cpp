@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace tactus::table {
 
@@ -66,6 +67,14 @@ std::optional<DecimalSign::Doubt> DecimalSign::doubt() const {
 }
 
 char DecimalSign::sign() const { return commas_ ? ',' : points_ || maybe_points_ ? '.' : '\0'; }
+
+std::optional<double> DecimalSign::parse_known(std::string_view field) const {
+    double number = 0.0;
+    const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), number);
+    if (failure != std::errc{} || end != field.data() + field.size() || !std::isfinite(number)) return std::nullopt;
+    if (!points_ && field.find('.') != std::string_view::npos) return std::nullopt;
+    return number;
+}
 
 std::optional<double> DecimalSign::parse(std::string_view field) const {
     std::array<char, 64> buffer;

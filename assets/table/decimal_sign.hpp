@@ -26,6 +26,10 @@ public:
     /// ',' or '.', or '\0' when no number has either.
     char sign() const;
 
+    /// The finite number of a field that shows nothing new: a whole number, or one with a point after another such. None for
+    /// others, which `note` and `parse` read.
+    std::optional<double> parse_known(std::string_view field) const;
+
     /// The number with the decimal sign replaced; none when it is no number. Infinity and NaN are numbers.
     std::optional<double> parse(std::string_view field) const;
 

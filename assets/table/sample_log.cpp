@@ -309,6 +309,8 @@ private:
     std::optional<double> number_in(std::size_t column) {
         std::string_view field = fields_[column];
         if (field.empty()) return std::nullopt;
+        // Nearly all fields: a number whose way of writing is known.
+        if (const std::optional<double> plain = sign_.parse_known(field)) return plain;
         double factor = 1.0;
         if (const std::optional<Measure> measure = with_unit(field)) {
             field = measure->number;

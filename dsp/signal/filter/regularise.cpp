@@ -23,6 +23,10 @@ namespace {
 
 constexpr std::size_t block_size = 65536, overlap = 512, max_at_once = 131072;
 
+/// Samples that are off their even places by less than this share of a step are taken as they are: a component at half the
+/// rate changes by -110 dB.
+constexpr double max_off = 1e-6;
+
 /// Times read in blocks: fast for places that ascend.
 class TimeBlocks {
 public:
@@ -333,6 +337,7 @@ struct Regulariser::State {
     std::vector<Kept> kept;
     std::size_t next_kept = 0;
     bool keeps = false, is_complete = false;
+    bool is_even = false;  // the whole record
 
     const std::vector<TimeLine>* used_lines() const { return lines ? &*lines : nullptr; }
 
@@ -347,13 +352,34 @@ void Regulariser::State::examine() {
     if (size < 4) throw Error(fmt::format("there are {} samples; a spectrum needs at least 4", size));
     TimeBlocks times(samples);
     const double first = times[0];
-    double last = first;
+    double last = first, squares = 0.0;
+    facts.shortest_step = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < size; ++i) {
-        const double time = times[i];
-        if (!(time >= last)) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
+        const double time = times[i], step = time - last;
+        if (!(step >= 0.0)) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
+        facts.shortest_step = std::min(facts.shortest_step, step);
+        facts.longest_step = std::max(facts.longest_step, step);
+        squares += step * step;
         last = time;
     }
     if (!(last > first)) throw Error("time stands still: every sample has the same time");
+    const double mean = (last - first) / static_cast<double>(size - 1);
+    if (facts.longest_step - facts.shortest_step < max_off * mean) {
+        // Nothing to interpolate, no gaps: what follows would find the same, in many passes.
+        is_even = true;
+        for (std::size_t i = 0; i < size && is_even; ++i)
+            is_even = std::abs((times[i] - first) / mean - static_cast<double>(i)) < max_off;
+    }
+    if (is_even) {
+        facts.rate = 1.0 / mean;
+        facts.usable = 0.5 / std::max(facts.longest_step, mean);
+        facts.step_deviation = std::sqrt(std::max(0.0, squares / static_cast<double>(size - 1) - mean * mean));
+        facts.frames = size;
+        pieces.push_back({0, size, first, last - first, size});
+        keeps = size * samples.channels <= max_kept;
+        return;
+    }
+    facts.longest_step = 0.0;
     const double clock = clock_step(samples, first, last);
     lines = without_rounding(samples, clock, first, last);
     if (lines) facts.clock_step = clock;
@@ -444,12 +470,11 @@ bool Regulariser::State::compute(std::vector<std::vector<double>>& block, bool& 
     const std::size_t size = of.end - of.first, parts = size <= max_at_once ? 1 : size / block_size;
     const std::size_t begin = of.first + part * block_size, end = part + 1 == parts ? of.end : begin + block_size;
     const std::size_t from = std::max(of.first, begin - std::min(begin, overlap)), to = std::min(of.end, end + overlap);
-    load_times(from, to);
+    if (!is_even) load_times(from, to);
     const auto place_of = [&](std::size_t i) { return (times[i - from] - of.start) * facts.rate; };
-    // A place off by this share of a step changes a component at half the rate by -110 dB.
-    bool is_even = true;
-    for (std::size_t i = from; i < to && is_even; ++i)
-        is_even = std::abs(place_of(i) - static_cast<double>(i - of.first)) < 1e-6;
+    bool is_part_even = true;
+    for (std::size_t i = from; i < to && is_part_even && !is_even; ++i)
+        is_part_even = std::abs(place_of(i) - static_cast<double>(i - of.first)) < max_off;
     // The first frame of a part, the same for the parts before and behind, also if one of them is even.
     const auto frame_at = [&](std::size_t i) {
         return i == of.first ? 0
@@ -458,7 +483,7 @@ bool Regulariser::State::compute(std::vector<std::vector<double>>& block, bool& 
                    : std::min(of.frames, static_cast<std::size_t>(std::ceil(std::max(0.0, place_of(i) - 1e-5))));
     };
     block.resize(samples.channels);
-    if (is_even && (end != of.end || of.frames == size)) {
+    if (is_part_even && (end != of.end || of.frames == size)) {
         for (std::size_t c = 0; c < samples.channels; ++c) {
             block[c].resize(end - begin);
             samples.values(c, begin, block[c]);
