@@ -23,7 +23,7 @@ bool scale_to_whole(std::span<const double> values, int exponent, std::span<std:
     bool fits = true;
     for (std::size_t n = 0; n < values.size(); ++n) {
         const double scaled = std::nearbyint(values[n] * power);
-        // Also false for NaN. Minus zero has no whole number.
+        // Also false for NaN.
         fits = fits && std::abs(scaled) < max_whole &&
                std::bit_cast<std::uint64_t>(scaled / power) == std::bit_cast<std::uint64_t>(values[n]);
         whole[n] = fits ? static_cast<std::int64_t>(scaled) : 0;
@@ -105,7 +105,8 @@ void PackedColumn::unpack(const Block& block, std::size_t first, std::span<doubl
 }
 
 void PackedColumn::push_back(double value) {
-    open_.push_back(value);
+    // Minus zero, as "-0.00" is read, has no whole number.
+    open_.push_back(value + 0.0);
     ++size_;
     if (open_.size() < block_size) return;
     blocks_.push_back(pack(open_));

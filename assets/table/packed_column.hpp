@@ -11,7 +11,7 @@ namespace tactus::table {
 
 /// Text holds decimal numbers of few digits: in blocks of 4096 they are stored as whole multiples of a power of ten, in 1, 2 or
 /// 4 bytes each, or as a line if they are even (times). Numbers with more digits are stored as they are. What is read back is
-/// equal to the last bit; a general compressor would take longer than the parser.
+/// equal to the last bit, but minus zero is zero; a general compressor would take longer than the parser.
 class PackedColumn {
 public:
     void push_back(double value);

@@ -6,8 +6,12 @@
 #include "dsp/geometry/spline.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <span>
+#include <vector>
 
 using namespace tactus;
 
@@ -128,4 +132,63 @@ TEST_CASE("even times with lost samples, and uneven ones, are not taken for roun
         times.push_back(time), values.push_back(wave(time));
     }
     CHECK(signal::regularise(times, Channels{values}).clock_step == 0.0);
+}
+
+TEST_CASE("a long record computed in parts is the wave it was taken from, at the borders of the parts too") {
+    const Random random{3};
+    const std::size_t count = 270000;
+    std::vector<double> times, values;
+    for (std::size_t i = 0; i < count; ++i) {
+        // Even in the middle, where the samples are passed through.
+        const double off = i > 120000 && i < 210000 ? 0.0 : 0.3 * random.uniform(i) - 0.15;
+        times.push_back(0.003 * (static_cast<double>(i) + (i == 0 || i + 1 == count ? 0.0 : off)));
+        values.push_back(wave(times.back()));
+    }
+    const signal::EvenRecord even = signal::regularise(times, Channels{values});
+    REQUIRE(even.pieces.size() == 1);
+    const std::vector<double>& out = even.pieces[0][0];
+    REQUIRE(out.size() == even.frames);
+    REQUIRE(out.size() == count);
+    double worst = 0.0;
+    for (std::size_t i = 10; i + 10 < out.size(); ++i)
+        worst = std::max(worst, std::abs(out[i] - wave(static_cast<double>(i) / even.rate)));
+    CHECK(worst < 1e-3);
+}
+
+TEST_CASE("the blocks of a record are the same after a rewind, kept or computed anew") {
+    const Random random{5};
+    for (const std::size_t channels : {std::size_t{1}, std::size_t{30}}) {
+        const std::size_t count = 300000;  // of 30 channels more than are kept
+        std::vector<double> times;
+        for (std::size_t i = 0; i < count; ++i)
+            times.push_back(0.001 * (static_cast<double>(i) + (i > 200000 ? 50.0 : 0.0)));
+        signal::Regulariser even({count, channels,
+                                  [&](std::size_t first, std::span<double> out) {
+                                      std::copy_n(times.begin() + static_cast<std::ptrdiff_t>(first), out.size(),
+                                                  out.begin());
+                                  },
+                                  [&](std::size_t channel, std::size_t first, std::span<double> out) {
+                                      for (std::size_t n = 0; n < out.size(); ++n)
+                                          out[n] = random.uniform(first + n) + static_cast<double>(channel);
+                                  }});
+        CHECK(even.facts().gaps == 1);
+        CHECK(even.facts().lost == Approx(0.051));
+        double first_sum = 0.0;
+        for (int round = 0; round < 2; ++round) {
+            double sum = 0.0;
+            std::size_t frames = 0, gaps = 0;
+            std::vector<std::vector<double>> block;
+            for (bool after_gap = false; even.next(block, after_gap);) {
+                gaps += after_gap;
+                frames += block.front().size();
+                for (const double x : block.back()) sum += x * static_cast<double>(frames % 17);
+            }
+            CHECK(frames == even.facts().frames);
+            CHECK(gaps == 1);
+            CHECK(frames == count);
+            if (round == 0) first_sum = sum;
+            CHECK(sum == first_sum);
+            even.rewind();
+        }
+    }
 }
