@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
 
 namespace tactus::sound {
 
@@ -21,6 +22,8 @@ constexpr std::size_t block_frames = 65536;
 bool is_log(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    for (const std::string_view recording : {".uff", ".unv", ".uf", ".58", ".bunv", ".mat"})
+        if (extension == recording) return true;
     return extension == ".csv" || extension == ".tsv" || extension == ".txt" || extension == ".log" ||
            extension == ".lvm" || extension == ".asc" || extension == ".dat";
 }

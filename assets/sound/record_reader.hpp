@@ -41,7 +41,7 @@ struct RecordBlock {
 
 class RecordReader {
 public:
-    /// Opens .csv, .tsv, .txt, .log, .lvm, .asc and .dat as logs, others as sound. Without a calibration the one that the
+    /// Opens .csv, .tsv, .txt, .log, .lvm, .asc and .dat as logs, .uff, .unv, .uf, .58, .bunv and .mat too, others as sound. Without a calibration the one that the
     /// file states is used, and without that the values are not scaled. A sensitivity makes volts the quantity that the
     /// sensor measured. Reads only `stretch`; all that is said of the record is then said of that. Throws Error when the
     /// file cannot be used, or is shorter.

@@ -42,6 +42,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& message) const {
+        if (!shape_.has_lines) throw Error(SourceLocation{file_, 0, 0}, message);
         const int line = shape_.header_line > 0 ? shape_.header_line : shape_.first_row;
         throw Error(SourceLocation{file_, line, 1}, message);
     }

@@ -40,7 +40,8 @@ struct LogShape {
     std::vector<std::string> units;     ///< of the row of units; as many as names, or none
     std::vector<CellKind> kinds;        ///< of most cells of a column
     std::optional<StatedNumber> rate;   ///< Hz: a sample rate or interval that a line above the rows states
-    std::string sensitivity;            ///< of the sensor, "100 mV/g", as a line above the rows states; empty: none does
+    bool has_lines = true;              ///< false: of a binary file, whose errors name no line
+    std::string sensitivity;  ///< of the sensor, "100 mV/g", as a line above the rows states; empty: none does
 };
 
 /// Looks at the first thousand lines. The table begins at the first rows that look like most: with as many fields, and numbers in

@@ -8,6 +8,7 @@
 #include "assets/table/log_columns.hpp"
 #include "assets/table/log_lines.hpp"
 #include "assets/table/log_shape.hpp"
+#include "assets/table/recording.hpp"
 #include "assets/table/time_unit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
@@ -273,36 +274,15 @@ private:
     TimeUnit guessed_unit() {
         std::vector<double> first(std::min(log_.times.size(), most_steps));
         log_.times.read(0, first);
-        const double step = mean_step(first);
-        if (step == 0.0) return time_units().front();
-        const TimeUnitGuess guess = guess_time_unit(static_cast<double>(origin_) + log_.times.front(), step);
-        const auto at_rate = [&](const TimeUnit& unit) {
-            return fmt::format("{} ({:.4g} Hz)", unit.symbol, 1.0 / (step * unit.seconds));
+        const auto fail = [&](const std::string& message) {
+            fail_at(shape_.header_line > 0 ? shape_.header_line : shape_.first_row,
+                    static_cast<int>(*columns_.time) + 1, message);
         };
-        if (shape_.rate)
-            for (const TimeUnit& unit : time_units())
-                if (std::abs(step * unit.seconds * shape_.rate->value - 1.0) < 0.05) {
-                    unit_reason_ = fmt::format("no unit is stated; {} agrees with the rate in line {}", at_rate(unit),
-                                               shape_.rate->line);
-                    return unit;
-                }
-        if (guess.fitting.size() == 1) {
-            unit_reason_ = guess.is_epoch
-                               ? fmt::format("no unit is stated; the times are dates in {}", guess.fitting[0].symbol)
-                               : fmt::format("no unit is stated; only {} is plausible", at_rate(guess.fitting[0]));
-            return guess.fitting.front();
-        }
-        std::vector<std::string> rates;
-        for (const TimeUnit& unit : guess.fitting) rates.push_back(at_rate(unit));
-        fail_at(
-            shape_.header_line > 0 ? shape_.header_line : shape_.first_row, static_cast<int>(*columns_.time) + 1,
-            fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}", log_.time_name,
-                        rates.empty()
-                            ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
-                            : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
-                        rates.empty() ? ": s, ms, us or ns"
-                                      : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
-                                                    guess.fitting.back().symbol)));
+        SettledTimeUnit settled =
+            table::settle_time_unit(first, static_cast<double>(origin_), shape_.rate ? shape_.rate->value : 0.0,
+                             shape_.rate ? fmt::format("line {}", shape_.rate->line) : "", log_.time_name, fail);
+        unit_reason_ = std::move(settled.reason);
+        return std::move(settled.unit);
     }
 
     /// None: the field has no value.
@@ -477,6 +457,7 @@ std::string LogForm::separator_name() const {
 std::string LogForm::decimal_name() const { return decimal == '.' ? "point" : decimal == ',' ? "comma" : "none seen"; }
 
 std::string describe(const LogForm& form) {
+    if (!form.format.empty()) return form.format + "; time: " + form.time;
     std::string text = form.separator == '\0'  ? "one column"
                        : form.separator == ' ' ? "separated by blanks"
                                                : form.separator_name() + "-separated";
@@ -509,9 +490,21 @@ SampleLog read_sample_log(std::string_view text, const std::string& file, const 
 }
 
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection) {
-    file::require_file(path);
+    const std::uintmax_t size = file::require_file(path);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw Error(fmt::format("{}: cannot be read", path.string()));
+    std::array<char, 200> start{};
+    file.read(start.data(), start.size());
+    const std::string_view begin(start.data(), static_cast<std::size_t>(file.gcount()));
+    if (is_matlab_file(begin) || is_universal_file(begin)) {
+        file::require_room(static_cast<double>(size), path, "its channels");
+        const std::string bytes = file::read_whole_file(path);
+        return log_of_recording(
+            is_matlab_file(begin) ? read_matlab_file(bytes, path.string()) : read_universal_file(bytes, path.string()),
+            path.string(), selection);
+    }
+    file.clear();
+    file.seekg(0);
     const auto source = [&](std::span<char> out) {
         file.read(out.data(), static_cast<std::streamsize>(out.size()));
         if (file.bad()) throw Error(fmt::format("{}: cannot be read", path.string()));

@@ -26,6 +26,7 @@ struct LogSelection {
 
 /// What was understood of the form of a log, so that a wrong guess is seen.
 struct LogForm {
+    std::string format{};    ///< of files that are no text table: "UFF58, 3 datasets"; empty: what follows counts
     char separator = ',';    ///< '\0': one column
     char decimal = '\0';     ///< '.' or ','; '\0': no number shows it
     int header_line = 0, units_line = 0, first_row = 0;  ///< lines from 1; 0: none
@@ -61,8 +62,8 @@ struct SampleLog {
 /// holds several sensors in turn, unless `where` chooses one, or chosen columns with clocks of different rates. Throws Error with file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
-/// The same for a file of at most 2e9 lines, which is read in blocks: what is in memory are the numbers of the chosen columns. Throws
-/// file::NoRoom when those need more than the limit.
+/// The same for a file: a log of at most 2e9 lines, which is read in blocks: what is in memory are the numbers of the chosen columns. Throws
+/// file::NoRoom when those need more than the limit. Universal files (dataset 58) and MATLAB 5 files are detected by their first bytes.
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection);
 
 }  // namespace tactus::table

@@ -3,6 +3,9 @@
 
 #include "dsp/core/lower.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -118,6 +121,32 @@ TimeUnitGuess guess_time_unit(double first_time, double step) {
         guess.fitting.push_back(unit);
     }
     return guess;
+}
+
+SettledTimeUnit settle_time_unit(std::span<const double> times, double origin, double rate, const std::string& rate_place,
+                                 const std::string& column, const std::function<void(const std::string&)>& fail) {
+    const double step = mean_step(times);
+    if (step == 0.0) return {time_units().front(), ""};
+    const TimeUnitGuess guess = guess_time_unit(origin + times.front(), step);
+    const auto at_rate = [&](const TimeUnit& unit) {
+        return fmt::format("{} ({:.4g} Hz)", unit.symbol, 1.0 / (step * unit.seconds));
+    };
+    for (const TimeUnit& unit : time_units())
+        if (rate > 0.0 && std::abs(step * unit.seconds * rate - 1.0) < 0.05)
+            return {unit, fmt::format("no unit is stated; {} agrees with the rate in {}", at_rate(unit), rate_place)};
+    if (guess.fitting.size() == 1)
+        return {guess.fitting.front(),
+                guess.is_epoch ? fmt::format("no unit is stated; the times are dates in {}", guess.fitting[0].symbol)
+                               : fmt::format("no unit is stated; only {} is plausible", at_rate(guess.fitting[0]))};
+    std::vector<std::string> rates;
+    for (const TimeUnit& unit : guess.fitting) rates.push_back(at_rate(unit));
+    fail(fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}", column,
+                     rates.empty() ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
+                                   : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
+                     rates.empty() ? ": s, ms, us or ns"
+                                   : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
+                                                 guess.fitting.back().symbol)));
+    return {};
 }
 
 }  // namespace tactus::table

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,7 +32,7 @@ double mean_step(std::span<const double> times);
 
 struct TimeUnitGuess {
     std::vector<TimeUnit> fitting;  ///< one: the unit; several: not decidable; none: implausible in any unit
-    bool is_epoch = false;          ///< decided by the size of the first time, which is a date from 2001 to 2096
+    bool is_epoch = false;  ///< decided by the size of the first time, which is a date from 2001 to 2096
 };
 
 /// The units in which samples with that mean step come at 10 Hz to 200 kHz (with a margin of a tenth, so that a rate at
@@ -39,5 +40,17 @@ struct TimeUnitGuess {
 /// is recorded at these rates; a unit that is wrong by 1000 turns a verdict around, so two units that fit are reported
 /// rather than weighed against each other.
 TimeUnitGuess guess_time_unit(double first_time, double step);
+
+/// The unit of times that neither state nor name one: that of a date, that of a rate which the file states, or the only plausible
+/// one, with the reason.
+struct SettledTimeUnit {
+    TimeUnit unit;
+    std::string reason;
+};
+/// `times`: the first of them, without `origin`. `rate`: Hz, as stated; 0: none. `rate_place`: where, "line 3". `fail` is called
+/// with the message when no unit or several fit, and must throw.
+SettledTimeUnit settle_time_unit(std::span<const double> times, double origin, double rate,
+                                 const std::string& rate_place, const std::string& column,
+                                 const std::function<void(const std::string&)>& fail);
 
 }  // namespace tactus::table

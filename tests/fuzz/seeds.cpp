@@ -8,6 +8,7 @@
 #include "assets/volume/write_volume.hpp"
 #include "tests/assets/volume/written_volume.hpp"
 #include "tests/support/bone_files.hpp"
+#include "tests/support/written_recordings.hpp"
 #include "tests/support/written_zip.hpp"
 
 #include <glm/geometric.hpp>
@@ -30,6 +31,35 @@ WrittenVolume ball() {
     v.origin = {-1.5, -1.5, 10.0};
     v.fill([](const Vec3& p) { return glm::length(p - Vec3(0.0, 0.0, 12.0)) < 1.2 ? 1000.0 : -1000.0; });
     return v;
+}
+
+void write_universal(const Path& folder) {
+    for (const bool is_binary : {false, true})
+        for (const bool is_even : {false, true}) {
+            test::UniversalFunction f;
+            f.is_binary = is_binary, f.is_even = is_even, f.type = is_even ? 2 : 4;
+            for (int n = 0; n < 12; ++n) f.times.push_back(n * 5e-4), f.values.push_back(n % 3);
+            file::write_whole_file(
+                folder / fmt::format("{}{}.uff", is_binary ? "binary" : "text", is_even ? "_even" : ""),
+                "    -1\n   164\n         1SI\n    -1\n" + test::universal_function(f) + test::universal_function(f));
+        }
+}
+
+void write_matlab(const Path& folder) {
+    const std::vector<double> times{0.0, 0.001, 0.002, 0.003}, both{1.0, 2.0, 1.0, 3.0, 5.0, 4.0, 6.0, 5.0};
+    const std::string variables =
+        test::matlab_numbers("t", 4, 1, times) + test::matlab_numbers("ax", 4, 2, both, false, 3);
+    file::write_whole_file(folder / "plain.mat", test::matlab_file(variables));
+    file::write_whole_file(folder / "packed.mat",
+                           test::matlab_file(test::matlab_packed(test::matlab_numbers("ax", 4, 1, times)) +
+                                             test::matlab_packed(test::matlab_numbers("fs", 1, 1, {1000.0}))));
+    const std::string names("time\0\0\0\0acc_g\0\0\0", 16);
+    file::write_whole_file(folder / "structure.mat",
+                           test::matlab_file(test::matlab_element(
+                               14, test::matlab_array(2, "s", 1, 1) + test::bytes_of(std::uint32_t{0x40005}) +
+                                       test::bytes_of(std::int32_t{8}) + test::matlab_element(1, names) +
+                                       test::matlab_numbers("", 4, 1, times) + test::matlab_numbers("", 4, 1, times))));
+    file::write_whole_file(folder / "big.mat", test::matlab_file(test::matlab_numbers("x", 1, 4, times, true), true));
 }
 
 void write_nrrd(const Path& folder) {
@@ -156,6 +186,8 @@ void write_seeds(const std::filesystem::path& root) {
         return root / target;
     };
     write_nrrd(folder("assets_nrrd"));
+    write_universal(folder("assets_universal_file"));
+    write_matlab(folder("assets_matlab_file"));
     write_nifti(folder("assets_nifti"));
     write_dicom(folder("assets_dicom"));
     write_dicom_zip(folder("assets_dicom_zip"));

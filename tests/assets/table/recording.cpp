@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/table/recording.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/written_recordings.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace tactus;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+std::vector<double> wave(std::size_t count, double scale = 1.0) {
+    std::vector<double> values;
+    // Numbers that single precision and five digits hold.
+    for (std::size_t n = 0; n < count; ++n) values.push_back(scale * (static_cast<double>(n * 7 % 64) - 31.0) / 32.0);
+    return values;
+}
+
+std::vector<double> clock_of(std::size_t count, double step) {
+    std::vector<double> times;
+    for (std::size_t n = 0; n < count; ++n) times.push_back(step * static_cast<double>(n));
+    return times;
+}
+
+struct Recordings {
+    TemporaryFolder folder;
+    table::SampleLog load(const std::string& name, const std::string& bytes,
+                          const table::LogSelection& how = {}) const {
+        file::write_whole_file(folder / name, bytes);
+        return table::load_sample_log(folder / name, how);
+    }
+};
+
+double largest_difference(const table::PackedColumn& a, const std::vector<double>& b) {
+    REQUIRE(a.size() == b.size());
+    double worst = 0.0;
+    for (std::size_t n = 0; n < b.size(); ++n) worst = std::max(worst, std::abs(a[n] - b[n]));
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "functions of a universal file are read in text and binary, single and double, even and uneven, in both byte "
+    "orders") {
+    const Recordings place;
+    for (const int type : {2, 4})
+        for (const bool is_even : {true, false})
+            for (const auto& [is_binary, big] : {std::pair{false, false}, {true, false}, {true, true}}) {
+                CAPTURE(type, is_even, is_binary, big);
+                test::UniversalFunction f;
+                f.type = type, f.is_even = is_even, f.is_binary = is_binary, f.big = big;
+                f.values = wave(100), f.times = clock_of(100, 5e-4);
+                const table::SampleLog log = place.load("a.uff", test::universal_function(f));
+                CHECK(log.names == std::vector<std::string>{"12Z+"});
+                REQUIRE(log.units[0]);
+                CHECK(log.units[0]->text == "m/s^2");
+                CHECK(largest_difference(log.columns[0], wave(100)) < 1e-5);
+                CHECK(largest_difference(log.times, clock_of(100, 5e-4)) < 1e-8);
+            }
+}
+
+TEST_CASE("a universal file of several datasets gives the functions of time, and counts what is left out") {
+    const Recordings place;
+    test::UniversalFunction x, y, spectrum, slow;
+    x.values = wave(40), y.values = wave(40, 2.0), y.direction = -1;
+    spectrum.values = wave(40), spectrum.abscissa = 18;
+    const std::string model = "    -1\n   151\nthe model\n    -1\n";
+    const table::SampleLog log =
+        place.load("a.unv", model + test::universal_function(x) + test::universal_function(spectrum) +
+                                test::universal_function(y));
+    CHECK(log.names == std::vector<std::string>{"12Z+", "12X-"});
+    CHECK(largest_difference(log.columns[1], wave(40, 2.0)) < 1e-5);
+    CHECK(log.form.format ==
+          "universal file, 2 of 4 datasets; 1 of other kinds left out; 1 functions of another abscissa "
+          "than time left out");
+    slow.values = wave(20), slow.step = 0.01, slow.node = 7;
+    const std::string two = test::universal_function(x) + test::universal_function(slow);
+    CHECK_THROWS_WITH(place.load("b.unv", two),
+                      ContainsSubstring("12Z+ (2000 Hz, 40 samples), 7Z+ (100 Hz, 20 samples)"));
+    table::LogSelection how;
+    how.columns = {"7Z+"};
+    CHECK(place.load("b.unv", two, how).times[1] == 0.01);
+    // Units of dataset 164, SI.
+    x.unit = "NONE";
+    CHECK_FALSE(place.load("c.unv", test::universal_function(x)).units[0]);
+    CHECK(place.load("c.unv", "    -1\n   164\n         1SI                  2\n    -1\n" + test::universal_function(x))
+              .units[0]
+              ->text == "m/s^2");
+}
+
+TEST_CASE("a universal file cut anywhere is refused or loses nothing that it states") {
+    const Recordings place;
+    for (const bool is_binary : {false, true}) {
+        test::UniversalFunction f;
+        f.is_binary = is_binary, f.values = wave(50);
+        const std::string whole = test::universal_function(f);
+        for (std::size_t size = 0; size + 1 < whole.size(); size += 7) {
+            CAPTURE(is_binary, size);
+            try {
+                const table::SampleLog log = place.load("a.uff", whole.substr(0, size));
+                CHECK(log.times.size() == 50);
+            } catch (const Error&) {
+            }
+        }
+    }
+    test::UniversalFunction f;
+    f.values = wave(50);
+    std::string many = test::universal_function(f);
+    many.replace(many.find("        50"), 10, " 999999999");
+    CHECK_THROWS_WITH(place.load("a.uff", many), ContainsSubstring("more than the dataset holds"));
+}
+
+TEST_CASE("vectors and matrices of a MATLAB file are channels in both byte orders, packed or not") {
+    const Recordings place;
+    for (const bool big : {false, true}) {
+        CAPTURE(big);
+        const std::string file = test::matlab_file(test::matlab_numbers("t", 1, 60, clock_of(60, 1.0 / 1600.0), big) +
+                                                       test::matlab_numbers("ax", 60, 1, wave(60, 32.0), big, 3) +
+                                                       test::matlab_numbers("ay", 60, 1, wave(60), big, 7),
+                                                   big);
+        const table::SampleLog log = place.load("a.mat", file);
+        CHECK(log.names == std::vector<std::string>{"ax", "ay"});
+        CHECK(log.time_name == "t");
+        CHECK(largest_difference(log.columns[0], wave(60, 32.0)) == 0.0);
+        CHECK(largest_difference(log.times, clock_of(60, 1.0 / 1600.0)) < 1e-15);
+    }
+    std::vector<double> both = wave(60);
+    const std::vector<double> second = wave(60, 0.5);
+    both.insert(both.end(), second.begin(), second.end());
+    const std::string packed = test::matlab_file(test::matlab_packed(test::matlab_numbers("data", 60, 2, both)) +
+                                                 test::matlab_packed(test::matlab_numbers("fs", 1, 1, {3200.0})));
+    table::LogSelection how;
+    how.columns = {"data_2"};
+    const table::SampleLog log = place.load("b.mat", packed, how);
+    CHECK(log.columns[0] == second);
+    CHECK(log.times[1] == 1.0 / 3200.0);
+    CHECK_THAT(log.form.time, ContainsSubstring("variable 'fs'"));
+}
+
+TEST_CASE(
+    "the fields of a structure in a MATLAB file have their own names, and a stated rate decides on the unit of time") {
+    const Recordings place;
+    std::string names("time\0\0\0\0acc_g\0\0\0", 16);
+    const auto field = [](const std::vector<double>& values) { return test::matlab_numbers("", 60, 1, values); };
+    // The structure is called as a unit is.
+    const std::string structure =
+        test::matlab_element(14, test::matlab_array(2, "s", 1, 1) + test::bytes_of(std::uint32_t{0x40005}) +
+                                     test::bytes_of(std::int32_t{8}) + test::matlab_element(1, names) +
+                                     field(clock_of(60, 0.5)) + field(wave(60)));
+    const std::string rate = test::matlab_numbers("Fs", 1, 1, {2000.0});
+    const table::SampleLog log = place.load("a.mat", test::matlab_file(structure + rate));
+    CHECK(log.names == std::vector<std::string>{"acc_g"});
+    CHECK(log.units[0]->text == "g");
+    CHECK(log.times[1] == Approx(5e-4));
+    CHECK_THAT(log.form.time, ContainsSubstring("'time' in ms"));
+}
+
+TEST_CASE("channels of different lengths, MATLAB 7.3 and damaged files are refused with what to do") {
+    const Recordings place;
+    const std::string two =
+        test::matlab_file(test::matlab_numbers("x", 60, 1, wave(60)) + test::matlab_numbers("y", 50, 1, wave(50)));
+    CHECK_THROWS_WITH(place.load("a.mat", two), ContainsSubstring("x (60 samples), y (50 samples)"));
+    table::LogSelection how;
+    how.columns = {"y"}, how.rate = 1000.0;
+    CHECK(place.load("a.mat", two, how).columns[0] == wave(50));
+    CHECK_THROWS_WITH(place.load("b.mat", "MATLAB 7.3 MAT-file" + std::string(200, ' ')), ContainsSubstring("'-v7'"));
+    CHECK_THROWS_WITH(place.load("c.mat", test::matlab_file(test::matlab_numbers("x", 1000000, 1000, wave(60)))),
+                      ContainsSubstring("fewer numbers than its dimensions state"));
+    how.columns = {"x"};
+    const std::string whole = test::matlab_file(test::matlab_packed(test::matlab_numbers("x", 60, 1, wave(60))));
+    for (std::size_t size = 0; size < whole.size(); size += 3) {
+        CAPTURE(size);
+        CHECK_THROWS_AS(place.load("d.mat", whole.substr(0, size), how), Error);
+    }
+}
