@@ -50,7 +50,8 @@ MeshText read_obj(const std::string& bytes, const std::string& file) {
     for (std::size_t at = 0; at < bytes.size();) {
         leave_if_stopped();
         const std::string_view line = next_line(bytes, at, joined);
-        Words words(line);
+        const std::size_t comment = std::min(line.find('#'), line.size());
+        Words words(comment == 0 ? line : line.substr(0, comment));
         const std::string_view first = words.next();
         if (first.starts_with('#')) {
             if (const auto stated = stated_frame(line)) mesh.frame = stated;

@@ -486,7 +486,10 @@ public:
     }
 
     void settle(const Tally& tally) override {
-        settle_meaning(about, tally, false);
+        const bool is_segmentation = slices_.images.front().modality == "SEG";
+        settle_meaning(about, tally, is_segmentation);
+        // Also when most voxels are in the segment.
+        if (is_segmentation && tally.whole && tally.high <= 1.0f) about.kind = VolumeKind::labels, about.hu = HuKind::none;
         if (samples_->padded > 0)
             about.notes.push_back(fmt::format("{} samples are padding ({:g}{}); they were read as air", samples_->padded,
                                               samples_->padding,

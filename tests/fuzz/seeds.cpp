@@ -6,6 +6,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "tests/assets/volume/dicom_changes.hpp"
 #include "tests/assets/volume/written_volume.hpp"
 #include "tests/support/bone_files.hpp"
 #include "tests/support/written_recordings.hpp"
@@ -98,6 +99,13 @@ void write_dicom(const Path& folder) {
     const WrittenVolume v = ball();
     file::write_whole_file(folder / "slice.dcm", dicom_bytes(v, 1));
     file::write_whole_file(folder / "frames.dcm", enhanced_dicom_bytes(v));
+    // As scanners write them; what public collections hold.
+    file::write_whole_file(folder / "unknown.dcm", with_unknown_sequence(dicom_bytes(v, 0)));
+    file::write_whole_file(folder / "zeros.dcm", dicom_bytes(v, 0) + std::string(64, '\0'));
+    file::write_whole_file(folder / "no_preamble.dcm", dicom_bytes(v, 0).substr(132));
+    file::write_whole_file(folder / "text_spacing.dcm", with_spacing_as_text(dicom_bytes(v, 0)));
+    file::write_whole_file(folder / "deflated.dcm", deflated(enhanced_dicom_bytes(v)));
+    file::write_whole_file(folder / "one_bit.dcm", one_bit_segmentation(v));
     // Implicit elements, as the oldest scanners wrote them: group, number, length.
     std::string implicit = dicom_bytes(v, 0).substr(0, 132);
     const auto put = [&implicit](const std::string& text) { implicit += text; };

@@ -139,7 +139,7 @@ TEST_CASE("triangle strips of a PLY are read with their turns, other elements ar
 
 TEST_CASE("an OBJ with continued lines and a byte-order mark is read, its lines and points are counted") {
     const TemporaryFolder place;
-    file::write_whole_file(place / "a.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 \\\n0\r\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n3\nf 1 3 4\nl 1 2\np 1\n");
+    file::write_whole_file(place / "a.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 \\\n0\r\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n3\nf 1 3 4 # a comment\nl 1 2\np 1\n");
     mesh::MeshOrigin origin;
     const mesh::Mesh mesh = mesh::load_mesh(place / "a.obj", 1.0, &origin);
     CHECK(mesh.triangles.size() == 2);

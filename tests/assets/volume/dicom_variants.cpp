@@ -4,6 +4,7 @@
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/assets/volume/dicom_changes.hpp"
 #include "tests/assets/volume/written_volume.hpp"
 #include "tests/support/catch.hpp"
 
@@ -11,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -40,28 +42,6 @@ void write_slices(const WrittenVolume& v, const std::filesystem::path& folder,
         file::write_whole_file(folder / fmt::format("{:03}.dcm", k), change(dicom_bytes(v, k)));
 }
 
-std::string tag_bytes(unsigned group, unsigned number) {
-    std::string out;
-    for (const unsigned each : {group, number}) out += static_cast<char>(each & 0xff), out += static_cast<char>(each >> 8);
-    return out;
-}
-
-/// Value of an explicit element with a short length, replaced.
-std::string with_value(std::string bytes, unsigned group, unsigned number, const std::function<std::string(std::string)>& change) {
-    const std::size_t at = bytes.find(tag_bytes(group, number), 132);
-    REQUIRE(at != std::string::npos);
-    const auto size = static_cast<std::size_t>(static_cast<unsigned char>(bytes[at + 6]));
-    std::string value = change(bytes.substr(at + 8, size));
-    if (value.size() % 2 != 0) value += ' ';
-    bytes.replace(at + 8, size, value);
-    bytes[at + 6] = static_cast<char>(value.size());
-    return bytes;
-}
-
-std::string before_samples(std::string bytes, const std::string& more) {
-    return bytes.insert(bytes.find(tag_bytes(0x7fe0, 0x10), 132), more);
-}
-
 std::string note_of(const volume::ScanVolume& read) { return fmt::format("{}", fmt::join(read.notes, "; ")); }
 
 }  // namespace
@@ -71,19 +51,12 @@ TEST_CASE("DICOM files of unusual encoding hold the same volume") {
     const TemporaryFolder place;
     write_slices(v, place / "plain", [](std::string bytes) { return bytes; });
     const volume::ScanVolume plain = volume::read_volume(place / "plain");
-    const std::string un = tag_bytes(0x29, 0x1010) + std::string("UN\0\0\xff\xff\xff\xff", 8) + tag_bytes(0xfffe, 0xe000) +
-                           std::string("\xff\xff\xff\xff", 4) + tag_bytes(0x29, 0x1011) + std::string("\4\0\0\0ABCD", 8) +
-                           tag_bytes(0xfffe, 0xe00d) + std::string(4, '\0') + tag_bytes(0xfffe, 0xe0dd) + std::string(4, '\0');
     const std::pair<const char*, std::function<std::string(std::string)>> ways[] = {
-        {"private UN of undefined length", [&](std::string bytes) { return before_samples(std::move(bytes), un); }},
+        {"private UN of undefined length", [](std::string bytes) { return with_unknown_sequence(std::move(bytes)); }},
         {"zeros behind the last element", [](std::string bytes) { return bytes + std::string(64, '\0'); }},
         {"without a preamble", [](std::string bytes) { return bytes.substr(132); }},
-        {"spacing as unlimited text",
-         [](std::string bytes) {
-             const std::size_t at = bytes.find(tag_bytes(0x28, 0x30), 132);
-             const std::string size(1, bytes[at + 6]);
-             return bytes.replace(at + 4, 4, std::string("UT\0\0", 4) + size + std::string(3, '\0'));
-         }},
+        {"spacing as unlimited text", with_spacing_as_text},
+        {"deflated", deflated},
     };
     for (const auto& [name, change] : ways) {
         CAPTURE(name);
@@ -92,6 +65,21 @@ TEST_CASE("DICOM files of unusual encoding hold the same volume") {
         CHECK(read.values == plain.values);
         CHECK(read.map.step[0].x == plain.map.step[0].x);
     }
+}
+
+TEST_CASE("a segmentation of one bit per sample, without gaps between frames, is a label map") {
+    WrittenVolume v = block_with_bone(5);
+    // 11 x 9 samples a frame: frames begin within bytes.
+    v.size = {11, 9, 5};
+    v.fill([](const Vec3& p) { return p.x > 0.0 && p.x < 10.0 && p.z > -97.0 ? 1500.0 : -1000.0; });
+    std::vector<float> expected;
+    for (const std::int16_t hu : v.hu) expected.push_back(hu > 0 ? 1.0f : 0.0f);
+    const TemporaryFolder place;
+    file::write_whole_file(place / "seg.dcm", one_bit_segmentation(v));
+    const volume::ScanVolume read = volume::read_volume(place / "seg.dcm");
+    CHECK(read.size == std::array<int, 3>{11, 9, 5});
+    CHECK(read.values == expected);
+    CHECK(read.kind == volume::VolumeKind::labels);
 }
 
 TEST_CASE("numbers with decimal commas are read whole and noted, other text is refused with its element") {
@@ -110,8 +98,9 @@ TEST_CASE("numbers with decimal commas are read whole and noted, other text is r
     CHECK_THAT(note_of(read), ContainsSubstring("decimal commas"));
     for (const char* wrong : {"2.5x\\2.5", "2.5.1\\2.5", "\\2,5", "1e999\\1", "nan\\1"}) {
         CAPTURE(wrong);
-        write_slices(v, place / "wrong",
-                     [&](const std::string& bytes) { return with_value(bytes, 0x28, 0x30, [&](auto&&) { return wrong; }); });
+        write_slices(v, place / "wrong", [&](const std::string& bytes) {
+            return with_value(bytes, 0x28, 0x30, [&](auto&&) { return wrong; });
+        });
         CHECK_THROWS_WITH(volume::read_volume(place / "wrong"), ContainsSubstring("(0028,0030)"));
     }
 }
@@ -128,7 +117,8 @@ TEST_CASE("colour images and scout views beside the slices of a CT are left out 
     file::write_whole_file(place / "ct/scout.dcm", dicom_bytes(v, 1, scout));
     const volume::ScanVolume read = volume::read_volume(place / "ct");
     CHECK(read.size == v.size);
-    CHECK_THAT(note_of(read), ContainsSubstring("1 colour image (screen.dcm)") && ContainsSubstring("1 scout view (scout.dcm)"));
+    CHECK_THAT(note_of(read),
+               ContainsSubstring("1 colour image (screen.dcm)") && ContainsSubstring("1 scout view (scout.dcm)"));
     std::filesystem::create_directory(place / "only");
     file::write_whole_file(place / "only/screen.dcm", colour);
     CHECK_THROWS_WITH(volume::read_volume(place / "only"), ContainsSubstring("colour"));
@@ -141,7 +131,8 @@ TEST_CASE("padding is air, whether the file states it or not, and bits beyond th
     const auto padded = [&](std::string bytes) {
         bytes = with_value(std::move(bytes), 0x28, 0x103, [](auto&&) { return std::string(2, '\0'); });
         const std::size_t samples = bytes.size() - static_cast<std::size_t>(v.size[0] * v.size[1]) * 2;
-        for (std::size_t n = 0; n < static_cast<std::size_t>(v.size[0]); ++n) bytes.replace(samples + 2 * n, 2, "\x30\xf8");
+        for (std::size_t n = 0; n < static_cast<std::size_t>(v.size[0]); ++n)
+            bytes.replace(samples + 2 * n, 2, "\x30\xf8");
         return bytes;
     };
     write_slices(v, place / "unstated", padded);
@@ -202,7 +193,8 @@ TEST_CASE("a library that ends on a file is one error, and the next file is read
     const char* before = std::getenv("TACTUS_SCAN_DECODER");
     const std::string program = before ? before : "";
     ::setenv("TACTUS_SCAN_DECODER", "/bin/false", 1);
-    CHECK_THROWS_WITH(volume::read_volume(place / "ct"), ContainsSubstring("000.dcm") && ContainsSubstring("ended with exit code 1"));
+    CHECK_THROWS_WITH(volume::read_volume(place / "ct"),
+                      ContainsSubstring("000.dcm") && ContainsSubstring("ended with exit code 1"));
     ::setenv("TACTUS_SCAN_DECODER", "/nowhere", 1);
     CHECK_THROWS_AS(volume::read_volume(place / "ct"), Error);
     if (before) ::setenv("TACTUS_SCAN_DECODER", program.c_str(), 1);
@@ -210,10 +202,12 @@ TEST_CASE("a library that ends on a file is one error, and the next file is read
     CHECK(volume::read_volume(place / "ct").size == v.size);
 }
 
-TEST_CASE("voxels that are not numbers are air, float label maps may be labels, and a fourth axis of one sample is none") {
+TEST_CASE(
+    "voxels that are not numbers are air, float label maps may be labels, and a fourth axis of one sample is none") {
     const TemporaryFolder place;
     const auto nrrd = [&](const std::string& name, const std::string& head, const std::vector<float>& values) {
-        std::string bytes = "NRRD0004\ntype: float\nspace: left-posterior-superior\nencoding: raw\nendian: little\n" + head + "\n";
+        std::string bytes =
+            "NRRD0004\ntype: float\nspace: left-posterior-superior\nencoding: raw\nendian: little\n" + head + "\n";
         bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
         file::write_whole_file(place / name, bytes);
         return volume::read_volume(place / name);
@@ -226,12 +220,14 @@ TEST_CASE("voxels that are not numbers are air, float label maps may be labels, 
     CHECK(read.values[21] == -1000.0f);
     CHECK(read.hu == volume::HuKind::calibrated);
     CHECK_THAT(note_of(read), ContainsSubstring("1 of 64 voxels are not numbers"));
-    CHECK_THROWS_WITH(nrrd("all.nrrd", three + origin, std::vector<float>(64, std::nanf(""))), ContainsSubstring("no voxel"));
+    CHECK_THROWS_WITH(nrrd("all.nrrd", three + origin, std::vector<float>(64, std::nanf(""))),
+                      ContainsSubstring("no voxel"));
     std::vector<float> labels(64, 0.0f);
     labels[5] = 1.0f, labels[9] = 2.0f;
     CHECK(volume::name_of(nrrd("labels.nrrd", three + origin, labels).kind) == "labels?");
     CHECK_THAT(note_of(nrrd("noorigin.nrrd", three, values)), ContainsSubstring("no space origin"));
-    read = nrrd("four.nrrd", "dimension: 4\nsizes: 4 4 4 1\nspace directions: (1,0,0) (0,1,0) (0,0,1) none\n" + origin, values);
+    read = nrrd("four.nrrd", "dimension: 4\nsizes: 4 4 4 1\nspace directions: (1,0,0) (0,1,0) (0,0,1) none\n" + origin,
+                values);
     CHECK(read.size == std::array{4, 4, 4});
     CHECK_THAT(note_of(read), ContainsSubstring("fourth axis"));
 }
