@@ -3,6 +3,7 @@
 
 #include "assets/bone/import.hpp"
 #include "assets/bone/surface_points.hpp"
+#include "assets/cases/kept_points.hpp"
 #include "assets/cases/mesh_unit.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/propose_paint.hpp"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -35,26 +37,57 @@ std::optional<std::string> unit_of_file(const std::filesystem::path& path) {
     return "mm";
 }
 
-bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run) {
+bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run, Contents contents) {
     if (bone::file_of_bone(path).extension() == ".vdb") return bone::load_bone(path);
+    if (!volume::is_volume_file(path)) return bone_of_mesh(path, unit_of_file(path), contents, run);
     bone::ImportOptions options;
     options.input = path;
     options.run = run;
-    options.unit = unit_of_file(path);
+    options.unit = "mm";
     return bone::import_bone(options);
 }
 
+namespace {
+
+// To be raised with every change of code that changes the paint that propose_fracture finds.
+constexpr int proposed_paint = 1;
+
+bool is_painted(std::span<const contact::SurfacePoint> points) {
+    return std::ranges::any_of(
+        points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
+}
+
+}  // namespace
+
+ResultKey key_of_points(const std::filesystem::path& path) {
+    // To be raised with every change of code that changes which points a file gives: import, sampling.
+    constexpr int points_sampling = 2;
+    ResultKey key("points of a fragment", points_sampling);
+    key.add_file(path);
+    return key;
+}
+
 FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint,
-                           const RunJobs& run) {
+                           const RunJobs& run, Contents contents) {
     FragmentBone loaded;
     try {
-        loaded.bone = bone_from_file(file_of(fragment.file, folder), run);
+        const std::filesystem::path path = file_of(fragment.file, folder);
+        loaded.bone = bone_from_file(path, run, contents);
         std::vector<contact::SurfacePoint>& points = loaded.bone.points;
-        points = bone::surface_points(loaded.bone);
+        std::string ignored;  // points that are damaged are made again
+        const bool has_points = !points.empty();
+        const auto sampled = [&] { return bone::surface_points(loaded.bone); };
+        points = has_points ? sampled() : points_of_key(key_of_points(path), ignored, sampled);
         if (points.empty()) throw Error("has no surface");
-        loaded.was_painted = std::ranges::any_of(
-            points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
-        if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(points);
+        loaded.was_painted = is_painted(points);
+        if (!loaded.was_painted && paint == Paint::or_proposed) {
+            ResultKey key("paint proposed on a fragment", proposed_paint);
+            key.add_file(path);
+            points = points_of_key(key, ignored, [&] {
+                propose_fracture(points);
+                return points;
+            });
+        }
     } catch (const Error& error) {
         const bool is_bone = bone::file_of_bone(fragment.file).extension() == ".vdb";
         throw Error(fmt::format("fragment '{}': {}{}", fragment.name, error.what(),

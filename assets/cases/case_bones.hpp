@@ -4,6 +4,8 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/cases/case_plan.hpp"
+#include "assets/cases/kept_bone.hpp"
+#include "assets/cases/kept_result.hpp"
 #include "dsp/core/jobs.hpp"
 
 #include <filesystem>
@@ -12,7 +14,12 @@
 namespace tactus::cases {
 
 /// Loads a bone file ("FILE.vdb#NAME" for one of several), or imports a mesh or a CT. Throws Error.
-bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run = run_in_turn);
+/// Imported meshes are kept (kept_bone.hpp).
+bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run = run_in_turn,
+                          Contents contents = Contents::all);
+
+/// The key of the points that are sampled on the surface of a file and kept (kept_points.hpp).
+ResultKey key_of_points(const std::filesystem::path& path);
 
 /// When the file has no paint, paint is proposed.
 enum class Paint { as_filed, or_proposed };
@@ -24,7 +31,7 @@ struct FragmentBone {
 
 /// The bone of a fragment. Throws Error naming the fragment.
 FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint,
-                           const RunJobs& run = run_in_turn);
+                           const RunJobs& run = run_in_turn, Contents contents = Contents::all);
 
 /// Throws Error for the first file that is missing or has changed since the plan was made.
 void check_files(const CasePlan& plan, const std::filesystem::path& folder);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 namespace tactus::contact {
 
@@ -23,7 +24,7 @@ namespace {
 constexpr double lattice_factor = 1.1284;
 constexpr std::size_t most_samples = std::size_t(1) << 30;
 
-double steepness_of(const volume::Grid& grid) {
+double steepness_of(const volume::Grid& grid, const RunJobs& run) {
     struct Step {
         int x, y, z;
         double inverse_length;
@@ -36,8 +37,10 @@ double steepness_of(const volume::Grid& grid) {
                 steps[count++] = {x, y, z, 1.0 / glm::length(Vec3(x, y, z) * grid.spacing)};
     // A row of maxima, because a compiler may not reorder a single one.
     constexpr int lanes = 16;
-    std::array<std::array<float, lanes>, 13> steepest{};
-    for (int k = 0; k < grid.size[2]; ++k) {
+    using Steepest = std::array<std::array<float, lanes>, 13>;
+    std::vector<Steepest> of_layer(static_cast<std::size_t>(grid.size[2]), Steepest{});
+    run(grid.size[2], [&](int k) {
+        Steepest& steepest = of_layer[static_cast<std::size_t>(k)];
         leave_if_stopped();
         for (int j = 0; j < grid.size[1]; ++j)
             for (std::size_t s = 0; s < steps.size(); ++s) {
@@ -56,16 +59,18 @@ double steepness_of(const volume::Grid& grid) {
                 for (; i < end; ++i) row[0] = std::max(row[0], std::abs(there[i] - here[i]));
                 steepest[s] = row;
             }
-    }
+    });
     double most = 0.0;
-    for (std::size_t s = 0; s < steps.size(); ++s)
-        most = std::max(most, static_cast<double>(*std::ranges::max_element(steepest[s])) * steps[s].inverse_length);
+    for (const Steepest& steepest : of_layer)
+        for (std::size_t s = 0; s < steps.size(); ++s)
+            most =
+                std::max(most, static_cast<double>(*std::ranges::max_element(steepest[s])) * steps[s].inverse_length);
     return most;
 }
 
 }  // namespace
 
-Voxmap make_voxmap(volume::Grid distance) {
+Voxmap make_voxmap(volume::Grid distance, const RunJobs& run) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (distance.size[axis] < 2) throw Error("a voxmap needs at least two samples along each axis");
         const double spacing = distance.spacing[static_cast<int>(axis)];
@@ -83,7 +88,7 @@ Voxmap make_voxmap(volume::Grid distance) {
     Voxmap map;
     const Vec3 extent = Vec3(distance.size[0] - 1, distance.size[1] - 1, distance.size[2] - 1) * distance.spacing;
     map.far = most > 0.0 ? most : glm::length(extent);
-    map.steepness = std::max(1.0, lattice_factor * steepness_of(distance));
+    map.steepness = std::max(1.0, lattice_factor * steepness_of(distance, run));
     std::vector<float> values;
     values.reserve(distance.values.size());
     prefer_large_pages(values.data(), values.capacity() * sizeof(float));

@@ -2,6 +2,7 @@
 // Voxmap: the distance field around a body on a dense grid, against which pointshells are tested.
 #pragma once
 
+#include "dsp/core/jobs.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/volume/bricks.hpp"
 #include "dsp/volume/grid.hpp"
@@ -31,8 +32,8 @@ struct Voxmap {
 };
 
 /// Takes a distance grid unchanged. Throws Error for fewer than 2 samples along an axis, spacings that are not
-/// positive, more than 2³⁰ samples and values that are not finite.
-Voxmap make_voxmap(volume::Grid distance);
+/// positive, more than 2³⁰ samples and values that are not finite. The result does not depend on how jobs are run.
+Voxmap make_voxmap(volume::Grid distance, const RunJobs& run = run_in_turn);
 
 /// From one version of a bone: exact near its surface, `far` where it stores no bricks.
 Voxmap make_voxmap(const volume::BoneSnapshot& bone);

@@ -43,9 +43,9 @@ public:
     }
     Outcome tactus(const std::string& arguments) const {
         // Results that are kept for one test must not reach another one.
-        const std::string command = "XDG_CACHE_HOME=" + (path / ".cache").string() + " " + tactus::test::command() +
-                                    " " + arguments + " >" + (path / "stdout").string() + " 2>" +
-                                    (path / "stderr").string();
+        const std::string command = "TACTUS_CACHE_LIMIT=4000 XDG_CACHE_HOME=" + (path / ".cache").string() + " " +
+                                    tactus::test::command() + " " + arguments + " >" + (path / "stdout").string() +
+                                    " 2>" + (path / "stderr").string();
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")};
     }

@@ -83,7 +83,7 @@ AssemblyScore put_together(const AssemblyCase& one) {
         study::CaseFragment loaded;
         loaded.bone = std::move(fragment.bone);
         loaded.was_painted = true;
-        loaded.map = contact::make_voxmap(loaded.bone.distance);
+        loaded.map = contact::make_voxmap(std::exchange(loaded.bone.distance, {}));
         fragments.push_back(std::move(loaded));
         truth.push_back(fragment.place);
     });

@@ -84,7 +84,7 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
         study::CaseFragment loaded;
         loaded.bone = std::move(one.bone);
         loaded.was_painted = true;
-        loaded.map = contact::make_voxmap(loaded.bone.distance);
+        loaded.map = contact::make_voxmap(std::exchange(loaded.bone.distance, {}));
         fragments.push_back(std::move(loaded));
         place.push_back(one.place);
     });

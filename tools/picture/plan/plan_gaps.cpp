@@ -87,7 +87,7 @@ PlanGaps gaps_of(const DrawnPlan& c) {
                                   b = study::placed_bone(c.fragments[j], c.pose(j));
             const fit::MutualGap gap = fit::mutual_gap(a, b);
             const double overlap =
-                fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j));
+                fit::overlap_volume(c.fragments[i].map.grid, c.pose(i), c.fragments[j].map, c.pose(j));
             if (!(gap.facing > 5e-6)) continue;
             found.table.rows.push_back(
                 {c.name(i), c.name(j), fmt::format("{:.0f}", gap.facing * 1e6),

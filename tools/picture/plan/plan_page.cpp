@@ -27,8 +27,7 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, const std::vec
     c.to_healthy = std::move(to_healthy);
     c.to_healthy.resize(c.fragments.size());
     c.vessels = study::vessel_clearances(c.state, c.fragments);
-    for (const study::CaseFragment& fragment : c.fragments)
-        c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
+    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(mesh::surface_of(fragment.map.grid));
     std::vector<ReportBlock> out, pictures;
     PlanGaps found;
     try {

@@ -21,9 +21,10 @@ constexpr int algorithm = 2;
 /// same main one, and however they are painted.
 std::vector<double> intact_on_main(IntactBone& intact, const FractureSurfaceSettings& settings, std::string& note) {
     const std::filesystem::path& main = settings.main.empty() ? settings.bone : settings.main;
-    ResultKey key("unbroken bone on a fragment", algorithm);
+    cases::ResultKey key("unbroken bone on a fragment", algorithm);
     key.add_file(settings.intact).add_file(main).add("mirror", settings.mirror ? 1.0 : 0.0);
-    return result_of(key, intact_numbers, note, [&] { return intact.numbers_on(points_of_fragment(main, note)); });
+    return cases::result_of(key, intact_numbers, note,
+                            [&] { return intact.numbers_on(points_of_fragment(main, note)); });
 }
 
 /// The registrations and the numbers of the broken points.
@@ -53,11 +54,12 @@ std::vector<double> broken_by_intact(const std::vector<contact::SurfacePoint>& p
 /// Labels the points inside the unbroken bone; returns its registration to the fragments.
 LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
                              double least_area, std::string& note) {
-    ResultKey key("points inside of the unbroken bone", algorithm);
+    cases::ResultKey key("points inside of the unbroken bone", algorithm);
     key.add_file(settings.bone).add_file(settings.intact);
     if (!settings.main.empty()) key.add_file(settings.main);
     key.add("mirror", settings.mirror ? 1.0 : 0.0).add("points", static_cast<double>(points.size()));
-    NumberReader read(result_of(key, std::nullopt, note, [&] { return broken_by_intact(points, settings, note); }));
+    NumberReader read(
+        cases::result_of(key, std::nullopt, note, [&] { return broken_by_intact(points, settings, note); }));
     LaidIntact laid{read.registration(), std::nullopt};
     if (!settings.main.empty()) laid.on_bone = read.registration();
     std::vector<std::uint8_t> broken(points.size(), 0);

@@ -34,9 +34,9 @@ const std::vector<contact::SurfacePoint>& IntactBone::points() {
     constexpr double closing = 3e-3;
     if (!points_.empty()) return points_;
     if (is_mesh(file_)) return points_ = points_of_file(file_);
-    ResultKey key("outer shell of a bone", sampling);
+    cases::ResultKey key("outer shell of a bone", sampling);
     key.add_file(file_).add("closing", closing);
-    points_ = points_of_key(key, note_, [&] {
+    points_ = cases::points_of_key(key, note_, [&] {
         return contact::sample_surface(volume::outer_shell(bone_of_file(file_).distance, closing, on_threads()), {});
     });
     return points_;

@@ -12,7 +12,7 @@ void add(std::vector<double>& numbers, const Pose& p) {
 
 }  // namespace
 
-void add_pose(ResultKey& key, const Pose& pose) {
+void add_pose(cases::ResultKey& key, const Pose& pose) {
     std::vector<double> numbers;
     add(numbers, pose);
     for (const double number : numbers) key.add("pose", number);

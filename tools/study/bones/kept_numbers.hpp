@@ -2,8 +2,8 @@
 // Registrations as lists of numbers, for kept results.
 #pragma once
 
+#include "assets/cases/kept_result.hpp"
 #include "dsp/fit/registration/mirror.hpp"
-#include "tools/study/bones/kept_result.hpp"
 
 #include <cstddef>
 #include <utility>
@@ -13,7 +13,7 @@ namespace tactus::study {
 
 inline constexpr std::size_t registration_numbers = 11, mirror_fit_numbers = 24;
 
-void add_pose(ResultKey& key, const Pose& pose);
+void add_pose(cases::ResultKey& key, const Pose& pose);
 void add_registration(std::vector<double>& numbers, const fit::Registration& r);
 std::vector<double> numbers_of_mirror_fit(const fit::MirrorFit& fit);
 

@@ -43,9 +43,9 @@ mesh::Mesh mesh_of_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone) {
+geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const volume::Grid& distance) {
     if (is_mesh(path)) return mesh_of_file(path);
-    return mesh::export_surface(bone.distance);
+    return mesh::export_surface(distance);
 }
 
 std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/case_warnings.hpp"
 
+#include "assets/cases/kept_result.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
-#include "tools/study/bones/kept_result.hpp"
 #include "tools/study/planning/flap_study.hpp"
 #include "tools/study/planning/plan_overlaps.hpp"
 #include "tools/study/planning/plan_vessels.hpp"
@@ -156,7 +156,7 @@ private:
 
     /// All that the surfaces are needed for. Kept by the places and files of what is shown and the reconstruction.
     void of_surfaces(bool may_measure) {
-        ResultKey key("warnings of a plan", warnings_algorithm);
+        cases::ResultKey key("warnings of a plan", warnings_algorithm);
         const std::vector<cases::PlanFragment> fragments = cases::fragments_of(plan_, state_);
         for (std::size_t n = 0; n < fragments.size(); ++n) {
             if (state_.arrangement.is_hidden(static_cast<int>(n))) continue;
@@ -175,14 +175,15 @@ private:
                     for (int axis = 0; axis < 3; ++axis) key.add(v.name, p[axis]);
             }
         std::string note;
-        const std::optional<std::string> kept = kept_text(key, note);
+        const std::optional<std::string> kept = cases::kept_text(key, note);
         if (!note.empty()) made_.notes.push_back(note);
         if (kept) return add_kept(*kept);
         made_.is_measured = may_measure;
         if (!may_measure) return;
         const std::size_t before = made_.all.size();
         measure();
-        keep_text(key, json_of({made_.all.begin() + static_cast<std::ptrdiff_t>(before), made_.all.end()}).dump());
+        cases::keep_text(key,
+                         json_of({made_.all.begin() + static_cast<std::ptrdiff_t>(before), made_.all.end()}).dump());
     }
 
     void add_kept(const std::string& text) {

@@ -5,13 +5,15 @@
 #include "tools/study/workers.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace tactus::study {
 
 CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::filesystem::path& folder,
                            cases::Paint paint) {
-    CaseFragment loaded{cases::fragment_bone(fragment, folder, paint, on_threads()), {}};
-    loaded.map = contact::make_voxmap(loaded.bone.distance);
+    CaseFragment loaded{cases::fragment_bone(fragment, folder, paint, on_threads(), cases::Contents::surface), {}};
+    loaded.bone.density = {};
+    loaded.map = contact::make_voxmap(std::exchange(loaded.bone.distance, {}), on_threads());
     return loaded;
 }
 

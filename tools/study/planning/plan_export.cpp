@@ -81,7 +81,7 @@ ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::pat
     for (std::size_t k = 0; k < shown.size(); ++k) {
         const cases::PlanFragment& fragment = fragments[shown[k]];
         const Pose& pose = state.arrangement.pose(static_cast<int>(shown[k]));
-        mesh::ColouredSurface surface{surface_of_file(cases::file_of(fragment.file, folder), loaded[k].bone),
+        mesh::ColouredSurface surface{surface_of_file(cases::file_of(fragment.file, folder), loaded[k].map.grid),
                                       fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
         const std::vector<std::string> files{names[k] + "." + format, names[k] + ".tfm", names[k] + ".scan.mrk.json",

@@ -54,7 +54,7 @@ PlanMatching::PlanMatching(std::vector<CaseFragment> fragments, const FitWay& wa
 }
 
 void PlanMatching::make_matcher() {
-    for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
+    for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.map.grid});
     fit::MatcherSettings settings;
     settings.most_points = 2000;
     settings.fit.kerf = way_.kerf.value_or(0.0);
@@ -68,7 +68,7 @@ bool PlanMatching::lie_in_each_other(int a, const Pose& at, int b, const Pose& t
 }
 
 double PlanMatching::overlap_volume(int a, const Pose& at, int b, const Pose& there) const {
-    return fit::overlap_volume(fragment(a).bone.distance, at, fragment(b).map, there);
+    return fit::overlap_volume(fragment(a).map.grid, at, fragment(b).map, there);
 }
 
 std::optional<fit::KerfEstimate> PlanMatching::estimate_kerf(const PlanMatch& found,
@@ -226,7 +226,7 @@ std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesyste
         const fit::MutualGap gap = fit::mutual_gap(placed_bone(a, at), placed_bone(b, bt));
         // Surfaces that only touch share fractions of voxels, which are no overlap.
         const bool is_inside = gap.deepest > least_depth;
-        const double overlap = is_inside ? fit::overlap_volume(a.bone.distance, at, b.map, bt) : 0.0;
+        const double overlap = is_inside ? fit::overlap_volume(a.map.grid, at, b.map, bt) : 0.0;
         // What lies deep inside of another does not face it.
         if (!pair && !(gap.facing > 5e-6) && !(overlap > 5e-9)) return;
         found.push_back({i, j, gap, overlap});

@@ -2,13 +2,13 @@
 #include "tools/study/planning/plan_mirror.hpp"
 
 #include "assets/bone/mesh_part.hpp"
+#include "assets/cases/kept_result.hpp"
 #include "assets/cases/mesh_unit.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/mutual_gap.hpp"
 #include "tools/study/bones/kept_numbers.hpp"
-#include "tools/study/bones/kept_result.hpp"
 #include "tools/study/workers.hpp"
 
 #include <glm/common.hpp>
@@ -39,7 +39,7 @@ MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::pat
     cases::check_files(plan, folder);
     cases::CasePlan named;
     cases::add_fragment(named, "healthy", healthy, folder, Vec3(0.0));
-    ResultKey key("mirrored side on a fragment", mirror_algorithm);
+    cases::ResultKey key("mirrored side on a fragment", mirror_algorithm);
     key.add_file(healthy).add_file(file_of_fragment(main));
     NumberReader read(known(key, mirror_fit_numbers,
                             [&] { return numbers_of_mirror_fit(fit::fit_mirror(healthy_points(), main_points())); }));
@@ -53,10 +53,10 @@ MirrorStudy::MirrorStudy(const cases::CasePlan& plan, const std::filesystem::pat
     target_.residual = fit_.registration.median;
 }
 
-std::vector<double> MirrorStudy::known(const ResultKey& key, std::size_t count,
+std::vector<double> MirrorStudy::known(const cases::ResultKey& key, std::size_t count,
                                        const std::function<std::vector<double>()>& make) {
     std::string note;
-    std::vector<double> numbers = result_of(key, count, note, make);
+    std::vector<double> numbers = cases::result_of(key, count, note, make);
     if (!note.empty()) notes_.push_back(note);
     return numbers;
 }
@@ -117,7 +117,7 @@ FacesThere MirrorStudy::faces_there(int moving, const Pose& at, const MainPart& 
     const CaseFragment& other = loaded(moving);
     const fit::MutualGap gap = fit::mutual_gap(placed_bone(other, at), {main.points, &main.map, stands_, stands_});
     return {gap.facing, gap.contact, gap.median, gap.deepest,
-            fit::overlap_volume(other.bone.distance, at, main.map, stands_)};
+            fit::overlap_volume(other.map.grid, at, main.map, stands_)};
 }
 
 namespace {
@@ -146,7 +146,7 @@ std::vector<double> numbers_of_comparison(const MirrorComparison& c) {
 MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
     constexpr std::size_t count = registration_numbers + 12;
     const auto key_at = [&](const Pose& pose) {
-        ResultKey key("fragment on the mirrored side", mirror_algorithm);
+        cases::ResultKey key("fragment on the mirrored side", mirror_algorithm);
         for (const int n : {main_, other}) key.add_file(file_of_fragment(n));
         key.add_file(healthy_);
         for (const Pose& p : {target_.pose, stands_, pose}) add_pose(key, p);
@@ -167,7 +167,7 @@ MirrorComparison MirrorStudy::compare(int other, const Pose& from) {
         there.registration.before = made.registration.median;
         there.away = {};
         there.before = made.after;
-        keep_result(key_at(made.registration.pose), numbers_of_comparison(there));
+        cases::keep_result(key_at(made.registration.pose), numbers_of_comparison(there));
         return numbers_of_comparison(made);
     }));
     MirrorComparison found;

@@ -2,8 +2,8 @@
 // Mirrors the healthy side of a case, registers it to the main fragment, and compares the other fragments with it.
 #pragma once
 
+#include "assets/cases/kept_result.hpp"
 #include "dsp/fit/registration/mirror.hpp"
-#include "tools/study/bones/kept_result.hpp"
 #include "tools/study/bones/surface_file.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
@@ -59,7 +59,7 @@ private:
     /// The main fragment around another one at these poses.
     MainPart main_part(int other, std::span<const Pose> poses);
     FacesThere faces_there(int moving, const Pose& at, const MainPart& main);
-    std::vector<double> known(const ResultKey& key, std::size_t count,
+    std::vector<double> known(const cases::ResultKey& key, std::size_t count,
                               const std::function<std::vector<double>()>& make);
 
     std::vector<cases::PlanFragment> fragments_;

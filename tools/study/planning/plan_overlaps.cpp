@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_overlaps.hpp"
 
+#include "assets/cases/kept_result.hpp"
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/overlap.hpp"
-#include "tools/study/bones/kept_result.hpp"
 #include "tools/study/workers.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +78,7 @@ private:
         std::vector<int> unknown;
         for (int n = 0; n < static_cast<int>(fragments_.size()); ++n) {
             std::string note;
-            if (!state_.arrangement.is_hidden(n) && !kept_result(box_key(n), note)) unknown.push_back(n);
+            if (!state_.arrangement.is_hidden(n) && !cases::kept_result(box_key(n), note)) unknown.push_back(n);
         }
         on_threads()(static_cast<int>(unknown.size()), [&](int k) { loaded(unknown[static_cast<std::size_t>(k)]); });
     }
@@ -89,13 +89,13 @@ private:
         return *one;
     }
 
-    ResultKey key_of(const char* what, std::initializer_list<int> of) const {
-        ResultKey key(what, overlap_algorithm);
+    cases::ResultKey key_of(const char* what, std::initializer_list<int> of) const {
+        cases::ResultKey key(what, overlap_algorithm);
         for (const int n : of) key.add_file(cases::file_of(fragments_[static_cast<std::size_t>(n)].file, folder_));
         return key;
     }
 
-    ResultKey box_key(int n) const { return key_of("box around a fragment", {n}); }
+    cases::ResultKey box_key(int n) const { return key_of("box around a fragment", {n}); }
 
     void tell(const std::string& note) {
         if (!note.empty()) notes_.push_back(note);
@@ -105,7 +105,7 @@ private:
         auto& known = boxes_[static_cast<std::size_t>(n)];
         if (known) return *known;
         std::string note;
-        const std::vector<double> sides = result_of(box_key(n), 6, note, [&] {
+        const std::vector<double> sides = cases::result_of(box_key(n), 6, note, [&] {
             Box around;
             for (const contact::SurfacePoint& p : loaded(n).bone.points) around.add(p.position);
             return std::vector<double>{around.low.x,  around.low.y,  around.low.z,
@@ -118,22 +118,22 @@ private:
 
     /// m³; none when they do not lie in each other. One result per pair of files is kept, with its pose.
     std::optional<double> volume_in_both(int a, int b, const Pose& between) {
-        const ResultKey key = key_of("fragments that lie in each other", {a, b});
+        const cases::ResultKey key = key_of("fragments that lie in each other", {a, b});
         const Vec3& p = between.position;
         const Quat& q = between.orientation;
         const std::array<double, 7> here{p.x, p.y, p.z, q.w, q.x, q.y, q.z};
         std::string note;
-        const auto known = kept_result(key, note);
+        const auto known = cases::kept_result(key, note);
         tell(note);
         if (known && known->size() == 9 && std::equal(here.begin(), here.end(), known->begin()))
             return (*known)[7] > 0.0 ? std::optional((*known)[8]) : std::nullopt;
         const CaseFragment &one = loaded(a), &other = loaded(b);
         const bool lie = fit::lie_in_each_other(placed_bone(one, pose(a)), placed_bone(other, pose(b)),
                                                 fit::FitSettings{}.most_penetration);
-        const double volume = lie ? fit::overlap_volume(one.bone.distance, pose(a), other.map, pose(b)) : 0.0;
+        const double volume = lie ? fit::overlap_volume(one.map.grid, pose(a), other.map, pose(b)) : 0.0;
         std::vector<double> numbers(here.begin(), here.end());
         numbers.insert(numbers.end(), {lie ? 1.0 : 0.0, volume});
-        keep_result(key, numbers);
+        cases::keep_result(key, numbers);
         return lie ? std::optional(volume) : std::nullopt;
     }
 

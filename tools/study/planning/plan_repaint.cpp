@@ -17,7 +17,7 @@ constexpr double most_off = 0.5e-3;  // m: meshes become bones of voxels up to t
 constexpr double most_share = 0.02;  // of the points; sharp edges are rounded by voxels
 
 double voxel_of(const CaseFragment& f) {
-    const Vec3& h = f.bone.distance.spacing;
+    const Vec3& h = f.map.grid.spacing;
     return std::max({h.x, h.y, h.z});
 }
 

@@ -4,8 +4,8 @@
 
 #include "assets/bone/bone.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/kept_cache.hpp"
 #include "tests/tools/bar.hpp"
-#include "tests/tools/kept_cache.hpp"
 
 #include <algorithm>
 
@@ -66,12 +66,12 @@ TEST_CASE("what the unbroken bone proposes is the break, and a second painting i
     CHECK(both > 0.84 * painted(bar.truth));
     CHECK(both > 0.85 * painted(first));
     // Nothing but the painted area depends on these: all else was kept.
-    const std::size_t kept = files_in(cache.folder.path);
+    const std::size_t kept = files_in(cache.path);
     bar.settings.least_area = 0.0;
     const Points again = bar.proposed();
     bar.settings.facing = {bar.settings.main};
     const Points near = bar.proposed();
-    CHECK(files_in(cache.folder.path) - kept <= 1);  // the neighbour, when it was not needed before
+    CHECK(files_in(cache.path) - kept <= 1);  // the neighbour, when it was not needed before
     CHECK(painted(again) >= painted(first));
     const test::KeptCache empty;
     CHECK(same_paint(bar.proposed(), near));

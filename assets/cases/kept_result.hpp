@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of long computations on files, kept in the user's cache folder ($XDG_CACHE_HOME/tactus, otherwise
-// ~/.cache/tactus).
+// Results of long computations on files, kept in the user's cache folder (assets/file/cache.hpp).
 //
 // A result is a list of numbers. Its key is a text with all it depends on: hashes of the files, options, and the
 // version of the algorithm. It is read only when the key is the same text and its checksum is right.
@@ -12,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus::study {
+namespace tactus::cases {
 
 class ResultKey {
 public:
@@ -50,4 +49,4 @@ std::filesystem::path file_of_result(const ResultKey& key);
 std::vector<double> result_of(const ResultKey& key, std::optional<std::size_t> count, std::string& note,
                               const std::function<std::vector<double>()>& make);
 
-}  // namespace tactus::study
+}  // namespace tactus::cases

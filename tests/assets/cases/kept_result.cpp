@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/study/bones/kept_result.hpp"
+#include "assets/cases/kept_result.hpp"
 
 #include "dsp/geometry/point_tree.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/tools/kept_cache.hpp"
+#include "tests/support/kept_cache.hpp"
 
 #include <fstream>
 
 using namespace tactus;
-using study::ResultKey;
+using cases::ResultKey;
 
 TEST_CASE("a kept result is found by its own key only, to the bit") {
     const test::KeptCache cache;
-    const auto file = cache.folder.write("bone.stl", "some bytes");
+    const auto file = cache.write("bone.stl", "some bytes");
     const auto key = [&](int version, double option) {
         return ResultKey("registration", version).add_file(file).add("mirror", option);
     };
     const std::vector<double> numbers{0.1, 1.0 / 3.0, -0.0, 1e-300};
     std::string note;
-    CHECK_FALSE(study::kept_result(key(1, 1.0), note));
-    study::keep_result(key(1, 1.0), numbers);
-    CHECK(study::kept_result(key(1, 1.0), note) == numbers);
-    CHECK_FALSE(study::kept_result(key(2, 1.0), note));
-    CHECK_FALSE(study::kept_result(key(1, 0.0), note));
-    cache.folder.write("bone.stl", "some bytez");
-    CHECK_FALSE(study::kept_result(key(1, 1.0), note));
+    CHECK_FALSE(cases::kept_result(key(1, 1.0), note));
+    cases::keep_result(key(1, 1.0), numbers);
+    CHECK(cases::kept_result(key(1, 1.0), note) == numbers);
+    CHECK_FALSE(cases::kept_result(key(2, 1.0), note));
+    CHECK_FALSE(cases::kept_result(key(1, 0.0), note));
+    cache.write("bone.stl", "some bytez");
+    CHECK_FALSE(cases::kept_result(key(1, 1.0), note));
     CHECK(note.empty());
 }
 
@@ -32,38 +32,38 @@ TEST_CASE("a damaged or foreign kept result is ignored with a note, and made aga
     const test::KeptCache cache;
     const ResultKey key = ResultKey("registration", 1).add("mirror", 1.0);
     const std::vector<double> numbers{1.0, 2.5};
-    study::keep_result(key, numbers);
-    const auto kept = study::file_of_result(key);
-    const std::string good = test::slurp(kept);
+    cases::keep_result(key, numbers);
+    const auto kept = cases::file_of_result(key);
+    const std::string good = test::KeptCache::read(kept);
     REQUIRE(good.find("2.5") != std::string::npos);
     std::string other = good;
     other.replace(other.rfind("2.5"), 3, "2.6");
     const ResultKey foreign = ResultKey("registration", 1).add("mirror", 2.0);
-    study::keep_result(foreign, numbers);
+    cases::keep_result(foreign, numbers);
     for (const std::string& text : {other, good.substr(0, good.size() / 2), std::string("[]"), std::string(),
-                                    test::slurp(study::file_of_result(foreign))}) {
+                                    test::KeptCache::read(cases::file_of_result(foreign))}) {
         std::ofstream(kept, std::ios::binary) << text;
         std::string note;
         int made = 0;
         const auto make = [&] { return ++made, numbers; };
-        CHECK(study::result_of(key, 2, note, make) == numbers);
+        CHECK(cases::result_of(key, 2, note, make) == numbers);
         CHECK(made == 1);
         CHECK(note.find(kept.string()) != std::string::npos);
-        CHECK(study::result_of(key, 2, note, make) == numbers);
+        CHECK(cases::result_of(key, 2, note, make) == numbers);
         CHECK(made == 1);
     }
 }
 
 TEST_CASE("no result is kept for a header that names other files, and none without a folder that can be written") {
     const test::KeptCache cache;
-    const auto header = cache.folder.write("scan.nrrd", "NRRD0004\nsizes: 2 2 2\nData File: scan.raw\n\n");
+    const auto header = cache.write("scan.nrrd", "NRRD0004\nsizes: 2 2 2\nData File: scan.raw\n\n");
     CHECK(ResultKey("x", 1).add_file(header).text().empty());
-    const auto whole = cache.folder.write("whole.nrrd", "NRRD0004\nsizes: 2 2 2\n\n12345678");
+    const auto whole = cache.write("whole.nrrd", "NRRD0004\nsizes: 2 2 2\n\n12345678");
     CHECK_FALSE(ResultKey("x", 1).add_file(whole).text().empty());
-    cache.folder.write("tactus", "a file where the folder would be");
+    cache.write("tactus", "a file where the folder would be");
     std::string note;
-    study::keep_result(ResultKey("x", 1), {1.0});
-    CHECK_FALSE(study::kept_result(ResultKey("x", 1), note));
+    cases::keep_result(ResultKey("x", 1), {1.0});
+    CHECK_FALSE(cases::kept_result(ResultKey("x", 1), note));
 }
 
 TEST_CASE("a guess changes nothing of what the tree finds, and equal distances go to the first point") {

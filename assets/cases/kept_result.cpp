@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/study/bones/kept_result.hpp"
+#include "assets/cases/kept_result.hpp"
 
 #include "assets/bone/bone.hpp"
+#include "assets/file/cache.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
@@ -18,20 +19,11 @@
 #include <string_view>
 #include <utility>
 
-namespace tactus::study {
+namespace tactus::cases {
 
 namespace {
 
 constexpr std::string_view format_line = "tactus kept result 1\n";
-
-std::filesystem::path cache_folder() {
-    // A relative path is not valid there (XDG base directory specification).
-    if (const char* named = std::getenv("XDG_CACHE_HOME"); named && *named == '/')
-        return std::filesystem::path(named) / "tactus";
-    if (const char* home = std::getenv("HOME"); home && *home == '/')
-        return std::filesystem::path(home) / ".cache" / "tactus";
-    return {};
-}
 
 /// Whether all data of a file is in it: a header may name files of samples.
 bool is_whole(const std::filesystem::path& path) {
@@ -87,7 +79,7 @@ ResultKey& ResultKey::add_text(const std::string& name, const std::string& value
 }
 
 std::filesystem::path file_of_result(const ResultKey& key) {
-    const std::filesystem::path folder = cache_folder();
+    const std::filesystem::path folder = file::cache_folder();
     if (folder.empty() || key.text().empty()) return {};
     Hash hash;
     hash.add_text(key.text());
@@ -107,7 +99,10 @@ std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string
             std::vector<double> numbers;
             std::getline(lines, sum);
             while (std::getline(lines, number)) numbers.push_back(std::strtod(number.c_str(), nullptr));
-            if (sum == checksum(key.text(), numbers)) return numbers;
+            if (sum == checksum(key.text(), numbers)) {
+                file::touch_cached(file);
+                return numbers;
+            }
         }
     } catch (const std::exception&) {
         // Damaged or not ours: said below, and made again.
@@ -121,10 +116,9 @@ void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexc
         const std::filesystem::path file = file_of_result(key);
         // No result has infinite numbers.
         if (file.empty() || !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) return;
-        std::filesystem::create_directories(file.parent_path());
         std::string text = std::string(format_line) + key.text() + "\n\n" + checksum(key.text(), numbers) + "\n";
         for (const double number : numbers) text += fmt::format("{:.17g}\n", number);
-        file::write_whole_file(file, text);
+        file::write_cached(file, text);
     } catch (const std::exception&) {
         // A result that is not kept is computed again.
     }
@@ -155,7 +149,10 @@ std::optional<std::string> kept_text(const ResultKey& key, std::string& note) {
         const std::string whole = file::read_whole_file(file);
         const std::size_t size = head_of_text(key, "").size();
         std::string text = whole.size() >= size ? whole.substr(size) : "";
-        if (whole == head_of_text(key, text) + text) return text;
+        if (whole == head_of_text(key, text) + text) {
+            file::touch_cached(file);
+            return text;
+        }
     } catch (const std::exception&) {
         // Damaged or not ours: said below, and made again.
     }
@@ -167,8 +164,7 @@ void keep_text(const ResultKey& key, const std::string& text) noexcept {
     try {
         const std::filesystem::path file = file_of_text(key);
         if (file.empty()) return;
-        std::filesystem::create_directories(file.parent_path());
-        file::write_whole_file(file, head_of_text(key, text) + text);
+        file::write_cached(file, head_of_text(key, text) + text);
     } catch (const std::exception&) {
         // A result that is not kept is computed again.
     }
@@ -182,4 +178,4 @@ std::vector<double> result_of(const ResultKey& key, std::optional<std::size_t> c
     return numbers;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::cases

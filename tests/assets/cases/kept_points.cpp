@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/study/bones/kept_points.hpp"
+#include "assets/cases/kept_points.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/tools/kept_cache.hpp"
+#include "tests/support/kept_cache.hpp"
 
 #include <algorithm>
 #include <fstream>
 
 using namespace tactus;
-using study::ResultKey;
+using cases::ResultKey;
 
 namespace {
 
@@ -29,22 +29,22 @@ TEST_CASE("kept points come back to the bit, and damaged ones are made again wit
     std::string note;
     int made = 0;
     const auto make = [&] { return ++made, surface; };
-    CHECK(same(study::points_of_key(key, note, make), surface));
-    CHECK(same(study::points_of_key(key, note, make), surface));
+    CHECK(same(cases::points_of_key(key, note, make), surface));
+    CHECK(same(cases::points_of_key(key, note, make), surface));
     CHECK(made == 1);
     CHECK(note.empty());
-    const auto file = study::file_of_points(key);
-    const std::string good = test::slurp(file);
+    const auto file = cases::file_of_points(key);
+    const std::string good = test::KeptCache::read(file);
     std::string other = good;
     other[other.size() - 3] ^= 1;
     for (const std::string& text : {other, good.substr(0, good.size() - 10), std::string("[]"), std::string()}) {
         std::ofstream(file, std::ios::binary) << text;
         made = 0;
         note.clear();
-        CHECK(same(study::points_of_key(key, note, make), surface));
+        CHECK(same(cases::points_of_key(key, note, make), surface));
         CHECK(made == 1);
         CHECK(note.find(file.string()) != std::string::npos);
-        CHECK(same(study::points_of_key(key, note, make), surface));
+        CHECK(same(cases::points_of_key(key, note, make), surface));
         CHECK(made == 1);
     }
 }
@@ -55,12 +55,12 @@ TEST_CASE("no more than 32 surfaces are kept, and the oldest goes first") {
     const auto key = [](int n) { return ResultKey("points", 1).add("number", n); };
     const auto now = std::filesystem::file_time_type::clock::now();
     for (int n = 0; n < 40; ++n) {
-        study::points_of_key(key(n), note, [] { return surface; });
-        std::filesystem::last_write_time(study::file_of_points(key(n)), now - std::chrono::seconds(100 - n));
+        cases::points_of_key(key(n), note, [] { return surface; });
+        std::filesystem::last_write_time(cases::file_of_points(key(n)), now - std::chrono::seconds(100 - n));
     }
     int left = 0;
-    for (int n = 0; n < 40; ++n) left += std::filesystem::exists(study::file_of_points(key(n)));
+    for (int n = 0; n < 40; ++n) left += std::filesystem::exists(cases::file_of_points(key(n)));
     CHECK(left == 32);
-    CHECK_FALSE(std::filesystem::exists(study::file_of_points(key(7))));
-    CHECK(std::filesystem::exists(study::file_of_points(key(8))));
+    CHECK_FALSE(std::filesystem::exists(cases::file_of_points(key(7))));
+    CHECK(std::filesystem::exists(cases::file_of_points(key(8))));
 }
