@@ -25,13 +25,6 @@ using Clock = fs::file_time_type::clock;
 // A part that nothing was added to for so long was left by a process that died.
 constexpr auto abandoned = std::chrono::hours(24);
 
-fs::path root_of_cache() {
-    // A relative path is not valid there (XDG base directory specification).
-    if (const char* named = std::getenv("XDG_CACHE_HOME"); named && *named == '/') return fs::path(named) / "tactus";
-    if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "tactus";
-    return {};
-}
-
 struct CachedFile {
     fs::path path;
     fs::file_time_type used;
@@ -70,6 +63,13 @@ void trim(const fs::path& root, const fs::path& newest, std::uintmax_t limit) {
 }
 
 }  // namespace
+
+fs::path root_of_cache() {
+    // A relative path is not valid there (XDG base directory specification).
+    if (const char* named = std::getenv("XDG_CACHE_HOME"); named && *named == '/') return fs::path(named) / "tactus";
+    if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "tactus";
+    return {};
+}
 
 std::uintmax_t cache_limit() {
     constexpr std::uintmax_t megabyte = 1'000'000;

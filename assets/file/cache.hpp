@@ -11,10 +11,14 @@
 
 namespace tactus::file {
 
-/// $XDG_CACHE_HOME/tactus, otherwise ~/.cache/tactus. Empty when neither is an absolute path, and when the limit is 0.
+/// $XDG_CACHE_HOME/tactus, otherwise ~/.cache/tactus. Empty when neither is an absolute path.
+std::filesystem::path root_of_cache();
+
+/// The same; empty when the limit is 0, too: nothing is kept, and nothing that was kept is read.
 std::filesystem::path cache_folder();
 
-/// Bytes that the folder may hold: TACTUS_CACHE_LIMIT (MB), by default 4,000 MB. 0 turns the cache off.
+/// Bytes that the folder may hold: TACTUS_CACHE_LIMIT (MB), by default 4,000 MB. 0 turns the cache off. Throws Error
+/// for anything else than a whole number.
 std::uintmax_t cache_limit();
 
 /// Writes a file of the cache, readable by its owner only (it is derived from data of patients), and removes the files

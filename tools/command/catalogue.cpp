@@ -39,6 +39,7 @@
     X(gripper, grippers, grippers)        \
     X(calibrate, displays, displays)      \
     X(devices, machine, machine)          \
+    X(cache, machine, machine)            \
     X(bench, machine, machine)            \
     X(generate, machine, machine)
 

@@ -48,19 +48,3 @@ TEST_CASE("kept points come back to the bit, and damaged ones are made again wit
         CHECK(made == 1);
     }
 }
-
-TEST_CASE("no more than 32 surfaces are kept, and the oldest goes first") {
-    const test::KeptCache cache;
-    std::string note;
-    const auto key = [](int n) { return ResultKey("points", 1).add("number", n); };
-    const auto now = std::filesystem::file_time_type::clock::now();
-    for (int n = 0; n < 40; ++n) {
-        cases::points_of_key(key(n), note, [] { return surface; });
-        std::filesystem::last_write_time(cases::file_of_points(key(n)), now - std::chrono::seconds(100 - n));
-    }
-    int left = 0;
-    for (int n = 0; n < 40; ++n) left += std::filesystem::exists(cases::file_of_points(key(n)));
-    CHECK(left == 32);
-    CHECK_FALSE(std::filesystem::exists(cases::file_of_points(key(7))));
-    CHECK(std::filesystem::exists(cases::file_of_points(key(8))));
-}

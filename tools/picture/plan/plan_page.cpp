@@ -2,6 +2,7 @@
 #include "tools/picture/plan/plan_page.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/geometry/coarse_surface.hpp"
 #include "tools/counted.hpp"
 #include "tools/picture/plan/plan_gaps.hpp"
 #include "tools/picture/plan/plan_scenes.hpp"
@@ -9,12 +10,49 @@
 #include "tools/picture/report/html_report.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 namespace tactus::picture {
+
+namespace {
+
+// Of a picture's mesh: more triangles than pixels show nothing, and the drawing of a whole hip in fine voxels takes a
+// gigabyte.
+constexpr std::size_t max_triangles = 150'000;
+
+/// The surface as it is drawn: simplified until few enough triangles are left.
+mesh::Mesh drawn_surface(const volume::Grid& distance) {
+    mesh::Mesh full = mesh::surface_of(distance);
+    if (full.triangles.size() <= max_triangles) return full;
+    geometry::SurfacePatch fine;
+    for (std::size_t v = 0; v < full.vertices.size(); ++v) {
+        const glm::vec3 p(full.vertices[v]);
+        fine.vertices.push_back({{p.x, p.y, p.z}, geometry::packed_normal(full.normals[v])});
+    }
+    for (const auto& t : full.triangles)
+        for (const int v : t) fine.triangles.push_back(static_cast<std::uint32_t>(v));
+    full = {};
+    geometry::CoarseSurface simplifier;
+    const auto& levels = simplifier.make(fine, {distance.origin, distance.spacing, 0});
+    const geometry::SurfacePatch* level = &levels.back();
+    for (const geometry::SurfacePatch& one : levels)
+        if (one.triangles.size() / 3 <= max_triangles && one.triangles.size() > level->triangles.size()) level = &one;
+    mesh::Mesh drawn;
+    for (const geometry::SurfaceVertex& v : level->vertices) {
+        drawn.vertices.emplace_back(v.position[0], v.position[1], v.position[2]);
+        drawn.normals.push_back(glm::normalize(Vec3(v.normal[0], v.normal[1], v.normal[2])));
+    }
+    for (std::size_t n = 0; n + 2 < level->triangles.size(); n += 3)
+        drawn.triangles.push_back({static_cast<int>(level->triangles[n]), static_cast<int>(level->triangles[n + 1]),
+                                   static_cast<int>(level->triangles[n + 2])});
+    return drawn;
+}
+
+}  // namespace
 
 std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, const std::vector<study::CaseWarning>& warnings,
                                      std::vector<study::CaseFragment> fragments,
@@ -27,7 +65,7 @@ std::vector<ReportBlock> plan_blocks(const cases::CasePlan& plan, const std::vec
     c.to_healthy = std::move(to_healthy);
     c.to_healthy.resize(c.fragments.size());
     c.vessels = study::vessel_clearances(c.state, c.fragments);
-    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(mesh::surface_of(fragment.map.grid));
+    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(drawn_surface(fragment.map.grid));
     std::vector<ReportBlock> out, pictures;
     PlanGaps found;
     try {
