@@ -17,6 +17,11 @@ struct Acceptance {
     /// m, two standard deviations at the far end of the moving fragment, see fit_precision.hpp. Of faces of bones whose
     /// place was known, those up to 0.60 mm were within 0.31 mm of it; the next one, at 0.68 mm, was 0.62 mm off.
     static constexpr double most_far = 0.65e-3;
+    /// What a match must show that fails a limit above and is still reported as uncertain, because chips spoil a face and
+    /// do not move it: the score and the margin together are then beyond those of pieces that do not belong together.
+    static constexpr double likely_score = 0.42;
+    static constexpr double likely_margin = 0.3;
+    static constexpr double likely_rms = 0.9;  ///< share of sigma
     static constexpr double least_paint_share = 0.1;  ///< of all paint of the fragment that has less
 };
 

@@ -84,6 +84,25 @@ void fine(FitEnergy& energy, std::vector<Candidate>& candidates, std::size_t mos
     keep_distinct(candidates, energy.moving().gyration, 1e-3);
 }
 
+/// Where the fit ends that starts from a slip along the face, to the next relief.
+std::vector<Candidate> slips_of(FitEnergy& energy, const Pose& best, const FitSettings& settings, int& iterations) {
+    constexpr int ways = 6;
+    const Vec3 n = direction_of(energy.fixed().mean_normal);
+    const Vec3 u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
+    const Vec3 v = glm::cross(n, u);
+    set_law(energy, settings.outline, coarse_points);
+    std::vector<Candidate> found;
+    for (int way = 0; way < ways; ++way) {
+        const double angle = 2.0 * std::numbers::pi * way / ways;
+        const double away = way % 2 == 0 ? 2e-3 : 3.5e-3;
+        const Pose start{best.position + away * (std::cos(angle) * u + std::sin(angle) * v), best.orientation};
+        const Pose pose =
+            anneal(energy, start, {4.0 * settings.finest, settings.finest, 12, settings.power}, iterations);
+        found.push_back({pose, energy.quality(pose, settings.sigma).score});
+    }
+    return found;
+}
+
 /// Thesis 6.1.2: constant pull, contact and the springs of a hand are balanced each millisecond; the hand yields.
 Pose follow_thesis(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept {
     energy.law = {};
@@ -107,23 +126,34 @@ Pose follow_thesis(FitEnergy& energy, const Pose& start, const FitSettings& sett
     return solver.state().proxy;
 }
 
+PoseBound wider(const PoseBound& a, const PoseBound& b) noexcept {
+    return {std::max(a.turn, b.turn), std::max(a.face, b.face), std::max(a.far, b.far), a.has_rival || b.has_rival};
+}
+
 }  // namespace
 
 std::string_view name_of(FitVerdict verdict) {
-    constexpr std::string_view names[] = {"fit", "sliding", "ambiguous", "no_match", "blocked"};
+    constexpr std::string_view names[] = {"fit", "sliding", "ambiguous", "no_match", "blocked", "uncertain"};
     return names[static_cast<std::size_t>(verdict)];
 }
 
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
                  double far) noexcept {
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
-    if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
-        quality.share < settings.least_share || quality.rms > settings.most_rms * settings.sigma)
-        return FitVerdict::no_match;
+    const bool is_within = quality.score >= settings.least_score && quality.share >= settings.least_share &&
+                           quality.rms <= settings.most_rms * settings.sigma;
+    const bool is_likely = quality.score >= Acceptance::likely_score && margin >= Acceptance::likely_margin &&
+                           quality.rms <= Acceptance::likely_rms * settings.sigma;
+    if (quality.overlap < settings.least_overlap || !(is_within || is_likely)) return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
-    if (margin < settings.least_margin || far > settings.most_far) return FitVerdict::ambiguous;
+    if (margin < settings.least_margin) return FitVerdict::ambiguous;
     if (quality.penetration > settings.most_penetration) return FitVerdict::blocked;
-    return FitVerdict::fit;
+    return is_within && far <= settings.most_far ? FitVerdict::fit : FitVerdict::uncertain;
+}
+
+std::string_view answer_of(FitVerdict verdict) {
+    if (verdict == FitVerdict::fit) return "fit";
+    return verdict == FitVerdict::uncertain ? "fit, uncertain" : "no match";
 }
 
 Pose between_centres(const FitSurface& moving, const FitSurface& fixed, const Pose& bodies) {
@@ -188,9 +218,10 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     }
     const Candidate best = found.front();
     double second = 0.0;
+    Pose rival = best.pose;
     for (const auto* list : {&found, &elsewhere})
         for (const Candidate& c : *list)
-            if (pose_distance(c.pose, best.pose, radius) > 1e-3) second = std::max(second, c.score);
+            if (pose_distance(c.pose, best.pose, radius) > 1e-3 && c.score > second) second = c.score, rival = c.pose;
     set_law(energy, settings.outline);
     fit.quality = energy.quality(best.pose, settings.sigma);
     fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
@@ -201,6 +232,11 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     FitPrecisionSum sum(best.pose.position, best.pose.apply(moving.far));
     sum.add(moving, fixed, {}, energy.closed(best.pose));
     fit.precision = sum.precision();
+    fit.bound = bound_of(fit.precision, fit.margin, best.pose, rival, Vec3(0.0), moving.far, false);
+    for (const Candidate& c : slips_of(energy, best.pose, settings, fit.iterations))
+        if (best.score > 0.0 && pose_distance(c.pose, best.pose, radius) > 1e-3)
+            fit.bound = wider(fit.bound, bound_of(fit.precision, std::max(0.0, 1.0 - c.score / best.score), best.pose,
+                                                  c.pose, Vec3(0.0), moving.far, false));
     fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings, fit.precision.far);
     return fit;
 }
@@ -226,8 +262,13 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
         const Pose other = between_centres(*moving_face, *fixed_face, fits[n].pose);
         // Patches that fit by chance are small: they are weighted by their overlap relative to the best one.
         const double area = std::min(1.0, fits[n].quality.overlap / std::max(fit.quality.overlap, 1e-12));
-        if (n != best && pose_distance(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
-            fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
+        if (n != best && pose_distance(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0) {
+            const double before = fit.margin;
+            fit.margin = std::min(before, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
+            if (fit.margin < before)
+                fit.bound = wider(
+                    fit.bound, bound_of(fit.precision, fit.margin, chosen, other, Vec3(0.0), moving_face->far, false));
+        }
     }
     fit.verdict =
         judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face), fit.precision.far);

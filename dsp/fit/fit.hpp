@@ -24,11 +24,15 @@ enum class FitMode : std::uint8_t { thesis, extended, global };
 enum class FitVerdict : std::uint8_t {
     fit,  ///< one pose, constrained in all directions
     sliding,  ///< it can move along `free` and still fit: flat, round or straight surfaces
-    ambiguous,  ///< another pose fits equally well, or the faces are too small to hold the far end of the fragment
+    ambiguous,  ///< another pose fits equally well
     no_match,  ///< the surfaces do not belong together
-    blocked  ///< the surfaces fit, but the bones would overlap
+    blocked,  ///< the surfaces fit, but the bones would overlap
+    uncertain  ///< the best place, with its error: the faces are too small or too chipped to hold it within the limits
 };
 std::string_view name_of(FitVerdict verdict);
+
+/// What a verdict means for a plan: "fit", "fit, uncertain" or "no match".
+std::string_view answer_of(FitVerdict verdict);
 
 /// A motion that the fit does not constrain.
 struct FreeDirection {
@@ -52,7 +56,7 @@ struct FitSettings {
     double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
     double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
     double least_margin = Acceptance::least_margin;  ///< to the second best pose, as share of the best score
-    double most_far = Acceptance::most_far;  ///< m, at the far end: a face that holds it less well is ambiguous
+    double most_far = Acceptance::most_far;  ///< m, at the far end: a face that holds it less well is uncertain
     double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double most_penetration = 0.5e-3;  ///< m
 };
@@ -69,13 +73,14 @@ struct Fit {
     double margin = 0.0;  ///< (best − second best score) / best, in [0, 1]; poses within 1 mm count as one
     FitVerdict verdict = FitVerdict::no_match;
     FitPrecision precision;
+    PoseBound bound;
     std::vector<FreeDirection> free;
     std::array<double, 6> hold{};  ///< mean square slope along the directions, ascending
     int iterations = 0;  ///< steps of the solver, over all starts
 };
 
-/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`; `far` of FitPrecision, m) and blocked that
-/// applies, else fit.
+/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`), blocked and uncertain (`far` of FitPrecision,
+/// m, and what is likely but beyond a limit of the faces) that applies, else fit.
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
                  double far = 0.0) noexcept;
 

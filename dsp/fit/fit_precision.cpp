@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fit_precision.hpp"
 
+#include "dsp/core/rotation.hpp"
 #include "dsp/geometry/symmetric_eigen.hpp"
 
 #include <glm/geometric.hpp>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace tactus::fit {
 
@@ -78,16 +80,38 @@ FitPrecision FitPrecisionSum::precision() const noexcept {
     std::copy(std::begin(information_), std::end(information_), information.begin());
     const geometry::SymmetricEigen<6> eigen = geometry::symmetric_eigen<6>(information);
     const Vec3 arm = far_ - origin_;
-    double turn = 0.0, far = 0.0;
+    double turn = 0.0, far = 0.0, face = 0.0;
     for (std::size_t n = 0; n < 6; ++n) {
-        if (!(eigen.value[n] > 1e-9 * eigen.value[5])) return {infinite, infinite};
+        if (!(eigen.value[n] > 1e-9 * eigen.value[5])) return {infinite, infinite, infinite};
         const Slope& v = eigen.vector[n];
         const Vec3 rotation = Vec3(v[3], v[4], v[5]) / lever;
         const Vec3 motion = Vec3(v[0], v[1], v[2]) + glm::cross(rotation, arm);
         turn += glm::dot(rotation, rotation) / eigen.value[n];
         far += glm::dot(motion, motion) / eigen.value[n];
+        face += (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / eigen.value[n];
     }
-    return {2.0 * std::sqrt(turn), 2.0 * std::sqrt(far)};
+    return {2.0 * std::sqrt(turn), 2.0 * std::sqrt(far), 2.0 * std::sqrt(face)};
+}
+
+PoseBound bound_of(const FitPrecision& precision, double margin, const Pose& best, const Pose& rival, const Vec3& face,
+                   const Vec3& far, bool has_healthy) noexcept {
+    // The covariance knows the scatter of the scans and not the bias of chips: see docs/benchmarks.md, long bones.
+    constexpr double factor = 1.5;
+    constexpr double counted_margin = 0.3;  // a rival whose score is farther below is none
+    constexpr double asymmetry = 1.5e-3,
+                     asymmetry_turn = std::numbers::pi / 180.0;  // of two sides of a body, m and rad
+    PoseBound bound{factor * precision.turn, factor * precision.face, factor * precision.far, margin < counted_margin};
+    if (bound.has_rival) {
+        bound.turn = std::max(bound.turn, glm::length(rotation_between(best.orientation, rival.orientation)));
+        bound.face = std::max(bound.face, glm::length(best.apply(face) - rival.apply(face)));
+        bound.far = std::max(bound.far, glm::length(best.apply(far) - rival.apply(far)));
+    }
+    if (has_healthy) {
+        bound.turn = std::max(bound.turn, asymmetry_turn);
+        bound.face = std::max(bound.face, asymmetry);
+        bound.far = std::max(bound.far, asymmetry);
+    }
+    return bound;
 }
 
 }  // namespace tactus::fit

@@ -12,7 +12,21 @@ namespace tactus::fit {
 struct FitPrecision {
     double turn = 0.0;  ///< rad
     double far = 0.0;  ///< m, at the point of the moving fragment that is farthest from its face
+    double face = 0.0;  ///< m, at the middle of its face
 };
+
+/// How far a fit may be from the true place, at 95 %: the noise of the scans, and the second best pose where it is not
+/// clearly worse. That pose may be a slip to the next relief, which a covariance does not contain.
+struct PoseBound {
+    double turn = 0.0;  ///< rad
+    double face = 0.0, far = 0.0;  ///< m, at the middle of the face and at the farthest point
+    bool has_rival = false;  ///< the second best pose is in the bound
+};
+
+/// `face`, `far`: the two places on the moving fragment, in its frame. `margin`: of `best` to `rival`, as FitSettings has
+/// it. `has_healthy`: a mirrored side took part, which differs from the broken one by nature; the bound stays above that.
+PoseBound bound_of(const FitPrecision& precision, double margin, const Pose& best, const Pose& rival, const Vec3& face,
+                   const Vec3& far, bool has_healthy) noexcept;
 
 /// Sums the faces of one moving fragment. The distances of a face scatter with the noise of its scan, which is correlated
 /// over neighbouring points: the variance of their mean is summed over all pairs of points nearer than 3 mm, by Bartlett's

@@ -123,18 +123,17 @@ FragmentMatcher::Solved FragmentMatcher::solve(FitEnergy& e, const Pair& pair,
         } else if (c.score > best[0].score) best[1] = best[0], best[0] = c;
         else if (c.score > best[1].score) best[1] = c;
     }
-    Solved solved{pair, {}, 0.0};
+    Solved solved{pair, {}, 0.0, {}};
     set_law(e, 0.0, settings.most_points);
     for (Candidate& c : best) {
         if (!(c.score >= 0.0)) continue;
         c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
         c.score = e.quality(c.pose, fit.sigma).score;
+        const bool is_apart = solved.best.score >= 0.0 && pose_distance(c.pose, solved.best.pose, gyration) > 1e-3;
         if (c.score > solved.best.score) {
-            if (solved.best.score >= 0.0 && pose_distance(c.pose, solved.best.pose, gyration) > 1e-3)
-                solved.second = solved.best.score;
+            if (is_apart) solved.second = solved.best.score, solved.rival = solved.best.pose;
             solved.best = c;
-        } else if (pose_distance(c.pose, solved.best.pose, gyration) > 1e-3)
-            solved.second = std::max(solved.second, c.score);
+        } else if (is_apart && c.score > solved.second) solved.second = c.score, solved.rival = c.pose;
     }
     return solved;
 }

@@ -34,6 +34,7 @@ struct FragmentMatch {
     FitQuality quality;  ///< of the leading pair of faces
     double margin = 0.0;  ///< to the second best pose, as a share of the best score
     FitPrecision precision;  ///< of all faces that were fitted together
+    PoseBound bound;  ///< of the pose
     int faces = 0;  ///< number of face pairs that were fitted together
 };
 
@@ -126,6 +127,7 @@ private:
         Pair pair;
         Candidate best;
         double second = 0.0;
+        Pose rival;  // the second best, between centres
     };
     class Together;
 

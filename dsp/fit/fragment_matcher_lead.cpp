@@ -177,6 +177,8 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
                 energies_[k].closed(centres_of(k, there)));
     }
     match_.precision = sum.precision();
+    match_.bound = bound_of(match_.precision, match_.margin, centres(best.pair, at, poses), best.rival, Vec3(0.0),
+                            leading.far, !pulls_.empty());
     // The healthy side holds the far end too.
     FitSettings required = fit;
     required.least_overlap = least_overlap(match_.moving, match_.partner);
@@ -217,7 +219,8 @@ const FragmentMatch& FragmentMatcher::place(const FacePairFit& pair, std::span<c
     match_ = {};
     match_.moving = faces_[pair.moving].fragment;
     const Pose at = between_centres(faces_[pair.moving].surface, faces_[pair.fixed].surface, pair.pose);
-    lead({{pair.moving, pair.fixed, 0.0}, {at, pair.score}, pair.second}, poses, stands);
+    // The rival's pose is not known here: one as good lies anywhere, and the margin refuses it.
+    lead({{pair.moving, pair.fixed, 0.0}, {at, pair.score}, pair.second, at}, poses, stands);
     return match_;
 }
 

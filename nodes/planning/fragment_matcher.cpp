@@ -32,7 +32,7 @@ struct FragmentMatcher {
     Out<bool> fits{"there is a fit"};
     Out<double> fragment{"place of the fragment that the target is for; -1: none"};
     Out<double> partner{"place of the fragment that it fits best; -1: none"};
-    Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous (or as scanned), 3 no match, 4 blocked"};
+    Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous (or as scanned), 3 no match, 4 blocked, 5 uncertain"};
     Out<double> score{"of the best fitting faces, 0 to 1"};
     Out<double> margin{"to the second best pose, as a share of the best score"};
     Out<double> rms{"of the distances within the overlap", "m"};
@@ -139,7 +139,7 @@ private:
 
     /// A border between two labels of one scan fits itself wherever the fragments lie.
     fit::FragmentMatch judged(fit::FragmentMatch match) const noexcept {
-        if (match.verdict != fit::FitVerdict::fit) return match;
+        if (match.verdict != fit::FitVerdict::fit && match.verdict != fit::FitVerdict::uncertain) return match;
         const auto moving = static_cast<std::size_t>(match.moving), other = static_cast<std::size_t>(match.partner);
         const coupling::Body& body = scene->objects[other].body;
         const Pose into = body.home.inverse();

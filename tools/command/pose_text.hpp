@@ -2,9 +2,11 @@
 // Poses and motions as text and JSON.
 #pragma once
 
+#include "dsp/fit/fit.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
 
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -25,6 +27,21 @@ Json motion_json(const study::Motion& motion) {
 
 /// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
 Pose pose_of_text(const std::string& text, std::string_view option);
+
+/// Whether a verdict names a place: "fit" and "fit, uncertain".
+bool has_bound(fit::FitVerdict verdict);
+
+/// The answer and how far the place may be from the true one.
+std::string bound_words(fit::FitVerdict verdict, const fit::PoseBound& bound);
+
+/// The bound of a pose at 95 %, in a JSON type. `rival`: the second best pose is in it.
+template <class Json>
+Json bound_json(const fit::PoseBound& bound) {
+    return {{"turn_deg", bound.turn * 180.0 / std::numbers::pi},
+            {"face_mm", bound.face * 1e3},
+            {"far_mm", bound.far * 1e3},
+            {"rival", bound.has_rival}};
+}
 
 /// Explanation of a fit that only reproduces the scan (dsp/fit/as_scanned.hpp).
 inline constexpr std::string_view as_scanned_note =

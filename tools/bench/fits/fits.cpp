@@ -35,7 +35,8 @@ bool is_chosen(const FitsChoice& choice, int group) {
 
 /// What the trials of one half say.
 struct FitsTally {
-    int groups = 0, mismatches = 0, near_misses = 0, false_fits = 0, trials = 0, found = 0, kept = 0;
+    int groups = 0, mismatches = 0, near_misses = 0, false_fits = 0, false_uncertain = 0, trials = 0, found = 0,
+        kept = 0;
     double weakest_score = 1.0, weakest_share = 1.0, weakest_margin = 1.0, strongest_score = 0.0;
 };
 
@@ -98,6 +99,7 @@ FitsTally tally_of(const std::vector<Json>& rows, bool to_set) {
             ++tally.mismatches;
             tally.near_misses += row["kind"] != "foreign";
             tally.false_fits += fits;
+            tally.false_uncertain += row["verdict"] == "uncertain";
             if (row["loose"] == "fit") tally.strongest_score = std::max(tally.strongest_score, score);
             continue;
         }
@@ -126,6 +128,7 @@ Json json_of(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set
             {"mismatches", t.mismatches},
             {"near_misses", t.near_misses},
             {"false_fits", t.false_fits},
+            {"false_uncertain", t.false_uncertain},
             {"true_pairs", t.trials},
             {"true_fits", t.found},
             {"true_fits_kept", t.kept},
@@ -138,10 +141,12 @@ Json json_of(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set
 
 void print(const FitsTally& t, const std::vector<HeldTally>& held, bool to_set) {
     fmt::print(
-        "{}: {} broken bones; {} mismatches, {} of them near misses: {} false fits; {} neighbours, {} found without "
+        "{}: {} broken bones; {} mismatches, {} of them near misses: {} false fits, {} uncertain; {} neighbours, {} "
+        "found without "
         "thresholds, {} kept ({:.1f} %); weakest true fit: score {:.2f}, share {:.2f}, margin {:.2f}\n",
-        to_set ? "to set" : "to judge", t.groups, t.mismatches, t.near_misses, t.false_fits, t.trials, t.found, t.kept,
-        t.found > 0 ? 100.0 * t.kept / t.found : 0.0, t.weakest_score, t.weakest_share, t.weakest_margin);
+        to_set ? "to set" : "to judge", t.groups, t.mismatches, t.near_misses, t.false_fits, t.false_uncertain,
+        t.trials, t.found, t.kept, t.found > 0 ? 100.0 * t.kept / t.found : 0.0, t.weakest_score, t.weakest_share,
+        t.weakest_margin);
     for (const HeldTally& h : held)
         fmt::print(
             "    far end held within {:.2f} mm: {} right fits kept, {} lost; {} wrong ones (0.5 mm off) kept, {} "

@@ -42,7 +42,10 @@ struct Shaft {
     std::string verdict;
     double area = 0.0, angle = 0.0, error = 0.0;  ///< m², degrees, m on the axis, 150 mm from the face
     double end_error = 0.0;  ///< m, where the fragment is farthest from the face
+    double face_error = 0.0;  ///< m, at the middle of the face
     fit::FitPrecision precision;
+    fit::PoseBound bound;
+    double score = 0.0;
     double open = 0.0;  ///< m, how far apart the faces stay that a blade has parted
     std::optional<fit::KerfEstimate> kerf;
 };
@@ -111,6 +114,9 @@ Shaft fit_shaft(const bone::Bone& bone, const ShaftsChoice& choice, int number) 
     shaft.verdict = fit::name_of(found.match.verdict);
     shaft.area = paint.second;
     shaft.precision = found.match.precision;
+    shaft.bound = found.match.bound;
+    shaft.face_error = glm::length(pose.apply(face) - truth.apply(face));
+    shaft.score = found.match.quality.score;
     shaft.open = found.match.quality.gap;
     shaft.kerf = found.kerf;
     shaft.angle = glm::length(rotation_between(truth.orientation, pose.orientation)) / degree;
@@ -137,14 +143,59 @@ double part_of(std::vector<double> values, double share) {
                           : values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
+/// How often the bounds of fits and uncertain fits hold, and what the rest was.
+struct BoundTally {
+    int placed = 0, uncertain = 0, refused_right = 0;
+    std::vector<double> covered;  ///< 1 or 0 per placed shaft: turn, face and far end are all within the bound
+    std::vector<double> bounds, errors;  ///< mm, at the far end
+};
+
+/// Right means at most 5° and 3 mm at the face.
+void count(BoundTally& tally, const Shaft& shaft) {
+    const bool is_placed = shaft.verdict == "fit" || shaft.verdict == "uncertain";
+    tally.refused_right += !is_placed && shaft.angle <= 5.0 && shaft.face_error <= 3e-3;
+    if (!is_placed) return;
+    ++tally.placed;
+    tally.uncertain += shaft.verdict == "uncertain";
+    tally.covered.push_back(shaft.angle * degree <= shaft.bound.turn && shaft.face_error <= shaft.bound.face &&
+                            shaft.end_error <= shaft.bound.far);
+    tally.bounds.push_back(std::min(shaft.bound.far * 1e3, 1e3));
+    tally.errors.push_back(shaft.end_error * 1e3);
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double v : values) sum += v / static_cast<double>(values.size());
+    return sum;
+}
+
+/// The 2.5 and 97.5 % quantiles of the coverage, by a bootstrap over shafts.
+std::pair<double, double> coverage_range(const std::vector<double>& covered) {
+    constexpr int draws = 2000;
+    const Random random{20261};
+    std::vector<double> means;
+    for (int d = 0; d < draws && !covered.empty(); ++d) {
+        double sum = 0.0;
+        for (std::size_t n = 0; n < covered.size(); ++n) {
+            const double u = random.uniform(static_cast<std::uint64_t>(d) * covered.size() + n);
+            sum += covered[std::min(covered.size() - 1,
+                                    static_cast<std::size_t>(u * static_cast<double>(covered.size())))];
+        }
+        means.push_back(sum / static_cast<double>(covered.size()));
+    }
+    return {part_of(means, 0.025), part_of(means, 0.975)};
+}
+
 int bench_shafts(const ShaftsChoice& choice) {
     const bone::Bone bone =
         resized(choice.bone.empty() ? library::make_fibula() : cases::bone_from_file(choice.bone), choice.size);
     std::vector<double> angles, errors;
     int fits = 0, good = 0;
+    BoundTally tally;
     Json rows = Json::array();
     for (int n = choice.first; n < choice.first + choice.count; ++n) {
         const Shaft shaft = fit_shaft(bone, choice, n);
+        count(tally, shaft);
         fits += shaft.verdict == "fit";
         good += shaft.verdict == "fit" && shaft.angle <= goal_angle && shaft.error <= goal_error;
         if (shaft.verdict == "fit") {
@@ -157,6 +208,12 @@ int bench_shafts(const ShaftsChoice& choice) {
                         {"angle_deg", shaft.angle},
                         {"error_mm", shaft.error * 1e3},
                         {"end_error_mm", shaft.end_error * 1e3},
+                        {"face_error_mm", shaft.face_error * 1e3},
+                        {"score", shaft.score},
+                        {"bound_mm", std::min(shaft.bound.far * 1e3, 1e3)},
+                        {"bound_face_mm", std::min(shaft.bound.face * 1e3, 1e3)},
+                        {"bound_deg", std::min(shaft.bound.turn / degree, 180.0)},
+                        {"rival", shaft.bound.has_rival},
                         {"held_mm", std::min(shaft.precision.far * 1e3, 1e3)},
                         {"held_deg", std::min(shaft.precision.turn / degree, 180.0)},
                         {"gap_mm", shaft.open * 1e3}});
@@ -169,7 +226,16 @@ int bench_shafts(const ShaftsChoice& choice) {
                    shaft.area * 1e6, shaft.angle, shaft.error * 1e3, shaft.open * 1e3, words_of(shaft.kerf));
         std::fflush(stdout);
     }
-    const Json total{{"shafts", choice.count},
+    const auto [low, high] = coverage_range(tally.covered);
+    const Json total{{"placed", tally.placed},
+                     {"uncertain", tally.uncertain},
+                     {"right_but_refused", tally.refused_right},
+                     {"bound_coverage", mean_of(tally.covered)},
+                     {"bound_coverage_low", low},
+                     {"bound_coverage_high", high},
+                     {"bound_median_mm", part_of(tally.bounds, 0.5)},
+                     {"end_error_median_mm", part_of(tally.errors, 0.5)},
+                     {"shafts", choice.count},
                      {"fits", fits},
                      {"within_goal", good},
                      {"angle_median_deg", part_of(angles, 0.5)},
@@ -178,6 +244,12 @@ int bench_shafts(const ShaftsChoice& choice) {
                      {"error_median_mm", part_of(errors, 0.5)},
                      {"error_p90_mm", part_of(errors, 0.9)},
                      {"error_max_mm", part_of(errors, 1.0)}};
+    if (!choice.json)
+        fmt::print(
+            "{} placed, {} of them uncertain; {} right ones refused; the bound of 95 % holds for {:.0f} % ({:.0f} to "
+            "{:.0f} %, bootstrap by shaft); at the far end its median is {:.2f} mm, that of the errors {:.2f} mm\n",
+            tally.placed, tally.uncertain, tally.refused_right, 100.0 * mean_of(tally.covered), 100.0 * low,
+            100.0 * high, part_of(tally.bounds, 0.5), part_of(tally.errors, 0.5));
     if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"total", total}, {"rows", rows}}.dump(2));
     else
         fmt::print(

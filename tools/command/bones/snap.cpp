@@ -82,7 +82,9 @@ Json json_of(const fit::Fit& fit) {
             {"penetration_mm", fit.quality.penetration * 1e3},
             {"outline_step_mm", fit.quality.outline * 1e3},
             {"free_directions", free},
-            {"verdict", fit::name_of(fit.verdict)}};
+            {"verdict", fit::name_of(fit.verdict)},
+            {"answer", fit::answer_of(fit.verdict)},
+            {"bound", bound_json<Json>(fit.bound)}};
 }
 
 Json json_of(const study::Snapped& found) {
@@ -106,6 +108,7 @@ void print(const SnapChoice& choice, const study::Snapped& found) {
                fit.quality.rms * 1e3, 1e3 * found.seconds);
     fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
                p.z, q.w, q.x, q.y, q.z);
+    if (has_bound(fit.verdict)) fmt::print("{}\n", bound_words(fit.verdict, fit.bound));
     for (const fit::FreeDirection& f : fit.free)
         fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_rotation ? "turn about" : "slide along", f.axis.x,
                    f.axis.y, f.axis.z);

@@ -15,7 +15,8 @@ void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, con
         fmt::print("{} to {}: {}, {}, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
                    name(match.moving), name(match.partner), fit::name_of(match.verdict), counted(match.faces, "face"),
                    match.quality.score, match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
-                   match.verdict == fit::FitVerdict::fit ? "" : "; it stays where it was");
+                   has_bound(match.verdict) ? "" : "; it stays where it was");
+        if (has_bound(match.verdict)) fmt::print("{}\n", bound_words(match.verdict, match.bound));
         if (!reason.empty()) fmt::print("{}\n", reason);
     }
     if (found.is_apart)

@@ -20,6 +20,8 @@ Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found, cons
     return {{"fragment", name(match.moving)},
             {"partner", met ? Json(name(match.partner)) : Json(nullptr)},
             {"verdict", fit::name_of(match.verdict)},
+            {"answer", fit::answer_of(match.verdict)},
+            {"bound", met ? bound_json<Json>(match.bound) : Json(nullptr)},
             {"placed", match.verdict == fit::FitVerdict::fit},
             {"reason", reason.empty() ? Json(nullptr) : Json(reason)},
             {"as_scanned", found.as_scanned},

@@ -14,6 +14,7 @@ namespace {
 
 struct SnapChoice : PlanChoice {
     std::string mode = "extended";
+    bool takes_uncertain = false;
 };
 
 int snap_fragment(const SnapChoice& choice) {
@@ -41,11 +42,16 @@ int snap_fragment(const SnapChoice& choice) {
     // Everything that may fail runs before the plan is changed.
     const auto target = study::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
     // Where nothing fits, the distance there says nothing.
-    const bool has_place = fits || found.as_scanned;
+    const bool is_uncertain = found.match.verdict == fit::FitVerdict::uncertain;
+    const bool has_place = fits || is_uncertain || found.as_scanned;
     if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);
+    // A place that no fit vouches for connects nothing: the step has no fit in it, and 'plan accept' adds the decision.
+    if (is_uncertain && choice.takes_uncertain)
+        study::do_step(plan, cases::placing(plan, moving, found.match.pose, "snap"), choice.plan);
     if (choice.json) {
         using file::Json;
         Json json = match_json<Json>(plan, found, reason);
+        json["moved_there"] = fits || (is_uncertain && choice.takes_uncertain);
         json["as_scanned_mm2"] = left_out_json<Json>(plan, matching, a);
         if (target)
             json["target"] = {{"median_before_mm", 1e3 * target->before},
@@ -53,11 +59,13 @@ int snap_fragment(const SnapChoice& choice) {
         fmt::print("{}\n", json.dump(2));
     } else {
         print_match(plan, found, reason);
+        if (is_uncertain && choice.takes_uncertain)
+            fmt::print("{} is put there; 'tactus plan accept' settles it\n", choice.names[0]);
         print_left_out(plan, matching, a);
         if (target)
             fmt::print("from the healthy side: median {:.2f} mm where it was{}\n", 1e3 * target->before,
                        has_place ? fmt::format(", {:.2f} mm {}", 1e3 * target->there,
-                                               fits ? "where its faces fit" : "where the scan has it")
+                                               found.as_scanned ? "where the scan has it" : "where its faces fit")
                                  : "");
     }
     return fits ? done : answer_is_no;
@@ -71,6 +79,8 @@ Action declare_plan_snap(VerbOptions& verb) {
     verb.add("--mode", choice->mode, "extended: from the current pose; global: from any pose")
         .one_of({"extended", "global"})
         .shows_default();
+    verb.flag("--uncertain", choice->takes_uncertain,
+              "put it at an uncertain place, too; only 'tactus plan accept' connects it there");
     add_fit_options(verb, *choice);
     return [choice] { return snap_fragment(*choice); };
 }

@@ -79,8 +79,9 @@ Snapped snap_files(const SnapSettings& settings) {
     const auto begin = std::chrono::steady_clock::now();
     out.fit = fit::find_fit(moving_faces, fixed_faces, settings.start, settings.mode);
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.as_scanned = out.fit.verdict == fit::FitVerdict::fit &&
-                     fit::is_as_scanned(moving.bone.points, out.fit.pose, contact::make_voxmap(fixed.bone.distance));
+    const bool has_place = out.fit.verdict == fit::FitVerdict::fit || out.fit.verdict == fit::FitVerdict::uncertain;
+    out.as_scanned =
+        has_place && fit::is_as_scanned(moving.bone.points, out.fit.pose, contact::make_voxmap(fixed.bone.distance));
     if (out.as_scanned) out.fit.verdict = fit::FitVerdict::ambiguous;
     out.moved = motion_between(settings.start, out.fit.pose, middle_of(moving.bone.points));
     out.moving = side_of(moving, moving_faces);

@@ -190,17 +190,21 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
         case fit::FitVerdict::sliding:
             return "the faces are too smooth to hold it in one place; paint more of the fracture, or place it by hand";
         case fit::FitVerdict::ambiguous:
-            if (match.margin >= settings.least_margin && match.precision.far > settings.most_far)
-                return fmt::format(
-                    "the {} of {:.0f} mm² {} it to ±{:.2f} mm and ±{:.1f}° at its far end only, and ±{:.2f} mm is "
-                    "needed; paint more of the fracture, or place it by hand",
-                    match.faces == 1 ? "face" : "faces, the best", match.quality.overlap * 1e6,
-                    match.faces == 1 ? "holds" : "hold", match.precision.far * 1e3,
-                    match.precision.turn * 180.0 / std::numbers::pi, settings.most_far * 1e3);
             return fmt::format("another pose fits as well: the margin is below {:.2f}; {}", settings.least_margin,
                                only == fit::Arrangement::none
                                    ? "name its partner at 'tactus plan snap', or paint more of the fracture"
                                    : "paint more of the fracture");
+        case fit::FitVerdict::uncertain:
+            return fmt::format(
+                "{}; compare with the healthy side (--healthy), paint more of the fracture, or put it there with "
+                "'tactus plan snap --uncertain' and settle it with 'tactus plan accept'",
+                match.precision.far > settings.most_far
+                    ? fmt::format("the {} of {:.0f} mm² {} the far end to ±{:.2f} mm only, and ±{:.2f} mm is needed",
+                                  match.faces == 1 ? "face" : "faces, the best", match.quality.overlap * 1e6,
+                                  match.faces == 1 ? "holds" : "hold", match.precision.far * 1e3,
+                                  settings.most_far * 1e3)
+                    : fmt::format("the faces agree on {:.0f} mm² only, as chipped ones do",
+                                  match.quality.overlap * 1e6));
         case fit::FitVerdict::blocked: return fmt::format("the bones would lie in each other; {}", next);
         default: return fmt::format("{}; {}", no_match(match.quality, settings), next);
     }

@@ -122,9 +122,11 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
     found.was_painted = fragment(made.moving).was_painted;
     const std::vector<contact::SurfacePoint>& points = fragment(made.moving).bone.points;
     // A fit that only reproduces the scanned position gives no information about the correct pose.
-    found.as_scanned =
-        made.verdict == fit::FitVerdict::fit &&
-        fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
+    const auto has_place = [&found] {
+        return found.match.verdict == fit::FitVerdict::fit || found.match.verdict == fit::FitVerdict::uncertain;
+    };
+    found.as_scanned = has_place() && fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose,
+                                                         fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     if (found.match.verdict == fit::FitVerdict::fit) {
         found.kerf = estimate_kerf(found, arrangement);
@@ -132,7 +134,7 @@ PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrang
             found.kerf->is_contradicted = found.kerf->is_open = false;
         if (found.kerf && found.kerf->is_doubtful()) found.match.verdict = fit::FitVerdict::ambiguous;
     }
-    if (found.match.verdict == fit::FitVerdict::fit) {
+    if (has_place()) {
         look_for_overlap(found, arrangement, counts);
         if (found.inside != fit::Arrangement::none) found.match.verdict = fit::FitVerdict::blocked;
     }

@@ -63,7 +63,7 @@ void PlanPanel::fit_line() const {
             if (part.place == place) return part.name;
         return fmt::format("fragment {}", place + 1);
     };
-    const bool is_known = fit->verdict >= 0 && fit->verdict <= static_cast<int>(fit::FitVerdict::blocked);
+    const bool is_known = fit->verdict >= 0 && fit->verdict <= static_cast<int>(fit::FitVerdict::uncertain);
     const std::string verdict = is_known ? std::string(fit::name_of(static_cast<fit::FitVerdict>(fit->verdict))) : "?";
     std::string text = fmt::format("{}: {}", name(fit->fragment), verdict);
     if (fit->partner >= 0) text += fmt::format(", to {}", name(fit->partner));
