@@ -95,12 +95,10 @@ FitPrecision FitPrecisionSum::precision() const noexcept {
 
 PoseBound bound_of(const FitPrecision& precision, double margin, const Pose& best, const Pose& rival, const Vec3& face,
                    const Vec3& far, bool has_healthy) noexcept {
-    // The covariance knows the scatter of the scans and not the bias of chips: see docs/benchmarks.md, long bones.
-    constexpr double factor = 1.5;
     constexpr double counted_margin = 0.3;  // a rival whose score is farther below is none
     constexpr double asymmetry = 1.5e-3,
                      asymmetry_turn = std::numbers::pi / 180.0;  // of two sides of a body, m and rad
-    PoseBound bound{factor * precision.turn, factor * precision.face, factor * precision.far, margin < counted_margin};
+    PoseBound bound{precision.turn, precision.face, precision.far, margin < counted_margin};
     if (bound.has_rival) {
         bound.turn = std::max(bound.turn, glm::length(rotation_between(best.orientation, rival.orientation)));
         bound.face = std::max(bound.face, glm::length(best.apply(face) - rival.apply(face)));

@@ -202,11 +202,34 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         match_ = {};
         match_.moving = moving;
         lead(solved_[n], poses, stands);
+        if (match_.verdict == FitVerdict::uncertain) confirm(solved_[n], poses, stands);
         if (match_.verdict == FitVerdict::fit) return match_;
         if (n == 0) first = match_;
     }
     match_ = first;
     return match_;
+}
+
+/// What is uncertain may have slipped to another relief, along the face or about its normal: a search from there finds a
+/// better place, or the rival that the bound must contain.
+void FragmentMatcher::confirm(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+    const FitSurface& fixed = faces_[best.pair.fixed].surface;
+    const Vec3 about = direction_of(fixed.mean_normal);
+    const Vec3 u =
+        glm::normalize(glm::cross(about, std::abs(about.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
+    const Vec3 v = glm::cross(about, u);
+    const Pose at = best.best.pose;
+    const auto spun = [&](double angle) {
+        const Quat turn = glm::angleAxis(angle, about);
+        return Pose{turn * at.position, turn * at.orientation};
+    };
+    const auto slipped = [&](const Vec3& way) { return Pose{at.position + way, at.orientation}; };
+    const std::array<Pose, 13> starts{{at, spun(0.08), spun(-0.08), spun(0.16), spun(-0.16), slipped(1.5e-3 * u),
+                                       slipped(-1.5e-3 * u), slipped(1.5e-3 * v), slipped(-1.5e-3 * v),
+                                       slipped(3e-3 * u), slipped(-3e-3 * u), slipped(3e-3 * v), slipped(-3e-3 * v)}};
+    Solved again = solve(energies_[0], best.pair, starts);
+    if (best.second > again.second) again.second = best.second, again.rival = best.rival;
+    lead(again, poses, stands);
 }
 
 void FragmentMatcher::begin_search() noexcept {
@@ -247,6 +270,7 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
     match_ = {};
     match_.moving = moving;
     lead(solved_.front(), poses, stands);
+    if (match_.verdict == FitVerdict::uncertain) confirm(solved_.front(), poses, stands);
     const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
     if (worth(match_) > worth(found_)) {
         found_ = match_;

@@ -138,6 +138,7 @@ private:
     double least_overlap(int moving, int partner) const noexcept;
     void join(const Solved& best, const Pose& at, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    void confirm(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     bool same_search(int moving, std::span<const char> stands) noexcept;
 
     std::vector<Face> faces_;

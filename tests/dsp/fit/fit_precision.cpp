@@ -2,12 +2,14 @@
 #include "dsp/fit/fit_precision.hpp"
 
 #include "dsp/core/constants.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/fit/fragment_matcher.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 using namespace tactus;
@@ -118,4 +120,51 @@ TEST_CASE("dsp: a face without noise is a fit, however long the shaft") {
          << ", " << held.far / mm << " mm off, said " << held.match.precision.far / mm << " mm");
     CHECK(held.match.verdict == fit::FitVerdict::fit);
     CHECK(held.far < 0.3 * mm);
+}
+
+TEST_CASE("dsp: what is right and not held is uncertain, and what does not belong together is no match") {
+    const fit::FitSettings settings;
+    fit::FitQuality good;
+    good.score = 0.7;
+    good.share = 0.6;
+    good.overlap = 60e-6;
+    good.rms = 0.5 * settings.sigma;
+    const auto verdict = [&settings](const fit::FitQuality& quality, double margin, double far) {
+        return fit::judge(quality, false, margin, settings, far);
+    };
+    CHECK(verdict(good, 0.5, 0.5 * mm) == fit::FitVerdict::fit);
+    CHECK(verdict(good, 0.5, 4.0 * mm) == fit::FitVerdict::uncertain);
+    CHECK(verdict(good, 0.05, 4.0 * mm) == fit::FitVerdict::ambiguous);
+    fit::FitQuality chipped = good;
+    chipped.rms = 0.8 * settings.sigma;
+    CHECK(verdict(chipped, 0.5, 0.5 * mm) == fit::FitVerdict::uncertain);
+    CHECK(verdict(chipped, 0.2, 0.5 * mm) == fit::FitVerdict::no_match);
+    chipped.score = 0.35;
+    CHECK(verdict(chipped, 0.5, 0.5 * mm) == fit::FitVerdict::no_match);
+    fit::FitQuality deep = good;
+    deep.penetration = 2.0 * mm;
+    CHECK(verdict(deep, 0.5, 4.0 * mm) == fit::FitVerdict::blocked);
+    for (const auto& [of, answer] : {std::pair(fit::FitVerdict::fit, "fit"),
+                                     {fit::FitVerdict::uncertain, "fit, uncertain"},
+                                     {fit::FitVerdict::ambiguous, "no match"},
+                                     {fit::FitVerdict::no_match, "no match"}})
+        CHECK(fit::answer_of(of) == answer);
+}
+
+TEST_CASE(
+    "dsp: the bound of a fit contains a rival that is nearly as good, and two sides of a body never agree better") {
+    const fit::FitPrecision precision{0.002, 0.4 * mm, 0.1 * mm};
+    const Pose best, slip{Vec3(2.0 * mm, 0.0, 0.0), rotation_by(Vec3(0.0, 0.0, 0.05))};
+    const Vec3 face(0.0), far(0.1, 0.0, 0.0);
+    const fit::PoseBound alone = fit::bound_of(precision, 0.6, best, slip, face, far, false);
+    CHECK_FALSE(alone.has_rival);
+    CHECK(alone.far == precision.far);
+    const fit::PoseBound with = fit::bound_of(precision, 0.2, best, slip, face, far, false);
+    CHECK(with.has_rival);
+    CHECK(with.turn == Approx(0.05));
+    CHECK(with.face == Approx(2.0 * mm));
+    CHECK(with.far == Approx(glm::length(slip.apply(far) - far)));
+    const fit::PoseBound healthy = fit::bound_of(precision, 0.6, best, slip, face, far, true);
+    CHECK(healthy.far == Approx(1.5 * mm));
+    CHECK(healthy.turn == Approx(1.0 * degree));
 }
