@@ -17,6 +17,9 @@ constexpr double least_support = 0.25;
 // on one path is evidence of its own. Paths of 60 noises of 3 to 6 s reach 0.101, those of machete strokes 0.094.
 constexpr double heard_as_path = 0.13;
 constexpr std::size_t least_path = 4;  // sections
+// A rate whose sections agree to 1 % is steady, and only the lines of the whole record are evidence for it: hum beside a
+// machine is such a rate.
+constexpr double moving = 1.01;  // highest by lowest rate of a path
 constexpr double jump_in = 0.5;  // of the movement in an eighth of a section: an impact
 
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
@@ -134,11 +137,10 @@ FundamentalStream::Path FundamentalStream::best_path() const {
     return path;
 }
 
-FundamentalEstimate FundamentalStream::along_path() const {
+FundamentalEstimate FundamentalStream::along(const Path& path) const {
     FundamentalEstimate out;
     const std::vector<HarmonicSum> whole = harmonic_sums(whole_.spectrum(), lowest_, highest_moving_);
     const HarmonicSum sharp = whole.empty() ? HarmonicSum{} : whole.front();
-    const Path path = best_path();
     std::vector<HarmonicSum> heard;
     for (const HarmonicSum& point : path.points)
         if (point.frequency > 0.0) heard.push_back(point);
@@ -184,7 +186,7 @@ FundamentalEstimate FundamentalStream::along_path() const {
     }
     out.low = out.steady ? out.frequency : low;
     out.high = out.steady ? out.frequency : high;
-    const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5;
+    const bool is_path = !out.steady && heard.size() >= least_path && share >= 0.5 && out.high > moving * out.low;
     if (out.confidence < (is_path ? heard_as_path : FundamentalEstimate::heard)) out = {};
     // A steady rate is certain by the lines of the whole record only. Of a moving one, the sections must resolve the half.
     out.certain = is_path && out.confidence >= FundamentalEstimate::path && out.low > 2.0 * section_least(rate_);
@@ -194,8 +196,31 @@ FundamentalEstimate FundamentalStream::along_path() const {
     return out;
 }
 
+/// The lines of the record after its rate was straightened along a path. Sections in which the path is silent, or at a
+/// multiple or fraction of its median, take the rate of their neighbours.
+SteadyFundamental FundamentalStream::lines_along(const Path& path, double median) const {
+    std::vector<double> course(path.points.size(), 0.0);
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < course.size(); ++i)
+        if (alike(path.points[i].frequency, median, 0.25)) course[i] = path.points[i].frequency, ++known;
+    if (known < least_path) return {};
+    double before = 0.0;
+    for (std::size_t i = 0; i < course.size(); ++i) {
+        if (course[i] > 0.0) {
+            before = course[i];
+            continue;
+        }
+        const auto next = std::find_if(course.begin() + static_cast<std::ptrdiff_t>(i), course.end(),
+                                       [](double rate) { return rate > 0.0; });
+        const double after = next == course.end() ? before : *next;
+        course[i] = before > 0.0 ? 0.5 * (before + after) : after;
+    }
+    return steady_.estimate_along(course, static_cast<double>(section_length_) / rate_);
+}
+
 FundamentalEstimate FundamentalStream::estimate() const {
-    FundamentalEstimate out = along_path();
+    const Path path = best_path();
+    FundamentalEstimate out = along(path);
     const SteadyFundamental lines = steady_.estimate();
     const double seconds = static_cast<double>(pushed_) / rate_;
     const bool in_range = lines.frequency >= lowest_ && lines.frequency <= highest_;
@@ -226,14 +251,34 @@ FundamentalEstimate FundamentalStream::estimate() const {
         out.steady = true;
         out.confidence = lines.confidence;
     }
+    if (!is_sure && out.frequency > 0.0 && out.high > 1.003 * out.low) {
+        const SteadyFundamental still = lines_along(path, out.frequency);
+        // The mean of a wide path may lie anywhere in its range.
+        const bool same = alike(still.frequency, out.frequency, 0.05) ||
+                          (out.high > 1.1 * out.low && still.frequency >= out.low && still.frequency <= out.high);
+        if (still.frequency > 0.0 && !same) out.certain = false;
+        // Sections that score less need lines that hold on the straightened axis.
+        if (!out.steady && out.confidence >= FundamentalEstimate::straight_path && same && still.explained >= 0.4 &&
+            out.high > moving * out.low && out.low > 2.0 * section_least(rate_))
+            out.certain = true;
+        if (still.confidence >= FundamentalEstimate::sure && still.frequency >= lowest_ &&
+            still.frequency <= highest_) {
+            const double scale = same ? 1.0 : still.frequency / out.frequency;
+            out.frequency *= scale, out.low *= scale, out.high *= scale;
+            out.confidence = still.confidence;
+            out.certain = true;
+        }
+    }
     const auto add_rival = [&](double frequency, double score) {
         if (frequency > 0.0 && !alike(frequency, out.frequency, 0.03) &&
-            std::ranges::none_of(out.rivals, [&](const HarmonicSum& one) { return alike(one.frequency, frequency, 0.03); }))
+            std::ranges::none_of(out.rivals,
+                                 [&](const HarmonicSum& one) { return alike(one.frequency, frequency, 0.03); }))
             out.rivals.insert(out.rivals.begin(), {frequency, score});
     };
     std::erase_if(out.rivals, [&](const HarmonicSum& one) { return alike(one.frequency, out.frequency, 0.03); });
     if (out.frequency > 0.0 && !out.certain) {
-        if (out.rivals.empty()) add_rival(lines.rival, std::clamp(lines.rival_score / std::max(lines.score, 1e-9), 0.0, 1.0));
+        if (out.rivals.empty())
+            add_rival(lines.rival, std::clamp(lines.rival_score / std::max(lines.score, 1e-9), 0.0, 1.0));
         add_rival(lines.frequency, lines.confidence);
     }
     if (out.rivals.size() > 3) out.rivals.resize(3);

@@ -31,9 +31,10 @@ struct FundamentalEstimate {
     double periods = 0.0;  ///< number of periods in the record
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
-    static constexpr double sure = 0.98;   ///< least confidence of a steady rate that is certain
-    static constexpr double path = 0.32;   ///< that of a path of at least four sections: of 200 noisy saws 91 % are certain and none is wrong
-    static constexpr double heard = 0.16;  // below it, there is no fundamental
+    static constexpr double sure = 0.97;  ///< min confidence of a certain steady rate
+    /// Min confidence of a certain path of at least four sections; and of one whose straightened record has the same rate.
+    static constexpr double path = 0.32, straight_path = 0.25;
+    static constexpr double heard = 0.16;  ///< below it, there is no fundamental
     bool is_certain() const { return frequency > 0.0 && certain; }
 };
 
@@ -50,7 +51,6 @@ public:
     FundamentalEstimate estimate() const;
 
 private:
-    FundamentalEstimate along_path() const;
     static constexpr std::size_t most_candidates = 6;
     struct Section {
         std::array<HarmonicSum, most_candidates> candidates{};
@@ -62,6 +62,8 @@ private:
     };
     void end_section();
     Path best_path() const;
+    FundamentalEstimate along(const Path& path) const;
+    SteadyFundamental lines_along(const Path& path, double median) const;
 
     double lowest_, highest_, highest_moving_, rate_;
     std::size_t pushed_ = 0;

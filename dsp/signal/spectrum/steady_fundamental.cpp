@@ -37,6 +37,7 @@ struct NarrowLine {
 struct NarrowLines {
     std::vector<NarrowLine> found;  // heaviest first
     double df = 0.0, all = 0.0;  // `all`: power above the noise, narrow or not
+    double hum = 0.0;            // power of lines at orders of the mains
     double threshold = 0.0;      // power over the noise
     double segments = 1.0;
     std::vector<double> floors;  // noise per block of bins
@@ -81,7 +82,8 @@ NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
     for (std::size_t i = 0; i < floors.size(); ++i) {
         const std::size_t from = std::max<std::size_t>(2, i * block > block ? (i - 1) * block : 2),
                           to = std::min(p.size() - 2, (i + 2) * block);
-        near.assign(p.begin() + static_cast<std::ptrdiff_t>(from), p.begin() + static_cast<std::ptrdiff_t>(std::max(to, from + 1)));
+        near.assign(p.begin() + static_cast<std::ptrdiff_t>(from),
+                    p.begin() + static_cast<std::ptrdiff_t>(std::max(to, from + 1)));
         const auto quantile = near.begin() + static_cast<std::ptrdiff_t>(near.size() * 3 / 10);
         std::nth_element(near.begin(), quantile, near.end());
         floors[i] = std::max(*quantile / low, 1e-300);
@@ -114,10 +116,17 @@ NarrowLines lines_of(const Spectrum& spectrum, double top, bool is_sharp) {
         line.floor = floor;
         line.weight = out.segments * (snr - 1.0 - std::log(snr));
         line.is_hum = is_mains(line.frequency, 3.0 * line.deviation);
+        if (line.is_hum) out.hum += line.power;
         out.found.push_back(line);
     }
     std::ranges::sort(out.found, [](const NarrowLine& a, const NarrowLine& b) { return a.weight > b.weight; });
     return out;
+}
+
+/// Fraction of the power of the lines that a comb explains. Hum counts only where it may be the machine's.
+double explained_by(double power, const NarrowLines& lines, bool with_hum) {
+    // A line of a Hann window has 1.5 times the power of its highest bin.
+    return power / std::max(lines.all / 1.5 - (with_hum ? 0.0 : lines.hum), power);
 }
 
 struct GrownComb {
@@ -133,7 +142,8 @@ GrownComb grow_comb(const NarrowLines& lines, double frequency, double deviation
     const std::size_t tested = std::min(lines.found.size(), most_tested);
     std::array<std::size_t, most_tested> by_frequency{};
     std::iota(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), 0u);
-    std::sort(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested), [&](std::size_t a, std::size_t b) { return lines.found[a].frequency < lines.found[b].frequency; });
+    std::sort(by_frequency.begin(), by_frequency.begin() + static_cast<std::ptrdiff_t>(tested),
+              [&](std::size_t a, std::size_t b) { return lines.found[a].frequency < lines.found[b].frequency; });
     GrownComb out;
     out.frequency = frequency;
     double information = 1.0 / (deviation * deviation), weighted = frequency * information;
@@ -191,6 +201,7 @@ struct CombChoice {
     double score = -1e9, explained = 0.0;
     const NarrowLines* lines = nullptr;
     std::size_t level = 0;
+    bool with_hum = false;
 };
 
 CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, bool with_hum) {
@@ -205,7 +216,8 @@ CombChoice choose_comb(const NarrowLines& lines, double lowest, double highest, 
         }
     // Coincidences among weak lines do not make up for a strong line that a comb leaves out.
     double all = 0.0;
-    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) all += lines.found[i].power;
+    for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i)
+        if (with_hum || !lines.found[i].is_hum) all += lines.found[i].power;
     for (GrownComb& one : combs) one.score *= std::min(1.0, one.power / std::max(all, 1e-300));
     for (const GrownComb& one : combs)
         if (one.common == 1 && one.score > out.best.score) out.best = one;
@@ -261,7 +273,9 @@ SteadyFundamentalStream::SteadyFundamentalStream(double rate, std::size_t frames
 
 void SteadyFundamentalStream::push_thinned(std::span<const double> samples) {
     for (WelchStream<double>& level : levels_) level.push(samples);
-    if (keeps_) kept_.insert(kept_.end(), samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), most_kept - kept_.size())));
+    if (keeps_)
+        kept_.insert(kept_.end(), samples.begin(),
+                     samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), most_kept - kept_.size())));
 }
 
 void SteadyFundamentalStream::push(std::span<const double> samples) {
@@ -307,10 +321,11 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
             if (!with_hum && i > 0) all[i] = lines_of(levels_[i].spectrum(), top, false);
             CombChoice one = choose_comb(all[i], lowest_, highest_, with_hum);
             if (one.best.lines == 0 || !(one.best.score > 0.0)) continue;
-            const double explained = one.best.power / std::max(all[i].all / 1.5, one.best.power);
+            const double explained = explained_by(one.best.power, all[i], with_hum);
             one.score = one.best.score * explained;
             one.explained = explained;
             one.level = i;
+            one.with_hum = with_hum;
             if (one.score > chosen.score) chosen = one;
         }
         // Orders of the mains that hold most of the power are no hum beside a machine.
@@ -328,9 +343,10 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     out.is_sharp = chosen.level == 0;
     out.lowest = std::max(lowest_, bins_between * lines.df);
     out.periods = comb.frequency / lines.df;
-    out.explained = comb.power / std::max(lines.all / 1.5, comb.power);
+    out.explained = explained_by(comb.power, lines, chosen.with_hum);
     const NarrowLine* strongest = nullptr;
     std::vector<int> orders;
+    int common = 0;  // divisor of the orders that are no hum
     std::vector<double> others;
     // Hum begins with the first or the second order of the mains: a machine at the third or a higher one is distinguished
     // by the absence of other orders of the mains.
@@ -346,8 +362,10 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         }
         if (!strongest || line.power > strongest->power) strongest = &line;
         orders.push_back(comb.order[i]);
+        if (!line.is_hum) common = std::gcd(common, comb.order[i]);
     }
-    out.may_be_hum = has_hum && is_mains(comb.frequency, 0.3);
+    // Also a comb that only lines of the mains hold together: without them a multiple explains the machine's.
+    out.may_be_hum = (has_hum && is_mains(comb.frequency, 0.3)) || common > 1;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     // The strongest order in eighths of the kept samples.
@@ -361,7 +379,8 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         for (std::size_t n = 0; n < part; ++n) mean += kept_[i * part + n];
         mean /= static_cast<double>(part);
         for (std::size_t n = 0; n < part; ++n) {
-            const double w = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(part));
+            const double w =
+                1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(part));
             const double x = w * (kept_[i * part + n] - mean), phase = angle * static_cast<double>(n);
             re += x * std::cos(phase), im += x * std::sin(phase);
         }
@@ -379,6 +398,31 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         }
     }
     return out;
+}
+
+SteadyFundamental SteadyFundamentalStream::estimate_along(std::span<const double> course, double interval) const {
+    if (course.empty() || kept_.size() < 64) return {};
+    const double mean = std::accumulate(course.begin(), course.end(), 0.0) / static_cast<double>(course.size());
+    const auto rate_at = [&](double t) {
+        const double place = std::clamp(t / interval - 0.5, 0.0, static_cast<double>(course.size() - 1));
+        const auto before = static_cast<std::size_t>(place);
+        const std::size_t after = std::min(before + 1, course.size() - 1);
+        return std::lerp(course[before], course[after], place - static_cast<double>(before)) / mean;
+    };
+    std::vector<double> warped;
+    warped.reserve(kept_.size());
+    const double last =
+        std::min(static_cast<double>(kept_.size() - 3), static_cast<double>(course.size()) * interval * rate_);
+    // Steps of equal angle, with cubic interpolation (Catmull and Rom 1974).
+    for (double at = 1.0; at < last; at += 1.0 / rate_at((at + 0.5) / rate_)) {
+        const auto n = static_cast<std::size_t>(at);
+        const double u = at - static_cast<double>(n);
+        const double a = kept_[n - 1], b = kept_[n], c = kept_[n + 1], d = kept_[n + 2];
+        warped.push_back(b + 0.5 * u * (c - a + u * (2.0 * a - 5.0 * b + 4.0 * c - d + u * (3.0 * (b - c) + d - a))));
+    }
+    SteadyFundamentalStream still(rate_, warped.size(), lowest_, highest_);
+    still.push(warped);
+    return still.estimate();
 }
 
 }  // namespace tactus::signal

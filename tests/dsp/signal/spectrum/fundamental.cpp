@@ -188,3 +188,48 @@ TEST_CASE("a record in pieces has the fundamental of the whole") {
     CHECK(a.frequency == b.frequency);
     CHECK(a.confidence == b.confidence);
 }
+
+TEST_CASE("hum beside a machine of one order does not make its rate a fraction or a multiple of itself") {
+    const Random random{31};
+    int certain = 0;
+    constexpr int machines = 30;
+    for (std::uint64_t m = 0; m < machines; ++m) {
+        const double f = std::exp(std::lerp(std::log(20.0), std::log(400.0), random.uniform(m)));
+        constexpr double rate = 4000.0;
+        std::vector<double> samples(16000);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / rate;
+            samples[i] = std::cos(f * angle + 1.0) + 0.1 * random.normal(1000 + m * samples.size() + i);
+            for (int order = 1; order <= 3; ++order) samples[i] += 0.8 / order * std::cos(50.0 * order * angle + order);
+        }
+        const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(samples), rate);
+        CAPTURE(f, found.frequency, found.confidence);
+        certain += found.is_certain();
+        if (found.is_certain()) CHECK(found.frequency == Approx(f).epsilon(0.002));
+    }
+    CHECK(certain >= machines * 2 / 3);
+}
+
+TEST_CASE("a rate that wanders by 1 to 3 % is not taken for its half or its double") {
+    const Random random{32};
+    int certain = 0;
+    constexpr int machines = 8;
+    for (std::uint64_t m = 0; m < machines; ++m) {
+        const double f = std::exp(std::lerp(std::log(100.0), std::log(900.0), random.uniform(2 * m)));
+        const double wander = std::lerp(0.01, 0.03, random.uniform(2 * m + 1));
+        constexpr double rate = 12800.0;
+        std::vector<double> samples(static_cast<std::size_t>(4.0 * rate));
+        double phase = 0.0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double t = static_cast<double>(i) / rate;
+            phase += 2.0 * std::numbers::pi * f / rate * (1.0 + wander * std::sin(2.0 * std::numbers::pi * 0.3 * t));
+            samples[i] = 0.3 * random.normal(1000 + m * samples.size() + i);
+            for (int order = 1; order <= 6; ++order) samples[i] += std::cos(order * phase + order) / order;
+        }
+        const signal::FundamentalEstimate found = signal::find_fundamental(std::span<const double>(samples), rate);
+        CAPTURE(f, wander, found.frequency, found.confidence);
+        certain += found.is_certain();
+        if (found.is_certain()) CHECK(found.frequency == Approx(f).epsilon(0.03));
+    }
+    CHECK(certain >= 7);
+}
