@@ -8,6 +8,7 @@
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/grid_part.hpp"
 #include "dsp/volume/iso_distance.hpp"
+#include "dsp/volume/marrow.hpp"
 
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ namespace tactus::bone {
 namespace {
 
 constexpr int margin = 4;
+constexpr float air_hu = -300.0f;  // below fat and above lungs
 constexpr double density_slope = 1.067, density_offset = 131.0;
 
 using Box = volume::Components::Box;
@@ -71,6 +73,24 @@ volume::Components moved_into(const volume::Components& components, const Box& r
         }
     }
     return moved;
+}
+
+// Marrow of the kept components, in samples of the box.
+volume::RunRows marrow_in(const volume::Components& components, std::size_t keep, const volume::RunRows& hollows,
+                          const volume::Components& air, const Box& box, const volume::Grid& layout) {
+    volume::RunRows kept{components.rows.size, {0}, {}};
+    for (int k = 0; k < kept.size[2]; ++k)
+        for (int j = 0; j < kept.size[1]; ++j) {
+            for (const volume::SampleRun& run : components.rows.row(j, k))
+                if (keep == 0 || static_cast<std::size_t>(run.part) < keep) kept.runs.push_back(run);
+            kept.start.push_back(kept.runs.size());
+        }
+    Box inner{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        inner.first[a] = std::max(0, -box.first[a]);
+        inner.last[a] = std::min(box.last[a], layout.size[a] - 1) - box.first[a];
+    }
+    return volume::marrow_of(volume::united(kept, hollows), air.rows, inner, layout.spacing);
 }
 
 int smoothing_passes(const Vec3& spacing) {
@@ -135,9 +155,9 @@ struct Source {
             }
     }
 
-    // The smoothed samples that reach iso, over the whole volume.
-    volume::RunRows runs(int at_once, const ImportInLayers& how) const {
-        volume::RunRows rows{hu.layout.size, {0}, {}};
+    // The smoothed samples that reach iso, over the whole volume, and those of air.
+    std::pair<volume::RunRows, volume::RunRows> runs(int at_once, const ImportInLayers& how) const {
+        volume::RunRows rows{hu.layout.size, {0}, {}}, air = rows;
         for (int k = 0; k < layers(); k += at_once) {
             const int count = std::min(at_once, layers() - k), below = std::min(passes, k);
             volume::Grid slab = hu.layers(k - below, std::min(count + below + passes, layers() - k + below),
@@ -153,9 +173,11 @@ struct Source {
                                     &slab.values[slab.index(low[0], low[1] + y, z)]);
             }
             volume::append_above(rows, slab, iso, below, count, run);
+            for (float& value : slab.values) value = -value;
+            volume::append_above(air, slab, -air_hu, below, count, run);
             how.progress(0.45 * (k + count) / layers());
         }
-        return rows;
+        return {std::move(rows), std::move(air)};
     }
 };
 
@@ -288,7 +310,7 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
                                  const ImportInLayers& how) {
     const float iso = surface.threshold;
     const Source source{hu, iso, smoothing_passes(hu.layout.spacing), run};
-    volume::RunRows rows = source.runs(how.at_once > 0 ? how.at_once : layers_at_once(hu.layout), how);
+    auto [rows, air] = source.runs(how.at_once > 0 ? how.at_once : layers_at_once(hu.layout), how);
     how.check_values();
     volume::Components found = volume::components_of(std::move(rows));
     if (found.voxels.empty())
@@ -306,7 +328,14 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
     const volume::Components components = moved_into(std::exchange(found, {}), box);
     const volume::RunRows no_hollows{
         components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
-    const volume::RunRows hollows = surface.fill ? volume::hollows_of(components, surface.keep) : no_hollows;
+    volume::RunRows hollows = surface.fill ? volume::hollows_of(components, surface.keep) : no_hollows;
+    result.voxels_hollow = volume::count_of(hollows);
+    if (surface.fill) {
+        const volume::RunRows marrow =
+            marrow_in(components, surface.keep, hollows, moved_into({std::move(air), {}, {}}, box), box, hu.layout);
+        result.voxels_marrow = volume::count_of(marrow);
+        hollows = volume::united(hollows, marrow);
+    }
     Room room{source, box, components, hollows, surface.keep};
     const Vec3& h = hu.layout.spacing;
     const double reach = std::max(air_around, 6.0 * std::max({h.x, h.y, h.z}));

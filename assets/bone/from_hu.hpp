@@ -18,7 +18,7 @@ namespace tactus::bone {
 struct BoneSurface {
     float threshold = 300.0f;  ///< HU; samples at or above it are bone
     std::size_t keep = 1;      ///< number of components to keep, largest first; 0 keeps all
-    bool fill = true;          ///< closed hollows count as bone; they keep their low density
+    bool fill = true;          ///< closed hollows and marrow (marrow_of) count as bone; they keep their low density
 };
 
 /// Above it lies no bone (enamel reaches 2900 to 3000 kg/m³): fillings, implants, or artefacts beside them. kg/m³.
@@ -54,6 +54,7 @@ struct SparseHuBone {
     std::map<std::string, std::string> provenance;
     std::size_t components = 0;  ///< found above the threshold, before selection
     std::size_t voxels_above = 0, voxels_kept = 0;  ///< that reach the threshold: all, and of the kept components
+    std::size_t voxels_hollow = 0, voxels_marrow = 0;  ///< that count as bone because bone encloses them: wholly; with leaks
 };
 
 /// Builds distance and density on the samples of `hu` (LPS, m) around the bone, with a margin of 5 mm and at least six

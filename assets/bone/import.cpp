@@ -20,7 +20,7 @@ void describe(Bone& bone, const ImportOptions& options, const ImportSummary& fou
     add_provenance(bone, options, found, hash_of_source(options.input));
     bone.name = bone_name(options.input);
     bone.provenance["component"] = options.component.empty() ? "largest" : options.component;
-    bone.provenance["fill"] = options.fill ? "true" : "false";
+    bone.provenance["fill"] = options.fill ? "marrow" : "none";
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
 }
 

@@ -31,7 +31,7 @@ struct ImportOptions {
     /// Unit of length: "mm", "cm" or "m". Default: what the file states, or mm when the size is plausible for a bone.
     std::optional<std::string> unit;
     std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
-    bool fill = true;  ///< closed hollows below the threshold count as bone
+    bool fill = true;  ///< of a CT: closed hollows and marrow behind a leaky shell count as bone, with their own density
     /// HU = first · value + second, for volumes with uncalibrated scanner values.
     std::optional<std::pair<double, double>> rescale;
     /// Uniform density of a mesh, kg/m³; default: an assumed cortex of 1800 to 2 mm depth and a core of 400.
@@ -59,6 +59,8 @@ struct ImportSummary {
     double metal_mm3 = 0.0;  ///< inside, above max_bone_density (fillings, implants); left out of `density`
     std::size_t components = 0;  ///< found, before selection
     std::size_t components_kept = 0;
+    /// Of a CT, below the threshold: hollows that bone encloses wholly, and marrow behind a shell that leaks.
+    double hollow_mm3 = 0.0, marrow_mm3 = 0.0;
     struct {
         std::optional<double> hu;  ///< of a CT; none for meshes and label maps
         std::string from;  ///< "given", or "suggested: " and the method

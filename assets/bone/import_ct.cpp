@@ -169,6 +169,8 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     summary.threshold.from = threshold.how;
     summary.threshold.above_mm3 = double(made.voxels_above) * voxel;
     summary.threshold.kept_mm3 = double(made.voxels_kept) * voxel;
+    summary.hollow_mm3 = double(made.voxels_hollow) * voxel;
+    summary.marrow_mm3 = double(made.voxels_marrow) * voxel;
     if (about.hu == volume::HuKind::masked)
         summary.threshold.mask_mm3 = double(source.tally().count - source.tally().zeros) * volume_mm3(about.spacing());
     SparseImport result{std::move(made.bone), {}};

@@ -159,3 +159,40 @@ TEST_CASE("a mesh takes a density, a scan has its own") {
     CHECK_FALSE(found.threshold.hu);
     CHECK_THROWS_WITH(summary_of(ball(1200.0, 700.0, -1000.0), options), ContainsSubstring("--density is for meshes"));
 }
+
+TEST_CASE("a sternum whose shell leaks becomes one solid plate, with the density of its core") {
+    // 12 mm thick: cortices of 2 mm at 900 HU, cancellous bone of 100 HU between them, and a hole of 2 mm. The threshold is
+    // between both.
+    WrittenVolume v;
+    v.size = {60, 60, 40};
+    v.origin = Vec3(-29.5, -29.5, -19.5);
+    double core_mm3 = 0.0;
+    const auto is_core = [](const Vec3& p) {
+        return std::abs(p.x) < 18.0 && std::abs(p.y) < 10.0 && std::abs(p.z) < 4.0;
+    };
+    v.fill([&](const Vec3& p) {
+        if (is_core(p)) return 100.0;
+        const bool is_hole = p.z > 0.0 && std::hypot(p.x, p.y) < 1.0;
+        const bool is_cortex = std::abs(p.x) < 20.0 && std::abs(p.y) < 12.0 && std::abs(p.z) < 6.0;
+        if (is_cortex && !is_hole) return 900.0;
+        return glm::length(p) < 28.0 ? 40.0 : -1000.0;
+    });
+    for (double z = -19.5; z < 20.0; z += 1.0)
+        for (double y = -29.5; y < 30.0; y += 1.0)
+            for (double x = -29.5; x < 30.0; x += 1.0) core_mm3 += is_core({x, y, z});
+    bone::ImportOptions options;
+    options.threshold = 300.0;
+    const bone::ImportSummary solid = summary_of(v, options);
+    options.fill = false;
+    const bone::ImportSummary hollow = summary_of(v, options);
+    CAPTURE(solid.marrow_mm3, solid.hollow_mm3, core_mm3, solid.bone_volume_mm3, hollow.bone_volume_mm3);
+    CHECK(solid.marrow_mm3 == Approx(core_mm3).epsilon(0.02));
+    CHECK(solid.hollow_mm3 == 0.0);
+    CHECK(hollow.marrow_mm3 == 0.0);
+    // The surface of 300 HU lies 0.2 mm outside of the middle between a voxel of cortex and one of tissue.
+    CHECK(solid.bone_volume_mm3 == Approx(40.4 * 24.4 * 12.4).epsilon(0.02));
+    CHECK(solid.bone_volume_mm3 - hollow.bone_volume_mm3 == Approx(35.6 * 19.6 * 7.6).epsilon(0.02));
+    // 1.067 · HU + 131
+    CHECK(solid.density.min == Approx(1.067 * 100.0 + 131.0).epsilon(0.1));
+    CHECK(hollow.density.min > 1.067 * 200.0 + 131.0);
+}

@@ -34,9 +34,8 @@ struct Phantom {
                   int margin = 4) const {
         const volume::Components::Box inner{{margin, margin, margin},
                                             {size[0] - 1 - margin, size[1] - 1 - margin, size[2] - 1 - margin}};
-        return static_cast<double>(
-                   count_of(volume::marrow_of(where(bone), where(air), inner, Vec3(h * 1e-3)))) *
-               h * h * h;
+        return static_cast<double>(count_of(volume::marrow_of(where(bone), where(air), inner, Vec3(h * 1e-3)))) * h *
+               h * h;
     }
 };
 

@@ -24,6 +24,7 @@ namespace {
 
 struct ImportChoice : bone::ImportOptions {
     std::filesystem::path out;
+    std::string fills = "marrow";
     bool json = false;
 };
 
@@ -43,6 +44,11 @@ std::string threshold_text(const bone::ImportSummary& s, const std::string& comp
         "  threshold {:g} HU ({}): voxels of {:.1f} cm³ reach it, {:.1f} cm³ were kept ({})\n", *s.threshold.hu,
         s.threshold.from, s.threshold.above_mm3 * 1e-3, s.threshold.kept_mm3 * 1e-3,
         component == "largest" || component == "all" ? "component " + component : component + " largest components");
+    if (s.hollow_mm3 + s.marrow_mm3 > 0.0)
+        text += fmt::format(
+            "  filled, with the density of the scan: {:.2f} cm³ of closed hollows, {:.2f} cm³ of marrow behind a "
+            "shell that leaks (--fill none leaves both out)\n",
+            s.hollow_mm3 * 1e-3, s.marrow_mm3 * 1e-3);
     if (s.threshold.mask_mm3)
         text += fmt::format("  the mask of the scan holds {:.1f} cm³; a lower --threshold takes more of it\n",
                             *s.threshold.mask_mm3 * 1e-3);
@@ -60,6 +66,8 @@ file::Json json_of(const bone::ImportSummary& s) {
             {"metal_mm3", s.metal_mm3},
             {"components", s.components},
             {"components_kept", s.components_kept},
+            {"hollow_mm3", s.hollow_mm3},
+            {"marrow_mm3", s.marrow_mm3},
             {"threshold", threshold_json(s)},
             {"narrowest_kerf_mm", study::narrowest_kerf_mm(s.voxel_mm)},
             {"points", s.points},
@@ -115,6 +123,7 @@ int import_bone(const ImportChoice& choice) {
     };
     bone::ImportOptions options = choice;
     options.run = study::on_threads();
+    options.fill = choice.fills == "marrow";
     if (!choice.label.empty()) return import_label_map(choice, options, progress, line);
     if (!choice.ct.empty()) throw Error("--ct is for label maps: choose a label with --label N or --label all");
     const bone::ImportSummary summary = bone::import_bone_file(options, choice.out, progress);
@@ -136,6 +145,10 @@ Action declare_import(VerbOptions& verb) {
     verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
     verb.add("--component", choice->component,
              "parts to keep: largest, all, or a number, largest first (default: of a label all, else the largest)");
+    verb.add("--fill", choice->fills,
+             "of a CT, below the threshold inside of bone: marrow (closed hollows too, with their own density) or none")
+        .shows_default()
+        .one_of({"marrow", "none"});
     add_unit(verb, choice->unit);
     verb.add("--density", choice->mesh_density,
              "of a mesh, throughout, kg/m^3 (default: a cortex of 1800 to 2 mm depth around a core of 400)")
