@@ -19,7 +19,7 @@ constexpr double heard_as_path = 0.13;
 constexpr std::size_t least_path = 4;  // sections
 // A rate whose sections agree to 1 % is steady, and only the lines of the whole record are evidence for it: hum beside a
 // machine is such a rate.
-constexpr double moving = 1.01;  // highest by lowest rate of a path
+constexpr double moving = 1.01, wide = 1.1;  // highest by lowest rate of a path
 constexpr double jump_in = 0.5;  // of the movement in an eighth of a section: an impact
 
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
@@ -253,13 +253,13 @@ FundamentalEstimate FundamentalStream::estimate() const {
     }
     if (!is_sure && out.frequency > 0.0 && out.high > 1.003 * out.low) {
         const SteadyFundamental still = lines_along(path, out.frequency);
-        // The mean of a wide path may lie anywhere in its range.
+        // The mean of a wide path may lie anywhere in its range, and sections in which the rate moves score less.
+        const bool is_wide = out.high > wide * out.low;
         const bool same = alike(still.frequency, out.frequency, 0.05) ||
-                          (out.high > 1.1 * out.low && still.frequency >= out.low && still.frequency <= out.high);
+                          (is_wide && still.frequency >= out.low && still.frequency <= out.high);
         if (still.frequency > 0.0 && !same) out.certain = false;
-        // Sections that score less need lines that hold on the straightened axis.
-        if (!out.steady && out.confidence >= FundamentalEstimate::straight_path && same && still.explained >= 0.4 &&
-            out.high > moving * out.low && out.low > 2.0 * section_least(rate_))
+        if (is_wide && !out.steady && out.confidence >= FundamentalEstimate::wide_path && same &&
+            still.explained >= 0.4 && out.low > 2.0 * section_least(rate_))
             out.certain = true;
         if (still.confidence >= FundamentalEstimate::sure && still.frequency >= lowest_ &&
             still.frequency <= highest_) {

@@ -32,8 +32,9 @@ struct FundamentalEstimate {
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
     static constexpr double sure = 0.97;  ///< min confidence of a certain steady rate
-    /// Min confidence of a certain path of at least four sections; and of one whose straightened record has the same rate.
-    static constexpr double path = 0.32, straight_path = 0.25;
+    /// Min confidence of a certain path of at least four sections; and of a path that moves by more than 10 %, and whose
+    /// straightened record has the same rate.
+    static constexpr double path = 0.32, wide_path = 0.25;
     static constexpr double heard = 0.16;  ///< below it, there is no fundamental
     bool is_certain() const { return frequency > 0.0 && certain; }
 };
