@@ -6,8 +6,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/kept_cache.hpp"
 #include "tests/tools/bar.hpp"
+#include "tests/tools/run_command.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 using namespace tactus;
 
