@@ -29,7 +29,7 @@ constexpr ForceBounds stated_bounds(double max_force, double max_torque) noexcep
 
 /// What is left of a force `age` after its fade began, 1 to 0, of a fade that takes `length` in the same unit. Linear: a
 /// hand that the force holds is not thrown into the motion that a jump would cause, and the end is known.
-constexpr double fade_left(double age, double length) noexcept {
+inline double fade_left(double age, double length) noexcept {
     // The margin allows for rounding: ten ticks of 1 ms can sum to just under 10 ms.
     return age < length * (1.0 - 1e-9) ? (age > 0.0 ? 1.0 - age / length : 1.0) : 0.0;
 }

@@ -41,4 +41,12 @@ TEST_CASE("a fade begins with the whole force, never grows and ends at its lengt
     CHECK(fade_left(5.0, 10.0) == 0.5);
     CHECK(fade_left(10.0, 10.0) == 0.0);
     CHECK(fade_left(0.0, 0.0) == 0.0);
+    // The rounding of a sum of ticks adds no tick.
+    for (const double period : {1e-3, 1.0 / 3000.0, 2.5e-4})
+        for (int ticks = 1; ticks <= 60; ++ticks) {
+            double age = 0.0;
+            for (int i = 0; i < ticks; ++i) age += period;
+            CAPTURE(period, ticks);
+            CHECK(fade_left(age, ticks * period) == 0.0);
+        }
 }
