@@ -142,7 +142,8 @@ FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const F
     // Unrelated surfaces cross each other: their nearby distances are spread evenly.
     const bool is_within = quality.score >= settings.least_score && quality.share >= settings.least_share &&
                            quality.rms <= settings.most_rms * settings.sigma;
-    const bool is_likely = quality.score >= Acceptance::likely_score && margin >= Acceptance::likely_margin &&
+    const bool is_likely = quality.score >= Acceptance::likely_score && quality.share >= settings.least_share &&
+                           margin >= Acceptance::likely_margin &&
                            quality.rms <= Acceptance::likely_rms * settings.sigma;
     if (quality.overlap < settings.least_overlap || !(is_within || is_likely)) return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;

@@ -76,6 +76,9 @@ TEST_CASE("dsp: a small patch that fits well by itself is no fit, and neither is
     CHECK(fit::judge(q, false, 0.35, settings) == fit::FitVerdict::no_match);
     q.overlap = 60e-6;
     CHECK(fit::judge(q, false, 0.35, settings) == fit::FitVerdict::fit);
+    // Distances too large for a fit, small enough for one that chips have spoilt; and those of unrelated faces.
     q.rms = 0.75 * settings.sigma;
+    CHECK(fit::judge(q, false, 0.35, settings) == fit::FitVerdict::uncertain);
+    q.rms = 0.95 * settings.sigma;
     CHECK(fit::judge(q, false, 0.35, settings) == fit::FitVerdict::no_match);
 }
