@@ -35,7 +35,7 @@ namespace {
 
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
 constexpr int max_trailer_lines = 100, max_lines = 2'000'000'000;
-constexpr std::size_t rows_between_checks = std::size_t{1} << 20;
+constexpr std::size_t rows_between_checks = std::size_t{1} << 16;
 constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {

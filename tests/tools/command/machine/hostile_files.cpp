@@ -7,6 +7,7 @@
 
 #include <sys/stat.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -87,7 +88,8 @@ TEST_CASE("the option --memory bounds what one file may take: exit code 3, and t
     const Folder folder;
     const auto sound = folder.write("a.csv", [] {
         std::string text = "timestamp_ms,accel_x\n";
-        for (int n = 0; n < 200000; ++n) text += std::to_string(n) + "," + std::to_string(n % 97) + "\n";
+        for (long n = 0; n < 400000; ++n)
+            text += std::to_string(n) + "," + std::to_string(std::sin(0.1 * static_cast<double>(n * n))) + "\n";
         return text;
     }());
     const Outcome large = folder.tactus("--memory '1 GB' spectrum " + sound.string());
