@@ -118,7 +118,9 @@ void add_wires(const Generation& generation, const std::vector<compile::Dependen
             source.wires |= run::Link::bit_of(w);
             if (source.name.empty()) source.name = name_of(generation, writers.at(wire.source));
         }
-        if (source.wires != 0) sources.push_back(std::move(source));
+        if (source.wires == 0) continue;
+        link->watch(source.wires);
+        sources.push_back(std::move(source));
     }
 }
 

@@ -15,7 +15,7 @@ std::vector<compile::Dependence> dependence_of(const Generation& generation, con
 
 /// The other groups on whose values the force on a device depends, those of force first. A value of force may be late by
 /// 3 ms, or by one period of its group if that is longer; one of the world by 1 s. Then the wires between groups that lead
-/// to the force, one source for each link: they may bring no value that is not finite.
+/// to the force, one source for each link, which checks them from then on: they may bring no value that is not finite.
 std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSlot& slot);
 
 /// From the first activation of all groups until what they computed has reached the force on a device. Before, wires from

@@ -112,8 +112,8 @@ public:
     /// Puts the device's state into its port. `elapsed` in flicks since the last call. When the thread was left behind in
     /// the driver, `driver` says so.
     virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
-    /// Which of the `sources` of the force on a device is overdue or brings no number, the first of them; −1: none. `slot.overdue` has the
-    /// answer of the call before. Wait-free.
+    /// Which of the `sources` of the force on a device is overdue or not finite, the first of them; −1: none. `slot.overdue`
+    /// has the answer of the call before. Wait-free.
     virtual int overdue(const build::DeviceSlot& slot, const std::vector<build::ValueSource>& sources,
                         std::int64_t tick) noexcept;
     /// Fills the port with the activations of the call, due at steady time `due_ns`. Wait-free.

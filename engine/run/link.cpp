@@ -69,10 +69,13 @@ std::int64_t Link::publish(std::int64_t first, int count) noexcept {
 }
 
 void Link::note_unusable(int count) noexcept {
+    const std::uint64_t watched = watched_.load(std::memory_order_relaxed);
+    if (watched == 0) return;
     std::uint64_t unusable = 0;
     for (std::size_t w = 0; w < wires.size(); ++w) {
         const LinkWire& wire = wires[w];
-        for (int i = 0; wire.target && i < count; ++i)
+        if (!wire.target || (watched & bit_of(w)) == 0) continue;
+        for (int i = 0; i < count; ++i)
             if (!is_finite_value(*wire.type, wire.source->data + i * wire.source->stride)) unusable |= bit_of(w);
     }
     unusable_.store(unusable, std::memory_order_relaxed);

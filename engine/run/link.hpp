@@ -104,8 +104,10 @@ public:
     /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
-    /// Some of the `wires`, a set of `bit_of`, brought a value in the last publication that is not finite. A parameter keeps
-    /// its last value then, so wires to parameters do not count. Any thread; wait-free.
+    /// From the next publication on, the values of these `wires`, a set of `bit_of`, are checked. A parameter keeps its last
+    /// value when a wire brings one that is not finite, so wires to parameters do not count. Any thread; wait-free.
+    void watch(std::uint64_t wires) noexcept { watched_.fetch_or(wires, std::memory_order_relaxed); }
+    /// One of the watched `wires` brought a value in the last publication that is not finite. Any thread; wait-free.
     bool is_unusable(std::uint64_t wires) const noexcept {
         return (unusable_.load(std::memory_order_relaxed) & wires) != 0;
     }
@@ -177,7 +179,8 @@ private:
     std::int64_t used_ = -1;
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
-    std::atomic<std::uint64_t> unusable_{0};  ///< wires whose last publication has a value that is not finite
+    std::atomic<std::uint64_t> watched_{0};  ///< wires that lead to a force
+    std::atomic<std::uint64_t> unusable_{0};  ///< of these, those whose last publication has a value that is not finite
     std::atomic<bool> settled_{true};
     std::atomic<std::int64_t> first_{0};  ///< first index published here; `unknown` before the producer's switch
     alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again

@@ -24,7 +24,8 @@ enum class TimingKind : std::uint8_t {
     whole,  ///< the last record of a log that was written to its end; `value` is the number of all records
     heard,  ///< samples of sound input `source`, in `sample` (take/sound_record.hpp): the last `value` ones of
     ///< activations tick … tick + count − 1
-    overdue,  ///< from activation tick on, source `value` of the force on device `source` is overdue or not finite; −1: none is
+    overdue,  ///< from activation tick on, source `value` of the force on device `source` is overdue or not finite;
+    ///< −1: none is
 };
 
 /// Written by the group that decides, in its own order.
