@@ -97,7 +97,7 @@ void write_cached(const fs::path& path, std::string_view bytes) noexcept {
         write_whole_file(path, bytes);
         trim(root, path, limit);
     } catch (const std::exception&) {
-        // What is not kept is made again.
+        // A result that is missing from the cache is computed again.
     }
 }
 

@@ -36,7 +36,7 @@ namespace {
 constexpr double longest_pause = 86400.0;  // s; a longer one is a clock that was set
 constexpr int max_trailer_lines = 100, max_lines = 2'000'000'000;
 constexpr std::size_t rows_between_checks = std::size_t{1} << 16;
-constexpr std::size_t most_steps = 1'000'000;  // of which the mean is taken to find a unit
+constexpr std::size_t max_steps = 1'000'000;  // of which the mean is taken to find a unit
 
 class Reader {
 public:
@@ -272,7 +272,7 @@ private:
     }
 
     TimeUnit guessed_unit() {
-        std::vector<double> first(std::min(log_.times.size(), most_steps));
+        std::vector<double> first(std::min(log_.times.size(), max_steps));
         log_.times.read(0, first);
         const auto fail = [&](const std::string& message) {
             fail_at(shape_.header_line > 0 ? shape_.header_line : shape_.first_row,
@@ -280,7 +280,7 @@ private:
         };
         SettledTimeUnit settled =
             table::settle_time_unit(first, static_cast<double>(origin_), shape_.rate ? shape_.rate->value : 0.0,
-                             shape_.rate ? fmt::format("line {}", shape_.rate->line) : "", log_.time_name, fail);
+                                    shape_.rate ? fmt::format("line {}", shape_.rate->line) : "", log_.time_name, fail);
         unit_reason_ = std::move(settled.reason);
         return std::move(settled.unit);
     }

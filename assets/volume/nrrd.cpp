@@ -39,7 +39,7 @@ double bytes_on_disk(const std::filesystem::path& path, const NrrdHeader& header
 }
 
 // Lower bound of file bytes per sample for an encoding; deflate compresses at most 1032 to 1.
-double least_bytes(const NrrdHeader& header) {
+double min_bytes(const NrrdHeader& header) {
     const double size = static_cast<double>(header.type.bytes());
     switch (header.encoding) {
         case NrrdEncoding::raw: return size;
@@ -136,7 +136,7 @@ void check_size(const NrrdHeader& header, const Axes& axes, const std::filesyste
     std::array<std::int64_t, 3> size{};
     for (std::size_t n = 0; n < 3; ++n) size[n] = header.sizes[axes.space[n]];
     const double count = header.count();
-    if (count * least_bytes(header) > bytes_on_disk(path, header) + 64.0)
+    if (count * min_bytes(header) > bytes_on_disk(path, header) + 64.0)
         throw Error(
             fmt::format("{}: cut short: its header states {:.0f} voxels, more than the file can hold", file, count));
     checked_count(size, file);

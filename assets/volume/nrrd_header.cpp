@@ -19,7 +19,7 @@ namespace tactus::volume {
 
 namespace {
 
-constexpr std::size_t longest_field = 700, most_bytes = std::size_t{1} << 24, max_axes = 16;
+constexpr std::size_t max_field = 700, max_bytes = std::size_t{1} << 24, max_axes = 16;
 constexpr int most_lines = 10000;
 constexpr std::int64_t max_files = 100'000;
 
@@ -125,7 +125,7 @@ public:
     explicit Parser(const std::filesystem::path& path) : path_(path), file_(path.string()) {
         const std::uintmax_t size = file::require_file(path);
         std::ifstream stream(path, std::ios::binary);
-        text_.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(size + 1, most_bytes)));
+        text_.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(size + 1, max_bytes)));
         stream.read(text_.data(), static_cast<std::streamsize>(text_.size()));
         is_all_ = static_cast<std::size_t>(stream.gcount()) < text_.size();
         text_.resize(static_cast<std::size_t>(stream.gcount()));
@@ -153,18 +153,18 @@ private:
     /// The next line without its end, which is LF or CR LF; false at the end of the file.
     bool next(std::string_view& line) {
         if (at_ == text_.size()) {
-            if (!is_all_) throw Error(fmt::format("{}: its header is longer than {} MB", file_, most_bytes >> 20));
+            if (!is_all_) throw Error(fmt::format("{}: its header is longer than {} MB", file_, max_bytes >> 20));
             return false;
         }
         const std::size_t end = std::min(text_.find('\n', at_), text_.size());
         if (end == text_.size() && !is_all_)
-            throw Error(fmt::format("{}: its header is longer than {} MB", file_, most_bytes >> 20));
+            throw Error(fmt::format("{}: its header is longer than {} MB", file_, max_bytes >> 20));
         line = std::string_view(text_).substr(at_, end - at_);
         if (line.ends_with('\r')) line.remove_suffix(1);
         at_ = std::min(end + 1, text_.size());
         if (++number_ > most_lines) fail(fmt::format("the header has more than {} lines", most_lines));
-        if (line.size() > longest_field && (number_ == 1 || !may_be_long(line)))
-            fail(fmt::format("a header field has {} bytes; the limit is {}", line.size(), longest_field));
+        if (line.size() > max_field && (number_ == 1 || !may_be_long(line)))
+            fail(fmt::format("a header field has {} bytes; the limit is {}", line.size(), max_field));
         return true;
     }
 

@@ -16,8 +16,7 @@ struct AdmittanceController {
     static constexpr auto about =
         "Admittance control: the measured force moves a virtual object, and a position loop makes the motor follow it. "
         "Refuses settings with which the loop would be unstable. A one-sided object, which switches between two loops, "
-        "is "
-        "simulated first.";
+        "is simulated first.";
 
     In<double> force{"of the hand on the finger; positive closes the finger", "N"};
     In<double> position{"of the finger", "m"};

@@ -24,7 +24,7 @@ namespace {
 // gigabyte.
 constexpr std::size_t max_triangles = 150'000;
 
-/// The surface as it is drawn: simplified until few enough triangles are left.
+/// The surface of a drawing, simplified to at most max_triangles.
 mesh::Mesh drawn_surface(const volume::Grid& distance) {
     mesh::Mesh full = mesh::surface_of(distance);
     if (full.triangles.size() <= max_triangles) return full;
