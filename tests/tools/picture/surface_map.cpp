@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/surface_map.hpp"
 
-#include "assets/cases/case_bones.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
@@ -12,12 +11,10 @@
 #include "tools/picture/scene/body_surface.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <vector>
 
 using namespace tactus;
@@ -25,11 +22,6 @@ using namespace tactus::picture;
 using namespace tactus::test;
 
 namespace {
-
-/// Of the fragment that was read from a.stl, b.stl, …
-volume::Grid distance_of(const std::filesystem::path& folder, std::size_t n) {
-    return cases::bone_from_file(folder / fmt::format("{}.stl", static_cast<char>('a' + n))).distance;
-}
 
 /// Two boxes with 1 mm between them, as a run shows them: each in a frame of its own.
 struct Boxes {
@@ -50,7 +42,7 @@ struct Boxes {
             auto body = std::make_shared<observe::SeenBody>();
             body->content_hash = 100 + n;
             body->home.position = Vec3(5.0 * mm, -3.0 * mm, 40.0 * mm * static_cast<double>(n));
-            body->distance = distance_of(folder.path, n);
+            body->distance = fragments[n].map.grid;
             body->distance.origin -= body->home.position;
             const BodySurface surface =
                 make_body_surface(*body, contact::make_voxmap(body->distance), Vec3(0.0), Vec3(0.0));
@@ -147,7 +139,7 @@ TEST_CASE("of several neighbours an overlap is shown, the deepest one, and witho
     for (std::size_t n = 0; n < fragments.size(); ++n) {
         auto body = std::make_shared<observe::SeenBody>();
         body->content_hash = 100 + n;
-        body->distance = distance_of(folder.path, n);
+        body->distance = fragments[n].map.grid;
         bodies.push_back(body);
     }
     const SurfaceMap map = make_surface_map(SurfaceMap::Kind::gaps, plan, folder.path, bodies);
