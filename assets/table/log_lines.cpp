@@ -130,8 +130,9 @@ bool LogBlocks::next(std::string_view& line) {
         }
         const void* const found = std::memchr(text_.data() + searched, '\r', newline_ - searched);
         std::size_t end = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : newline_;
-        // The end of the line, or whether LF follows CR, may lie in the next block.
-        if (end + 1 >= text_.size() && end - at_ <= max_line && !has_ended_) {
+        // The end of the line, whether LF follows CR, and whether another line follows may lie in the next block. To fill
+        // after this would move the line that is returned.
+        if (end + 2 >= text_.size() && end - at_ <= max_line && !has_ended_) {
             const std::size_t in_line = std::min(end, text_.size()) - at_;
             fill();
             searched = at_ + in_line;

@@ -45,7 +45,8 @@ public:
     /// that is longer than `max_line` only a part that is longer, too.
     bool next(std::string_view& line);
     int number() const { return number_; }  ///< of the last line, from 1
-    bool at_end() { return at_ == text_.size() && !fill(); }
+    /// No line follows. Leaves the last line valid.
+    bool at_end() const { return at_ == text_.size() && has_ended_; }
 
     static constexpr std::size_t max_line = 65536;
 

@@ -22,7 +22,14 @@ table::LogBlocks blocks_of(std::string_view text) {
 
 std::vector<std::string> lines_of(table::LogBlocks blocks) {
     std::vector<std::string> lines;
-    for (std::string_view line; blocks.next(line);) lines.emplace_back(line);
+    for (std::string_view line; blocks.next(line);) {
+        // To ask does not move the line.
+        const char* const place = line.data();
+        const bool is_last = blocks.at_end();
+        CHECK(line.data() == place);
+        lines.emplace_back(line);
+        if (is_last) CHECK_FALSE(blocks.next(line));
+    }
     CHECK(blocks.at_end());
     CHECK(blocks.number() == static_cast<int>(lines.size()));
     return lines;
