@@ -174,7 +174,7 @@ private:
             fields(array);
             return;
         }
-        if (!numbers(array, array.name)) leave_out(array.name);
+        if (!numbers(array, own_name(array.name))) leave_out(array.name);
         else ++used_;
     }
 
@@ -202,12 +202,17 @@ private:
             if (field.type != matrix || field.data.empty()) continue;
             // The name of the structure is none of a quantity or unit, as 's' may be.
             const Array inner = array_of(field);
-            std::string own = name;
-            for (int n = 2; is_taken(own); ++n) own = fmt::format("{} ({})", name, n);
-            if (numbers(inner, own)) is_used = true;
+            if (numbers(inner, own_name(name))) is_used = true;
             else leave_out(array.name + "." + name);
         }
         used_ += is_used;
+    }
+
+    /// "a (2)" where "a" is taken.
+    std::string own_name(const std::string& wanted) const {
+        std::string name = wanted;
+        for (int n = 2; is_taken(name); ++n) name = fmt::format("{} ({})", wanted, n);
+        return name;
     }
 
     bool is_taken(const std::string& name) const {

@@ -2,7 +2,10 @@
 // Universal files (SDRC, 1967; kept by the University of Cincinnati): blocks of lines between lines with -1, each with the
 // number of its dataset. Dataset 58 is a function at nodal degrees of freedom, 58b the same with binary values.
 #include "assets/table/recording.hpp"
+#include "assets/table/time_unit.hpp"
+#include "dsp/core/blanks.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/stop.hpp"
 
 #include <fmt/format.h>
 
@@ -13,22 +16,27 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 namespace tactus::table {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
-
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(blanks);
-    return first == std::string_view::npos ? std::string_view{}
-                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 bool is_delimiter(std::string_view line) { return line.starts_with("    -1") && without_blanks(line) == "-1"; }
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A sign in "1.23457-101": Fortran leaves the letter of an exponent of three digits out. `at`: place of the sign in `text`,
+/// which begins with the number.
+bool is_bare_exponent(std::string_view text, std::size_t at) {
+    const std::string_view before = text.substr(0, at), digits = text.substr(at + 1, 3);
+    return before.find('.') != std::string_view::npos && before.find_first_of("EeDd") == std::string_view::npos &&
+           digits.size() == 3 && std::ranges::all_of(digits, is_digit) &&
+           (at + 4 >= text.size() || (!is_digit(text[at + 4]) && text[at + 4] != '.'));
+}
 
 /// The next number in the text of a dataset. Numbers in columns of fixed width may touch: a sign that follows no exponent
 /// begins the next.
@@ -38,23 +46,29 @@ std::string_view take_number(std::string_view& rest) {
     std::size_t end = 0;
     const auto is_exponent = [](char c) { return c == 'E' || c == 'e' || c == 'D' || c == 'd'; };
     while (end < rest.size() && blanks.find(rest[end]) == std::string_view::npos && rest[end] != '\n' &&
-           (end == 0 || (rest[end] != '-' && rest[end] != '+') || is_exponent(rest[end - 1])))
+           (end == 0 || (rest[end] != '-' && rest[end] != '+') || is_exponent(rest[end - 1]) ||
+            is_bare_exponent(rest, end)))
         ++end;
     const std::string_view word = rest.substr(0, end);
     rest.remove_prefix(end);
     return word;
 }
 
+/// None for text that is no number. Numbers beyond the range of a double are 0 or infinite.
 std::optional<double> number_of(std::string_view word) {
-    std::array<char, 40> buffer;
-    if (word.empty() || word.size() > buffer.size()) return std::nullopt;
-    std::ranges::copy(word, buffer.begin());
-    for (char& c : std::span(buffer).first(word.size()))
-        if (c == 'D' || c == 'd') c = 'E';
-    const char *first = buffer.data() + (word.front() == '+'), *const last = buffer.data() + word.size();
+    if (word.empty() || word.size() > 40) return std::nullopt;
+    if (word.front() == '+') word.remove_prefix(1);
+    std::string text;
+    for (const char c : word) {
+        if ((c == '-' || c == '+') && !text.empty() && is_digit(text.back())) text += 'E';
+        text += c == 'D' || c == 'd' || c == 'e' ? 'E' : c;
+    }
     double number = 0.0;
-    const auto [end, failure] = std::from_chars(first, last, number);
+    const char* const last = text.data() + text.size();
+    const auto [end, failure] = std::from_chars(text.data(), last, number);
     if (failure == std::errc::invalid_argument || end != last) return std::nullopt;
+    if (failure == std::errc::result_out_of_range)
+        return text.find("E-") == std::string::npos ? std::numeric_limits<double>::infinity() : 0.0;
     return number;
 }
 
@@ -65,6 +79,9 @@ public:
     Recording read() {
         std::string_view line;
         while (next(line)) {
+            leave_if_stopped();
+            // Editors and DOS leave lines behind the last dataset.
+            if (const std::string_view words = without_blanks(line); words.empty() || words == "\x1a") continue;
             if (!is_delimiter(line))
                 fail(fmt::format("a delimiter, '    -1', was expected, not '{}'", line.substr(0, 40)));
             if (!next(line)) break;
@@ -196,7 +213,12 @@ private:
                      : ordinate == 8.0  ? "m"
                      : ordinate == 13.0 ? "N"
                                         : "";
-        if (f.is_of_time && f.is_even && !(f.step > 0.0)) fail("the increment of the abscissa is not above 0");
+        if (f.is_of_time && f.is_even) {
+            const std::optional<TimeUnit> unit = time_unit_of_word(f.abscissa_unit);
+            if (!unit) fail(fmt::format("the unit '{}' of the abscissa is no unit of time", f.abscissa_unit));
+            f.start *= unit->seconds, f.step *= unit->seconds;
+            if (!(f.step > 0.0)) fail("the increment of the abscissa is not above 0");
+        }
         return f;
     }
 
@@ -262,6 +284,7 @@ private:
             if (!number) fail_in(line, fmt::format("'{}' is not a number", word.substr(0, 40)));
             (!f.is_even && n % 2 == 0 ? times : values).push_back(*number);
         }
+        if (!take_number(data).empty()) fail_in(line, fmt::format("{} values are stated, and more are there", f.count));
     }
 
     void read_binary(const Function& f, std::string_view data, bool swapped, int line, std::vector<double>& times,
@@ -290,12 +313,7 @@ private:
     /// Functions with the same abscissa follow one clock.
     void add(const Function& f, std::vector<double> times, std::vector<double> values) {
         ++functions_;
-        std::string name = f.name.empty() ? fmt::format("dataset {}", datasets_) : f.name;
-        const auto is_taken = [&](const std::string& wanted) {
-            return std::ranges::find(recording_.channels, wanted, &RecordedChannel::name) != recording_.channels.end();
-        };
-        for (int n = 2; is_taken(name); ++n)
-            name = fmt::format("{} ({})", f.name.empty() ? fmt::format("dataset {}", datasets_) : f.name, n);
+        std::string name = own_name(f.name.empty() ? fmt::format("dataset {}", datasets_) : f.name);
         std::size_t group = clocks_.size();
         for (std::size_t n = 0; n < clocks_.size(); ++n) {
             const Clock& known = clocks_[n];
@@ -306,11 +324,19 @@ private:
         if (group == clocks_.size()) {
             clocks_.push_back({f.is_even, f.count, f.start, f.step, times});
             if (!f.is_even)
-                recording_.channels.push_back({group == 0 ? std::string("time") : fmt::format("time {}", group + 1),
-                                               f.abscissa_unit, std::move(times), 0.0, group});
+                recording_.channels.push_back(
+                    {own_name(group == 0 ? std::string("time") : fmt::format("time {}", group + 1)), f.abscissa_unit,
+                     std::move(times), 0.0, group});
         }
         recording_.channels.push_back(
             {std::move(name), f.unit, std::move(values), f.is_even ? 1.0 / f.step : 0.0, group});
+    }
+
+    /// "12Z+ (2)" for the second channel of a name.
+    std::string own_name(const std::string& wanted) {
+        std::string name = wanted;
+        while (!names_.try_emplace(name, 1).second) name = fmt::format("{} ({})", wanted, ++names_[wanted]);
+        return name;
     }
 
     struct Clock {
@@ -326,6 +352,7 @@ private:
     int line_ = 0, datasets_ = 0, functions_ = 0, others_ = 0, not_in_time_ = 0, complex_ = 0;
     bool is_si_ = false;
     std::vector<Clock> clocks_;
+    std::unordered_map<std::string, int> names_;  // taken, with how many of each
     Recording recording_;
 };
 

@@ -2,6 +2,7 @@
 #include "assets/volume/nrrd_header.hpp"
 
 #include "assets/file/whole_file.hpp"
+#include "dsp/core/blanks.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/lower.hpp"
 
@@ -26,14 +27,6 @@ constexpr std::int64_t max_files = 100'000;
 bool may_be_long(std::string_view line) {
     const std::size_t colon = std::min(line.find(':'), line.size());
     return line.starts_with('#') || line.starts_with("content: ") || line.substr(colon).starts_with(":=");
-}
-
-constexpr std::string_view blanks = " \t";
-
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 /// Removes the first word of `rest` and returns it; empty at the end.

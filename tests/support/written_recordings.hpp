@@ -27,7 +27,7 @@ struct UniversalFunction {
     bool is_even = true, is_binary = false, big = false;
     int abscissa = 17;  // time
     int node = 12, direction = 3;
-    std::string unit = "m/s^2";
+    std::string unit = "m/s^2", time_unit = "s";
     double start = 0.0, step = 5e-4;
     std::vector<double> times, values;
 };
@@ -58,7 +58,7 @@ inline std::string universal_function(const UniversalFunction& f) {
     const auto axis = [](int kind, const std::string& name, const std::string& unit) {
         return fmt::format("{:10}{:5}{:5}{:5} {:<20} {:<20}\n", kind, 0, 0, 0, name, unit);
     };
-    text += axis(f.abscissa, "Time", "s") + axis(12, "Acceleration", f.unit) + axis(0, "NONE", "NONE") +
+    text += axis(f.abscissa, "Time", f.time_unit) + axis(12, "Acceleration", f.unit) + axis(0, "NONE", "NONE") +
             axis(0, "NONE", "NONE");
     return text + data + "\n    -1\n";
 }

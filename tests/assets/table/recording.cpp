@@ -68,6 +68,54 @@ TEST_CASE(
             }
 }
 
+TEST_CASE("the unit of an abscissa holds for even functions as for uneven ones, and an unknown one is refused") {
+    const Recordings place;
+    test::UniversalFunction f;
+    f.values = wave(100), f.times = clock_of(100, 0.5);
+    f.time_unit = "ms", f.step = 0.5, f.start = 20.0;
+    for (const bool is_even : {true, false}) {
+        f.is_even = is_even;
+        const table::SampleLog log = place.load("a.uff", test::universal_function(f));
+        CHECK(log.times[99] - log.times[0] == Approx(99 * 0.5e-3).epsilon(1e-4));
+    }
+    f.is_even = true, f.time_unit = "furlong";
+    CHECK_THROWS_WITH(place.load("a.uff", test::universal_function(f)), ContainsSubstring("'furlong'"));
+}
+
+TEST_CASE("numbers of a universal file have exponents of any length, and none is lost or added without a word") {
+    const Recordings place;
+    test::UniversalFunction f;
+    f.values = {1.0, 2.0, 3.0, 4.0};
+    const std::string text = test::universal_function(f), first = "  1.00000E+00";
+    REQUIRE(text.find(first) != std::string::npos);
+    const auto with = [&](const std::string& word) {
+        std::string changed = text;
+        return changed.replace(changed.find(first), first.size(), word);
+    };
+    // Fortran leaves the letter out of an exponent of three digits.
+    table::SampleLog log = place.load("a.uff", with(" 1.23457-101"));
+    CHECK(log.columns[0][0] == 1.23457e-101);
+    CHECK(log.columns[0][1] == 2.0);
+    CHECK(place.load("a.uff", with(" 1.5D+02")).columns[0][0] == 150.0);
+    CHECK_THROWS_WITH(place.load("a.uff", with("1.00000-2.00000")), ContainsSubstring("more are there"));
+    CHECK(place.load("a.uff", with("  1.00000E-400")).columns[0][0] == 0.0);
+    log = place.load("a.uff", with("  1.00000E+400"));
+    CHECK(log.lost_rows == 1);
+    CHECK_THROWS_WITH(place.load("a.uff", with("  1.00000E+00  7.0")), ContainsSubstring("more are there"));
+}
+
+TEST_CASE("a universal file may end with blank lines, and thousands of functions of one name are told apart") {
+    const Recordings place;
+    test::UniversalFunction f;
+    f.values = wave(2);
+    std::string text;
+    for (int n = 0; n < 3000; ++n) text += test::universal_function(f);
+    const table::Recording recording = table::read_universal_file(text + "\n  \r\n\x1a", "a.uff");
+    REQUIRE(recording.channels.size() == 3000);
+    CHECK(recording.channels[0].name == "12Z+");
+    CHECK(recording.channels[2999].name == "12Z+ (3000)");
+}
+
 TEST_CASE("a universal file of several datasets gives the functions of time, and counts what is left out") {
     const Recordings place;
     test::UniversalFunction x, y, spectrum, slow;
@@ -181,4 +229,14 @@ TEST_CASE("channels of different lengths, MATLAB 7.3 and damaged files are refus
         CAPTURE(size);
         CHECK_THROWS_AS(place.load("d.mat", whole.substr(0, size), how), Error);
     }
+}
+
+TEST_CASE("variables of one name in a MATLAB file are told apart") {
+    const Recordings place;
+    const std::string t = test::matlab_numbers("t", 40, 1, clock_of(40, 1e-3));
+    const std::string a = test::matlab_numbers("a", 40, 1, wave(40)),
+                      b = test::matlab_numbers("a", 40, 1, wave(40, 2.0));
+    table::LogSelection how;
+    how.columns = {"a (2)"};
+    CHECK(largest_difference(place.load("a.mat", test::matlab_file(t + a + b), how).columns[0], wave(40, 2.0)) == 0.0);
 }
