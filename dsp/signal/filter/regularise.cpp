@@ -108,7 +108,6 @@ double clock_step(const TimedSamples& samples, double first, double last) {
 struct TimeLine {
     std::size_t first = 0, end = 0;
     double start = 0.0, slope = 0.0, middle = 0.0;  // time = start + slope * (index - first - middle)
-    bool is_even = false;  // false: the times as they are
 };
 
 /// Times of an even sampling that a coarse clock rounded to its own steps: a line explains them within one step. Returns
@@ -154,7 +153,7 @@ std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& sample
                                  }
                              }).front();
     std::vector<TimeLine> lines;
-    bool is_changed = false;
+    double slopes = 0.0, counted = 0.0;  // of pieces that are long enough for a slope of their own
     TimeBlocks ahead(samples);
     for (std::size_t first = 0; first < size;) {
         std::size_t end = first + 1;
@@ -165,12 +164,11 @@ std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& sample
             last = ahead[end];
             sum += last - start, moment += static_cast<double>(end - first) * (last - start);
         }
-        lines.push_back({first, end, start, 0.0, 0.0, false});
+        const auto count = static_cast<double>(end - first);
+        const double middle = 0.5 * (count - 1.0), mean_time = sum / count;
+        lines.push_back({first, end, start + mean_time, 0.0, middle});
         if (end - first >= 8) {
-            const auto count = static_cast<double>(end - first);
-            const double middle = 0.5 * (count - 1.0);
-            const double slope = (moment - middle * sum) / (count * (count * count - 1.0) / 12.0),
-                         mean_time = sum / count;
+            const double slope = (moment - middle * sum) / (count * (count * count - 1.0) / 12.0);
             double low = 0.0, high = 0.0;
             for (std::size_t i = first; i < end; ++i) {
                 const double line = mean_time + slope * (static_cast<double>(i - first) - middle);
@@ -179,12 +177,15 @@ std::optional<std::vector<TimeLine>> without_rounding(const TimedSamples& sample
             }
             // Rounding, up, down or to the nearest, moves a time by less than one step; the fitted line lies within it.
             if (high - low > 1.2 * step) return std::nullopt;
-            is_changed = true;
-            lines.back() = {first, end, start + mean_time, slope, middle, true};
+            lines.back().slope = slope;
+            slopes += slope * count, counted += count;
         }
         first = end;
     }
-    if (!is_changed) return std::nullopt;
+    if (counted == 0.0) return std::nullopt;
+    // In a short piece the clock may stand still: its samples follow each other as those of the others do.
+    for (TimeLine& line : lines)
+        if (line.end - line.first < 8) line.slope = slopes / counted;
     return lines;
 }
 
@@ -205,7 +206,6 @@ private:
     double on_line() {
         while (at_ >= (*lines_)[line_].end) ++line_;
         const TimeLine& line = (*lines_)[line_];
-        if (!line.is_even) return times_[at_];
         return line.start + line.slope * (static_cast<double>(at_ - line.first) - line.middle);
     }
 

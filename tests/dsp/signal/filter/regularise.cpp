@@ -116,6 +116,23 @@ TEST_CASE("times that a coarse clock rounded are even, in every ratio of rate an
         }
 }
 
+TEST_CASE("a piece of any length between two gaps has the rate of the others under a coarse clock") {
+    for (int count = 1; count <= 12; ++count) {
+        CAPTURE(count);
+        // 370 Hz under a clock of 10 ms.
+        std::vector<double> times, values;
+        for (int i = 0; i < 4000; ++i) {
+            const bool is_short = i >= 2000 && i < 2000 + count;
+            if (!is_short && i >= 1800 && i < 2200) continue;
+            times.push_back(0.01 * std::floor(i / 370.0 / 0.01 + 1e-9));
+            values.push_back(wave(i / 370.0));
+        }
+        const signal::EvenRecord even = signal::regularise(times, Channels{values});
+        CHECK(even.rate == Approx(370.0).epsilon(1e-3));
+        CHECK(even.pieces.size() >= 2);
+    }
+}
+
 TEST_CASE("even times with lost samples, and uneven ones, are not taken for rounded") {
     std::vector<double> times, values;
     for (int i = 0; i < 1000; ++i)
