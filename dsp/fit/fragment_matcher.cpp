@@ -228,7 +228,11 @@ void FragmentMatcher::confirm(const Solved& best, std::span<const Pose> poses, s
                                        slipped(-1.5e-3 * u), slipped(1.5e-3 * v), slipped(-1.5e-3 * v),
                                        slipped(3e-3 * u), slipped(-3e-3 * u), slipped(3e-3 * v), slipped(-3e-3 * v)}};
     Solved again = solve(energies_[0], best.pair, starts);
-    if (best.second > again.second) again.second = best.second, again.rival = best.rival;
+    // The search may have ended at the former rival; the former best pose is its rival then.
+    const double gyration = faces_[best.pair.moving].surface.gyration;
+    for (const Candidate& c : {best.best, Candidate{best.rival, best.second}})
+        if (c.score > again.second && pose_distance(c.pose, again.best.pose, gyration) > 1e-3)
+            again.second = c.score, again.rival = c.pose;
     lead(again, poses, stands);
 }
 

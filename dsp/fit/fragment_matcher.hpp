@@ -44,8 +44,9 @@ struct FacePairFit {
     Pose pose;  ///< of the moving fragment in the frame of the fixed one
     double score = -1.0, second = 0.0;  ///< of the best pose and of the second best; negative: none
     double overlap = 0.0;  ///< m² on each other
+    Pose rival;  ///< the second best pose, like `pose`
 
-    FacePairFit inverse() const { return {fixed, moving, pose.inverse(), score, second, overlap}; }
+    FacePairFit inverse() const { return {fixed, moving, pose.inverse(), score, second, overlap, rival.inverse()}; }
     /// How much there is to it: small patches fit by chance.
     double worth() const { return score > 0.0 ? score * std::sqrt(overlap) : 0.0; }
 };

@@ -209,7 +209,8 @@ FacePairFit FragmentMatcher::fit_faces(FitEnergy& energy, std::size_t moving, st
         starts.insert(starts.end(), {from, {Vec3(0.0), from.orientation}, {Vec3(0.0), facing}, {beside, facing}});
     }
     const Solved solved = solve(energy, {moving, fixed, 0.0}, starts);
-    FacePairFit found{moving, fixed, between_bodies(a, b, solved.best.pose), solved.best.score, solved.second, 0.0};
+    FacePairFit found{moving,        fixed, between_bodies(a, b, solved.best.pose), solved.best.score,
+                      solved.second, 0.0,   between_bodies(a, b, solved.rival)};
     found.overlap = energy.quality(solved.best.pose, settings.fit.sigma).overlap;
     return found;
 }
@@ -218,9 +219,9 @@ const FragmentMatch& FragmentMatcher::place(const FacePairFit& pair, std::span<c
                                             std::span<const char> stands) noexcept {
     match_ = {};
     match_.moving = faces_[pair.moving].fragment;
-    const Pose at = between_centres(faces_[pair.moving].surface, faces_[pair.fixed].surface, pair.pose);
-    // The rival's pose is not known here: one as good lies anywhere, and the margin refuses it.
-    lead({{pair.moving, pair.fixed, 0.0}, {at, pair.score}, pair.second, at}, poses, stands);
+    const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
+    const Pose at = between_centres(a, b, pair.pose), rival = between_centres(a, b, pair.rival);
+    lead({{pair.moving, pair.fixed, 0.0}, {at, pair.score}, pair.second, rival}, poses, stands);
     return match_;
 }
 

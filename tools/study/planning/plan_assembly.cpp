@@ -43,7 +43,7 @@ std::vector<Edge> all_edges(const PlanMatching& matching, const fit::FragmentMat
         for (std::size_t f = m + 1; f < matcher.faces(); ++f) {
             const int a = matcher.fragment_of(m), b = matcher.fragment_of(f);
             if (parts.part_of(a) < 0 || parts.part_of(b) < 0 || parts.part_of(a) == parts.part_of(b)) continue;
-            edges.push_back({{m, f, {}, -1.0, 0.0, 0.0}, a, b, 0});
+            edges.push_back({{m, f, {}, -1.0, 0.0, 0.0, {}}, a, b, 0});
         }
     if (edges.empty()) return edges;
     on_threads()(static_cast<int>(edges.size()), [&](int n) {
