@@ -55,7 +55,8 @@ public:
                 if (stream_.avail_in == 0) break;
             }
             if (has_ended_) {
-                // Programs that pack in parallel write one stream after the other.
+                // Programs that pack in parallel write one stream after the other. What else follows is no data.
+                if (*stream_.next_in != 'B') break;
                 BZ2_bzDecompressEnd(&stream_);
                 open();
             }
@@ -69,6 +70,8 @@ public:
         }
         return done;
     }
+    /// The last stream that was read is whole.
+    bool has_ended() const { return has_ended_; }
 
 private:
     void open() {
@@ -156,10 +159,10 @@ void PackedFile::finish() {
     if (!file_ && !bzip2_) return;
     std::array<char, 1 << 16> rest;
     while (is_packed() && read_some(rest) > 0) leave_if_stopped();
-    if (!file_) return;
     int code = Z_OK;
-    gzerror(handle(file_), &code);
-    if (code != Z_OK && code != Z_STREAM_END) throw Error(fmt::format("{}: cut short; copy the file again", name_));
+    if (file_) gzerror(handle(file_), &code);
+    if ((bzip2_ && !bzip2_->has_ended()) || (code != Z_OK && code != Z_STREAM_END))
+        throw Error(fmt::format("{}: cut short; copy the file again", name_));
 }
 
 std::size_t SampleType::bytes() const {

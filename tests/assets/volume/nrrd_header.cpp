@@ -178,6 +178,7 @@ TEST_CASE("an NRRD of each encoding, byte order and place of its samples gives t
         {"hexadecimal digits", header_of_24(little + "encoding: hex\n") + as_hex(bytes)},
         {"bzip2 in two streams",
          header_of_24(little + "encoding: bzip2\n") + bzipped(bytes.substr(0, 20)) + bzipped(bytes.substr(20))},
+        {"bzip2 with a line behind it", header_of_24(little + "encoding: bzip2\n") + bzipped(bytes) + "\n"},
         {"another file", header_of_24(little + "encoding: raw\ndata file: all.raw\n")},
         {"bytes at the end", header_of_24(little + "encoding: raw\nbyte skip: -1\ndatafile: offset.raw\n")},
         {"lines and bytes skipped",
@@ -196,6 +197,11 @@ TEST_CASE("an NRRD of each encoding, byte order and place of its samples gives t
         CHECK(glm::length(read.spacing() - Vec3(1e-3, 2e-3, 3e-3)) < 1e-12);
         CHECK(glm::length(read.map.origin - Vec3(1e-2, 2e-2, 3e-2)) < 1e-12);
     }
+    // All samples are there; the end of the stream, with its checksum, is not.
+    const std::string packed = bzipped(bytes);
+    file::write_whole_file(folder / "a.nrrd",
+                           header_of_24(little + "encoding: bzip2\n") + packed.substr(0, packed.size() - 4));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), ContainsSubstring("cut short"));
 }
 
 TEST_CASE("axes of one sample are left out of an NRRD wherever they stand, and the others keep their directions") {
