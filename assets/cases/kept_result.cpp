@@ -4,9 +4,9 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/cache.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/volume/nrrd_header.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
-#include "dsp/core/lower.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -31,13 +30,11 @@ bool is_whole(const std::filesystem::path& path) {
     constexpr std::array<const char*, 5> whole{".vdb", ".stl", ".ply", ".obj", ".nii"};
     if (std::ranges::find(whole, extension) != whole.end()) return true;
     if (extension != ".nrrd") return path.string().ends_with(".nii.gz");
-    std::ifstream file(path, std::ios::binary);
-    for (std::string line; std::getline(file, line) && !line.empty() && line != "\r";) {
-        const std::string field = lower(line);
-        if (field.starts_with("data file") || field.starts_with("datafile")) return false;
-        if (line.size() > 10'000) return false;
+    try {
+        return volume::read_nrrd_header(path).data == std::vector{path};
+    } catch (const Error&) {
+        return false;
     }
-    return true;
 }
 
 std::string checksum(const std::string& key, const std::vector<double>& numbers) {

@@ -56,9 +56,15 @@ TEST_CASE("a damaged or foreign kept result is ignored with a note, and made aga
 
 TEST_CASE("no result is kept for a header that names other files, and none without a folder that can be written") {
     const test::KeptCache cache;
-    const auto header = cache.write("scan.nrrd", "NRRD0004\nsizes: 2 2 2\nData File: scan.raw\n\n");
-    CHECK(ResultKey("x", 1).add_file(header).text().empty());
-    const auto whole = cache.write("whole.nrrd", "NRRD0004\nsizes: 2 2 2\n\n12345678");
+    const std::string lines = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
+    // As the reader of such files takes it: in any letters, behind blanks.
+    for (const char* const field : {"Data File: scan.raw", " data file: scan.raw", "datafile: scan.raw"}) {
+        CAPTURE(field);
+        const auto header = cache.write("scan.nrrd", lines + field + "\n\n");
+        CHECK(ResultKey("x", 1).add_file(header).text().empty());
+    }
+    CHECK(ResultKey("x", 1).add_file(cache.write("damaged.nrrd", "NRRD0004\nsizes: 2 2 2\n\n")).text().empty());
+    const auto whole = cache.write("whole.nrrd", lines + "\n12345678");
     CHECK_FALSE(ResultKey("x", 1).add_file(whole).text().empty());
     cache.write("tactus", "a file where the folder would be");
     std::string note;
