@@ -94,9 +94,9 @@ std::vector<std::size_t> overlaps(const Components& parts, const RunRows& other)
     return counts;
 }
 
-/// Whether a ball of that radius fits into a part: distances to samples outside of it, exact, within its bounding box.
-/// Squared distances by lower envelopes cost a pass per axis (Felzenszwalb and Huttenlocher 2012); a box thinner than the
-/// ball needs none.
+/// Whether a ball of that radius fits into a part: squared distances to samples outside of it, exact up to the radius, an
+/// axis after the other (Saito and Toriwaki 1994). A box thinner than the ball needs none. Memory: 4 bytes for each sample
+/// of the part's box.
 bool holds_ball(const Components& parts, std::size_t part, double radius, const Vec3& spacing) {
     const Components::Box& box = parts.boxes[part];
     std::array<int, 3> size{};
@@ -108,7 +108,7 @@ bool holds_ball(const Components& parts, std::size_t part, double radius, const 
     const auto at = [&](int i, int j, int k) {
         return (static_cast<std::size_t>(k) * high + static_cast<std::size_t>(j)) * wide + static_cast<std::size_t>(i);
     };
-    const auto far = static_cast<float>(4.0 * radius * radius);
+    const auto far = static_cast<float>(radius * radius);
     std::vector<float> square(wide * high * static_cast<std::size_t>(size[2]), 0.0f);
     // Along x exactly; then along y and z by the smallest sum within the radius.
     for (int k = 1; k + 1 < size[2]; ++k)
@@ -122,12 +122,12 @@ bool holds_ball(const Components& parts, std::size_t part, double radius, const 
             }
     std::vector<float> line;
     for (const int axis : {1, 2}) {
-        leave_if_stopped();
         const int count = size[static_cast<std::size_t>(axis)], others = axis == 1 ? size[2] : size[1];
         const double h = spacing[axis];
-        const int reach = static_cast<int>(2.0 * radius / h) + 1;
+        const int reach = static_cast<int>(radius / h) + 1;
         line.resize(static_cast<std::size_t>(count));
-        for (int o = 0; o < others; ++o)
+        for (int o = 0; o < others; ++o) {
+            leave_if_stopped();
             for (int i = 0; i < size[0]; ++i) {
                 const auto place = [&](int n) { return axis == 1 ? at(i, n, o) : at(i, o, n); };
                 for (int n = 0; n < count; ++n) line[static_cast<std::size_t>(n)] = square[place(n)];
@@ -142,8 +142,9 @@ bool holds_ball(const Components& parts, std::size_t part, double radius, const 
                     square[place(n)] = least;
                 }
             }
+        }
     }
-    return *std::max_element(square.begin(), square.end()) >= static_cast<float>(radius * radius);
+    return *std::max_element(square.begin(), square.end()) >= far;
 }
 
 }  // namespace
