@@ -18,7 +18,6 @@ Wrench ForceGate::give(const ForceRecord& newest, std::uint64_t number, std::int
     const Wrench wanted = unpack(newest);
     const bool is_new = number != number_;
     number_ = number;
-    const bool is_whole = is_finite(wanted);
     if (!is_felt) {
         passes_ = true;
         return bounds.clamp(wanted);
@@ -27,7 +26,7 @@ Wrench ForceGate::give(const ForceRecord& newest, std::uint64_t number, std::int
         // The age counts, not when it was noticed: after a suspend nothing is left to fade.
         const bool is_past = newest.committed_ns > 0 && newest.committed_ns <= now_ns;
         close(is_past ? newest.committed_ns + limit_ns : now_ns);
-    } else if (!is_whole) {
+    } else if (!is_finite(wanted)) {
         close(now_ns);
         last_ = {};
     } else if (!passes_ && is_new) {

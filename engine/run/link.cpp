@@ -64,11 +64,11 @@ std::int64_t Link::publish(std::int64_t first, int count) noexcept {
             std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
     }
     for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
-    note_unusable(count);
+    note_unusable(first, count);
     return lost;
 }
 
-void Link::note_unusable(int count) noexcept {
+void Link::note_unusable(std::int64_t first, int count) noexcept {
     const std::uint64_t watched = watched_.load(std::memory_order_relaxed);
     if (watched == 0) return;
     std::uint64_t unusable = 0;
@@ -78,7 +78,12 @@ void Link::note_unusable(int count) noexcept {
         for (int i = 0; i < count; ++i)
             if (!is_finite_value(*wire.type, wire.source->data + i * wire.source->stride)) unusable |= bit_of(w);
     }
-    unusable_.store(unusable, std::memory_order_relaxed);
+    // The consumer may read such a value until its latency and one of its calls are over.
+    if (unusable != 0) {
+        last_unusable_ = unusable;
+        unusable_until_ = first + count + ceil_div(latency + longest_call_ * consumer_period, producer_period);
+    }
+    unusable_.store(first < unusable_until_ ? last_unusable_ | unusable : unusable, std::memory_order_relaxed);
 }
 
 namespace {

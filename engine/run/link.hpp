@@ -107,7 +107,8 @@ public:
     /// From the next publication on, the values of these `wires`, a set of `bit_of`, are checked. A parameter keeps its last
     /// value when a wire brings one that is not finite, so wires to parameters do not count. Any thread; wait-free.
     void watch(std::uint64_t wires) noexcept { watched_.fetch_or(wires, std::memory_order_relaxed); }
-    /// One of the watched `wires` brought a value in the last publication that is not finite. Any thread; wait-free.
+    /// One of the watched `wires` brought a value that is not finite, and the consumer may still read it. Any thread;
+    /// wait-free.
     bool is_unusable(std::uint64_t wires) const noexcept {
         return (unusable_.load(std::memory_order_relaxed) & wires) != 0;
     }
@@ -163,7 +164,7 @@ private:
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
     void take_values(std::int64_t index) noexcept;
-    void note_unusable(int count) noexcept;
+    void note_unusable(std::int64_t first, int count) noexcept;
     std::int64_t publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
     void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
     /// Lists what lies between the used index and `newest`, in order.
@@ -180,7 +181,9 @@ private:
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
     std::atomic<std::uint64_t> watched_{0};  ///< wires that lead to a force
-    std::atomic<std::uint64_t> unusable_{0};  ///< of these, those whose last publication has a value that is not finite
+    std::atomic<std::uint64_t> unusable_{0};  ///< of these, those that `is_unusable` reports
+    std::uint64_t last_unusable_ = 0;  // producer's: wires of the last publication with a value that is not finite
+    std::int64_t unusable_until_ = 0;  // producer's: index at which it counts no more
     std::atomic<bool> settled_{true};
     std::atomic<std::int64_t> first_{0};  ///< first index published here; `unknown` before the producer's switch
     alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again
