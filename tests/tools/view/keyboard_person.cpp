@@ -38,7 +38,8 @@ TEST_CASE("the keyboard alone opens an example, starts and ends it, changes a va
     REQUIRE(person.sees_window("Tactus", 30.0));
     const Eyes eyes{folder.path};
     const auto shows = [&](const std::string& control) { return sees([&] { return eyes.spots().contains(control); }); };
-    REQUIRE(shows("example touch-sphere"));
+    // Of the examples, the first rows fit into this window.
+    REQUIRE(shows("example burr-training"));
     // The pointer is somewhere else.
     person.move(1500.0, 1100.0);
     command(person, "open touch-sphere");
