@@ -252,7 +252,7 @@ private:
     }
 
     std::string time_text(double time) const {
-        const std::string_view unit = has_clock_ || !columns_.time ? "s" : columns_.unit ? columns_.unit->symbol : "";
+        const std::string unit = has_clock_ || !columns_.time ? "s" : columns_.unit ? columns_.unit->symbol : "";
         return fmt::format("{:.9g}{}{}", static_cast<double>(origin_) + time, unit.empty() ? "" : " ", unit);
     }
 
