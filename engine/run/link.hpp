@@ -104,13 +104,13 @@ public:
     /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
-    /// From the next publication on, the values of these `wires`, a set of `bit_of`, are checked. A parameter keeps its last
-    /// value when a wire brings one that is not finite, so wires to parameters do not count. Any thread; wait-free.
-    void watch(std::uint64_t wires) noexcept { watched_.fetch_or(wires, std::memory_order_relaxed); }
-    /// One of the watched `wires` brought a value that is not finite, and the consumer may still read it. Any thread;
+    /// From the next publication on, the values of these wires (`bits`: a set of `bit_of`) are checked. A parameter keeps its
+    /// last value when a wire brings one that is not finite, so wires to parameters do not count. Any thread; wait-free.
+    void watch(std::uint64_t bits) noexcept { watched_.fetch_or(bits, std::memory_order_relaxed); }
+    /// One of the watched wires brought a value that is not finite, and the consumer may still read it. Any thread;
     /// wait-free.
-    bool is_unusable(std::uint64_t wires) const noexcept {
-        return (unusable_.load(std::memory_order_relaxed) & wires) != 0;
+    bool is_unusable(std::uint64_t bits) const noexcept {
+        return (unusable_.load(std::memory_order_relaxed) & bits) != 0;
     }
     /// The wires from the 63rd on share a bit.
     static constexpr std::uint64_t bit_of(std::size_t wire) {

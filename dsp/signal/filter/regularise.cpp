@@ -350,38 +350,38 @@ struct Regulariser::State {
 void Regulariser::State::examine() {
     const std::size_t size = samples.count;
     if (size < 4) throw Error(fmt::format("there are {} samples; a spectrum needs at least 4", size));
-    TimeBlocks times(samples);
-    const double first = times[0];
-    double last = first, squares = 0.0;
+    TimeBlocks all(samples);
+    const double begin = all[0];
+    double last = begin, squares = 0.0;
     facts.shortest_step = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < size; ++i) {
-        const double time = times[i], step = time - last;
+        const double time = all[i], step = time - last;
         if (!(step >= 0.0)) throw Error(fmt::format("time runs backwards at sample {}", i + 1));
         facts.shortest_step = std::min(facts.shortest_step, step);
         facts.longest_step = std::max(facts.longest_step, step);
         squares += step * step;
         last = time;
     }
-    if (!(last > first)) throw Error("time stands still: every sample has the same time");
-    const double mean = (last - first) / static_cast<double>(size - 1);
+    if (!(last > begin)) throw Error("time stands still: every sample has the same time");
+    const double mean = (last - begin) / static_cast<double>(size - 1);
     if (facts.longest_step - facts.shortest_step < max_off * mean) {
         // Nothing to interpolate, no gaps: what follows would find the same, in many passes.
         is_even = true;
         for (std::size_t i = 0; i < size && is_even; ++i)
-            is_even = std::abs((times[i] - first) / mean - static_cast<double>(i)) < max_off;
+            is_even = std::abs((all[i] - begin) / mean - static_cast<double>(i)) < max_off;
     }
     if (is_even) {
         facts.rate = 1.0 / mean;
         facts.usable = 0.5 / std::max(facts.longest_step, mean);
         facts.step_deviation = std::sqrt(std::max(0.0, squares / static_cast<double>(size - 1) - mean * mean));
         facts.frames = size;
-        pieces.push_back({0, size, first, last - first, size});
+        pieces.push_back({0, size, begin, last - begin, size});
         keeps = size * samples.channels <= max_kept;
         return;
     }
     facts.longest_step = 0.0;
-    const double clock = clock_step(samples, first, last);
-    lines = without_rounding(samples, clock, first, last);
+    const double clock = clock_step(samples, begin, last);
+    lines = without_rounding(samples, clock, begin, last);
     if (lines) facts.clock_step = clock;
     const auto for_each_step = [&](const auto& use) {
         UsedTimes used(samples, used_lines());
@@ -431,19 +431,19 @@ void Regulariser::State::examine() {
             : facts.longest_step;
     facts.usable = 0.5 / std::max(long_step, 1.0 / facts.rate);
     deviation_of_steps(facts.longest_step);
-    for (Piece& piece : pieces) {
-        piece.frames = static_cast<std::size_t>(std::floor(piece.length * facts.rate * (1.0 + 1e-12))) + 1;
-        facts.frames += piece.frames;
+    for (Piece& one : pieces) {
+        one.frames = static_cast<std::size_t>(std::floor(one.length * facts.rate * (1.0 + 1e-12))) + 1;
+        facts.frames += one.frames;
     }
     if (pieces.empty()) throw Error("no four samples follow each other without a gap");
     keeps = facts.frames * samples.channels <= max_kept;
 }
 
 void Regulariser::State::deviation_of_steps(double longest) {
-    TimeBlocks times(samples);
-    double sum = 0.0, squares = 0.0, count = 0.0, before = times[0];
+    TimeBlocks all(samples);
+    double sum = 0.0, squares = 0.0, count = 0.0, before = all[0];
     for (std::size_t i = 1; i < samples.count; ++i) {
-        const double time = times[i], step = time - before;
+        const double time = all[i], step = time - before;
         before = time;
         if (step > longest) continue;
         sum += step, squares += step * step, ++count;

@@ -9,6 +9,7 @@
 
 using namespace tactus;
 using namespace tactus::test;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 
 namespace {
