@@ -76,6 +76,7 @@
     X(plan_site, reconstruct)        \
     X(plan_margin, reconstruct)      \
     X(plan_limits, reconstruct)      \
+    X(plan_paddle, reconstruct)      \
     X(plan_reach, reconstruct)
 
 namespace tactus::command {

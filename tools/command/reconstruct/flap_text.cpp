@@ -116,6 +116,11 @@ Json reconstruction_json(const reconstruct::Reconstruction& all) {
                             {"axis", {i.axis.x, i.axis.y, i.axis.z}},
                             {"diameter_mm", i.diameter * to_mm},
                             {"length_mm", i.length * to_mm}});
+    Json paddle = nullptr;
+    if (flap.paddle)
+        paddle = {{"at_mm", point_json(flap.paddle->at)},
+                  {"length_mm", flap.paddle->length * to_mm},
+                  {"width_mm", flap.paddle->width * to_mm}};
     return {{"donor", all.donor.file},
             {"jaw", all.jaw ? Json(all.jaw->file) : Json(nullptr)},
             {"tumour", all.tumour ? Json(all.tumour->file) : Json(nullptr)},
@@ -129,7 +134,8 @@ Json reconstruction_json(const reconstruct::Reconstruction& all) {
             {"perforators", perforators},
             {"sites", sites},
             {"plates", plates},
-            {"implants", implants}};
+            {"implants", implants},
+            {"paddle", paddle}};
 }
 
 void print_flap(const reconstruct::FlapMeasures& m) {

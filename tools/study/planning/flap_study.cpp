@@ -67,27 +67,50 @@ FlapStudy::FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state,
         const auto n = static_cast<std::size_t>(piece);
         const Pose& pose = state.arrangement.pose(piece);
         const bool is_scanned = pose.position == Vec3(0.0) && std::abs(pose.orientation.w) == 1.0;
-        if (is_segment(plan.fragments[n].name)) segments_.push_back({piece, pose, !is_scanned});
-        else if (!state.arrangement.is_hidden(piece))
+        if (is_segment(plan.fragments[n].name)) {
+            segments_.push_back({piece, pose, !is_scanned});
+            if (!is_scanned) segment_files_.emplace_back(cases::file_of(state.files[n].file, folder), pose);
+        } else if (!state.arrangement.is_hidden(piece))
             jaw_files_.emplace_back(cases::file_of(state.files[n].file, folder), pose);
     }
     if (segments_.size() != fibula_.segments.size()) segments_.clear();
 }
 
-void FlapStudy::make_obstacles() {
-    if (donor_) return;
+bool FlapStudy::needs_obstacles() const {
     const bool has_reach = !flap().sites.empty() && !flap().vessels.empty(),
                has_hardware = !flap().plates.empty() || !flap().implants.empty();
-    if (!has_reach && !has_hardware) return;
+    return has_reach || has_hardware;
+}
+
+std::vector<std::pair<fs::path, Pose>> FlapStudy::placed_files() const {
+    std::vector<std::pair<fs::path, Pose>> all = jaw_files_;
+    all.insert(all.end(), segment_files_.begin(), segment_files_.end());
+    return all;
+}
+
+reconstruct::FibulaPlan FlapStudy::placed_plan() const {
+    reconstruct::FibulaPlan now = fibula_;
+    if (std::ranges::all_of(segments_, &SegmentPlace::is_placed))
+        for (std::size_t n = 0; n < segments_.size(); ++n) now.segments[n].donor_to_target = segments_[n].pose;
+    return now;
+}
+
+reconstruct::FlapObstacle FlapStudy::bone() {
+    make_obstacles();
+    std::vector<const rope::Obstacle*> jaw;
+    for (const auto& piece : jaw_) jaw.push_back(&piece->field);
+    return {placed_plan(), jaw, &donor_->field};
+}
+
+void FlapStudy::make_obstacles() {
+    if (donor_) return;
     donor_ = obstacle_of(donor_file_, {});
     for (const auto& [file, pose] : jaw_files_) jaw_.push_back(obstacle_of(file, pose));
 }
 
 reconstruct::FlapMeasures FlapStudy::measures() {
-    make_obstacles();
-    reconstruct::FibulaPlan now = fibula_;
-    if (std::ranges::all_of(segments_, &SegmentPlace::is_placed))
-        for (std::size_t n = 0; n < segments_.size(); ++n) now.segments[n].donor_to_target = segments_[n].pose;
+    if (needs_obstacles()) make_obstacles();
+    const reconstruct::FibulaPlan now = placed_plan();
     std::vector<const rope::Obstacle*> jaw;
     for (const auto& piece : jaw_) jaw.push_back(&piece->field);
     const reconstruct::FlapObstacle bone(now, jaw, donor_ ? &donor_->field : nullptr);
@@ -101,7 +124,7 @@ reconstruct::FlapMeasures FlapStudy::measures() {
 }
 
 std::vector<reconstruct::Candidate> FlapStudy::candidates() {
-    make_obstacles();
+    if (needs_obstacles()) make_obstacles();
     std::vector<const rope::Obstacle*> jaw;
     for (const auto& piece : jaw_) jaw.push_back(&piece->field);
     return reconstruct::ranked(inputs_, flap(), {jaw, donor_ ? &donor_->field : nullptr, tumour_});

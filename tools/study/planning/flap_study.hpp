@@ -5,6 +5,7 @@
 #include "assets/cases/case_plan.hpp"
 #include "assets/reconstruct/reconstruction.hpp"
 #include "dsp/contact/voxmap.hpp"
+#include "dsp/reconstruct/flap_obstacle.hpp"
 #include "dsp/reconstruct/ranking.hpp"
 #include "dsp/reconstruct/reach.hpp"
 #include "dsp/rope/bone_field.hpp"
@@ -13,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::study {
@@ -48,17 +50,25 @@ public:
     };
     const std::vector<SegmentPlace>& segments() const { return segments_; }
 
+    /// Files of the bones of the plan that are shown, with their poses: the jaw, then the segments that are placed.
+    std::vector<std::pair<std::filesystem::path, Pose>> placed_files() const;
+    /// The segments where measures hold.
+    reconstruct::FibulaPlan placed_plan() const;
+    /// The bone of jaw and segments, frame of the jaw. It must not outlive this object.
+    reconstruct::FlapObstacle bone();
+
     reconstruct::FlapMeasures measures();
     std::vector<reconstruct::Candidate> candidates();
 
 private:
     void make_obstacles();
+    bool needs_obstacles() const;
 
     reconstruct::Reconstruction all_;
     reconstruct::FibulaInputs inputs_;
     reconstruct::FibulaPlan fibula_;
     std::vector<SegmentPlace> segments_;
-    std::vector<std::pair<std::filesystem::path, Pose>> jaw_files_;
+    std::vector<std::pair<std::filesystem::path, Pose>> jaw_files_, segment_files_;
     std::filesystem::path donor_file_;
     std::vector<Vec3> tumour_;
     std::unique_ptr<BoneAsObstacle> donor_;
