@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Turns `tactus nodes --json` (standard input) into reference/value-types.md (standard output): which node takes and gives
-which type of value. The argument is nodes/catalogue.cpp, which knows the family of each type."""
+"""Turns `tactus nodes --json` (standard input) into reference/value-types.md (standard output): the types of value that each
+node accepts and produces. The argument is nodes/catalogue.cpp, which lists the family of each type."""
 import json
 import re
 import sys
@@ -42,8 +42,8 @@ def main():
 
 # Types of nodes and of values
 
-Which node takes (*in*) and gives (*out*) which type of value. Where a node takes several types, its wires decide, and its output has the same
-type. A wire to a parameter carries a number, to any node. [Nodes](nodes.md) has the ports and units of each.""")
+The types of value that each node accepts (*in*) and produces (*out*). If a node accepts several types, its wires determine the type, and
+its output has the same type. A wire to a parameter carries a number, for every node. [Nodes](nodes.md) lists the ports and units of each.""")
     for family, types in sorted(families_of(sys.argv[1], nodes).items()):
         print(f"\n## {family}\n")
         print("| node | " + " | ".join(TYPES) + " | other |")
