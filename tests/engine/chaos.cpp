@@ -2,7 +2,6 @@
 #include "tests/engine/chaos.hpp"
 
 #include "nodes/catalogue.hpp"
-#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -206,18 +205,6 @@ std::string PatchText::toml() const {
         for (const auto& [key, value] : node.settings) text += key + " = \"" + value + "\"\n";
     }
     return text;
-}
-
-compile::Plan compile_text(const std::string& toml, compile::AssetCache* assets) {
-    patch::Problems problems;
-    const patch::Patch patch = patch::read_patch(toml, "test.toml", problems);
-    std::optional<compile::Plan> plan;
-    if (problems.empty()) plan = compile::compile(patch, chaos_catalogue(), problems);
-    compile::AssetCache own;
-    if (plan) (assets ? *assets : own).load(*plan, problems);
-    for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
-    REQUIRE(problems.empty());
-    return std::move(*plan);
 }
 
 std::string four_rates() {
