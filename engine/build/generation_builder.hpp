@@ -72,7 +72,7 @@ private:
     };
     /// Notes for each wire of `link` the same one of `old`.
     WireMatch match_wires(run::Link& link, run::Link* old) const;
-    int ring_frames(const run::GroupRuntime& group);
+    int live_frames(const run::GroupRuntime& group);
     void finish_links();
 
     // generation_programs.cpp

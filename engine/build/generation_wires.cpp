@@ -226,10 +226,10 @@ GenerationBuilder::WireMatch GenerationBuilder::match_wires(run::Link& link, run
     return match;
 }
 
-/// Activations per call that a ring has room for: a repetition in smaller blocks must keep as many values as the live run.
-int GenerationBuilder::ring_frames(const run::GroupRuntime& group) {
-    if (!group.plan->has_audio) return group.max_frames;
-    return std::max(group.max_frames, static_cast<int>(plan().patch.quantum / group.plan->period));
+/// Activations per call of a live run.
+int GenerationBuilder::live_frames(const run::GroupRuntime& group) {
+    if (!group.plan->has_audio) return 1;
+    return static_cast<int>(std::max<Flicks>(1, plan().patch.quantum / group.plan->period));
 }
 
 void GenerationBuilder::finish_links() {
@@ -248,8 +248,10 @@ void GenerationBuilder::finish_links() {
         new_links_.insert(link.get());
         link->id = context_.next_link++;
         link->continued = match.continued > 0 ? old : nullptr;
-        link->prepare(link_slack, ring_frames(*link->producer), ring_frames(*link->consumer),
-                      before_ ? run::Link::unknown : 0);
+        const run::Link::CallLengths live_calls{live_frames(*link->producer), live_frames(*link->consumer)};
+        const run::Link::CallLengths calls{std::max(live_calls.producer, link->producer->max_frames),
+                                           std::max(live_calls.consumer, link->consumer->max_frames)};
+        link->prepare(link_slack, live_calls, calls, before_ ? run::Link::unknown : 0);
         for (run::LinkWire& wire : link->wires) {
             wire.source = live(wire.source);
             wire.target = live(wire.target);

@@ -7,17 +7,20 @@
 
 namespace tactus::run {
 
-void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first) {
+void Link::prepare(Flicks slack, CallLengths live, CallLengths here, std::int64_t first) {
     first_.store(first);
     settled_.store(continued == nullptr);
     // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
-    const Flicks reach = consumer_period * consumer_frames + latency + slack;
-    depth_ = ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(producer_frames);
+    const auto needed = [&](const CallLengths& calls) {
+        const Flicks reach = consumer_period * calls.consumer + latency + slack;
+        return ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(calls.producer);
+    };
+    depth_ = ceil_div(needed(here), needed(live)) * needed(live);
     // Two groups whose calls begin together may read up to where the call before ended. Where they do not, or the
     // latency is shorter, half of it is left to the producer.
-    const bool is_in_step = producer_frames * producer_period == consumer_frames * consumer_period &&
-                            latency >= consumer_frames * consumer_period;
-    longest_call_ = is_in_step ? consumer_frames : std::max<std::int64_t>(1, latency / (2 * consumer_period));
+    const bool is_in_step = here.producer * producer_period == here.consumer * consumer_period &&
+                            latency >= here.consumer * consumer_period;
+    longest_call_ = is_in_step ? here.consumer : std::max<std::int64_t>(1, latency / (2 * consumer_period));
     const auto depth = static_cast<std::size_t>(depth_);
     stamp_ = std::vector<std::atomic<std::int64_t>>(depth);
     for (auto& stamp : stamp_) stamp.store(-1, std::memory_order_relaxed);
@@ -28,7 +31,7 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
         if (wire.starts_from_output) std::memcpy(wire.current.data(), wire.source->data, size);
         else wire.type->make_default(wire.current.data());
         wire.previous = wire.current;
-        const auto frames = static_cast<std::size_t>(consumer_frames);
+        const auto frames = static_cast<std::size_t>(here.consumer);
         const bool is_batch = wire.mode == patch::WireMode::batch;
         if (wire.mode == patch::WireMode::linear || (changes_within_calls && !is_batch))
             wire.glide.resize(size * frames);

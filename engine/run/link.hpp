@@ -63,10 +63,17 @@ public:
     /// The link of the plan before that this one continues. It must live until `settled` and one call of the producer.
     Link* continued = nullptr;
 
+    /// The longest calls of both groups, in activations.
+    struct CallLengths {
+        int producer = 1, consumer = 1;
+    };
     /// Fixes the depth of the rings and takes the outputs' present values as index −1. `slack` is how late, in flicks,
-    /// the consumer may run before publications are dropped; `max_frames` the longest calls of producer and consumer;
+    /// the consumer may run before publications are dropped; `live` are the calls of a live run, `here` those of this one;
     /// `first` the first index that will be published, `unknown` when the producer is to say it by `begin_at`.
-    void prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first = 0);
+    ///
+    /// The depth is a multiple of that in a live run: two indices that share a slot then share one in the live run, too. So
+    /// a repetition in longer calls has room wherever the live run had, also after publications that were dropped.
+    void prepare(Flicks slack, CallLengths live, CallLengths here, std::int64_t first = 0);
 
     /// Index that consumer activation `j` reads when all is in time.
     std::int64_t wanted(std::int64_t j) const {

@@ -421,7 +421,7 @@ TEST_CASE("what finds no room because the reader stands still is counted, and it
     wire.source = &output;
     wire.target = &input;
     wire.mode = patch::WireMode::batch;
-    link.prepare(64 * ms, 1, 1);
+    link.prepare(64 * ms, {}, {});
     build::EventMerge merge(input);
     merge.feeds.emplace_back().link = &wire;
     std::int64_t given = 0, counted = 0, taken = 0, lost = 0, ends = 0, done = 0;

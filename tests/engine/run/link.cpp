@@ -18,7 +18,7 @@ namespace {
 /// A writer and a reader of 1 kHz; the value at activation k is k.
 class Pair {
 public:
-    explicit Pair(patch::WireMode mode = patch::WireMode::hold) {
+    explicit Pair(patch::WireMode mode = patch::WireMode::hold, run::Link::CallLengths calls = {}) {
         output_.type = &value_type<double>();
         output_.data = reinterpret_cast<std::byte*>(&written_);
         link_.producer_period = link_.consumer_period = ms;
@@ -28,7 +28,7 @@ public:
         wire.source = &output_;
         wire.mode = mode;
         wire.target = mode == patch::WireMode::batch ? static_cast<Input*>(&batch_) : &input_;
-        link_.prepare(64 * ms, 1, 1);
+        link_.prepare(64 * ms, {}, calls);
     }
 
     /// One activation of the writer. False when there was no room for its value.
@@ -39,6 +39,13 @@ public:
         done_ = tick + 1;
         return room;
     }
+
+    /// One activation of a writer that repeats what another one did.
+    void write_if(bool is_published, std::int64_t tick) {
+        if (is_published) link_.publish(tick, 1);
+        done_ = tick + 1;
+    }
+    bool has_room(std::int64_t tick) const { return link_.has_room(tick, 1); }
 
     /// One activation of the reader: the activation whose value it got.
     double read(std::int64_t tick) {
@@ -154,4 +161,28 @@ TEST_CASE("a batch after a standstill holds all that was kept, in order") {
         wanted.insert(wanted.end() - 1, 19.0 + kept);
         CHECK(got == wanted);
     }
+}
+
+TEST_CASE("a repetition in longer calls has room for all that the live run had room for, whatever was dropped before") {
+    for (const int longer : {2, 5, 48, 480})
+        for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+            const Random random{seed};
+            Pair live, again(patch::WireMode::hold, {longer, longer});
+            CHECK(again.link().depth() > live.link().depth());
+            std::uint64_t draws = 0;
+            std::int64_t missing = 0, awake_from = 0;
+            for (std::int64_t tick = 0; tick < 2000; ++tick) {
+                const bool has_room = live.has_room(tick);
+                missing += has_room && !again.has_room(tick);
+                live.write_if(has_room, tick);
+                again.write_if(has_room, tick);
+                // The reader sleeps for up to 150 ticks, and then reads now and then.
+                if (tick < awake_from || random.uniform(draws++) < 0.3) continue;
+                if (random.uniform(draws++) < 0.02)
+                    awake_from = tick + static_cast<std::int64_t>(150.0 * random.uniform(draws++));
+                CHECK(live.read(tick) == again.read(tick));
+            }
+            INFO(longer << " activations a call, seed " << seed);
+            CHECK(missing == 0);
+        }
 }
