@@ -26,7 +26,7 @@ struct Shape {
     Param bevel{structural, "0 mm", "0 mm", "50 mm", "of a cylinder's lower rim and a hole's mouth, at 45 deg"};
     Param spacing{structural, "0.42 mm", "0.01 mm", "20 mm", "of the surface points"};
     Param voxel{structural, "0.25 mm", "0.01 mm", "20 mm", "of the distance field"};
-    Param margin{structural, "3 mm", "0.1 mm", "100 mm", "of the distance field beyond the body"};
+    Param margin{structural, "3 mm", "1 mm", "100 mm", "of the distance field beyond the body"};
     Flag triangles{false, "also make the surface triangles, for point_proxy and sphere_proxy"};
 
     void prepare(const Setup& setup) {

@@ -19,7 +19,8 @@ struct VoxmapContact {
     In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the body, about its origin", "N, N m"};
     Out<double> stiffness{
-        "of all touching points together, along the stiffest of the three axes; with 'saturation' at least the force over "
+        "of all touching points together, along the stiffest of the three axes; with 'saturation' at least the force "
+        "over "
         "its depth, so that a saturated contact has a stiffness",
         "N/m"};
     Out<double> penetration{"of the deepest point", "m"};
@@ -36,7 +37,7 @@ struct VoxmapContact {
                  .held = held}};
     }
 
-    void prepare(const Setup&) { contact_.emplace(contact.make()); }
+    void prepare(const Setup& setup) { contact_.emplace(contact.make(setup)); }
 
     void process(const Tick&) noexcept {
         contact.set(*contact_, scene, static_cast<int>(held), {});

@@ -40,16 +40,17 @@ struct DynamicCoupling {
     Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the rotational damper"};
     Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm",
-               "limit of a point's motion beyond the free distance, eight times in a tick; never more than half a "
-               "voxel of the "
-               "finest field that is touched"};
+    Param step{
+        "0.5 mm", "0.05 mm", "20 mm",
+        "limit of a point's motion beyond the free distance, eight times in a tick; never more than half a "
+        "voxel of the finest field that is touched. A lower one would hold the body back until it comes free, and "
+        "let the force jump then"};
     ContactParameters contact;
 
     std::vector<Visual> visuals() const { return {held_visual(held, grip_at)}; }
 
-    void prepare(const Setup&) {
-        contact_.emplace(contact.make());
+    void prepare(const Setup& setup) {
+        contact_.emplace(contact.make(setup));
         place = -1.0;
     }
 

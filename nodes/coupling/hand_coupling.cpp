@@ -35,13 +35,13 @@ struct HandCoupling {
 
     void process(const Tick& tick) noexcept {
         const Vec3 away = b->position - a->position, angle = rotation_between(a->orientation, b->orientation);
-        const Wrench wrench{away * stiffness.value + (b_twist->linear - a_twist->linear) * damping.value,
-                            angle * angular_stiffness.value +
-                                (b_twist->angular - a_twist->angular) * angular_damping.value};
+        const Wrench wrench{
+            away * stiffness.value + (b_twist->linear - a_twist->linear) * damping.value,
+            angle * angular_stiffness.value + (b_twist->angular - a_twist->angular) * angular_damping.value};
         on_a = wrench;
         on_b = wrench * -1.0;
-        const double stored = 0.5 * stiffness.value * glm::dot(away, away) +
-                              0.5 * angular_stiffness.value * glm::dot(angle, angle);
+        const double stored =
+            0.5 * stiffness.value * glm::dot(away, away) + 0.5 * angular_stiffness.value * glm::dot(angle, angle);
         const auto grants = energy_.tick({{{a.get(), on_a.get()}, {b.get(), on_b.get()}}}, stored,
                                          std::max(tick.elapsed_seconds(), seconds(tick.period)));
         granted_a = grants[0];

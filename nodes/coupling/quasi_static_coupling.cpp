@@ -54,8 +54,8 @@ struct QuasiStaticCoupling {
                 {.kind = VisualKind::led, .pose = "pose", .target = "target", .when = "guided"}};
     }
 
-    void prepare(const Setup&) {
-        contact_.emplace(contact.make());
+    void prepare(const Setup& setup) {
+        contact_.emplace(contact.make(setup));
         guided_contact_.emplace(*contact_);
         place = -1.0;
     }

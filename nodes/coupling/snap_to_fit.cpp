@@ -53,8 +53,8 @@ struct SnapToFit {
 
     std::vector<Visual> visuals() const { return {held_visual(held)}; }
 
-    void prepare(const Setup&) {
-        contact_.emplace(contact.make());
+    void prepare(const Setup& setup) {
+        contact_.emplace(contact.make(setup));
         moving_paint_ = surface_of(*moving);
         fixed_paint_ = surface_of(*fixed);
         energy_.reset();

@@ -18,7 +18,7 @@ struct SolverParameters {
     Param iterations{discrete, "10", "1", "50", "maximum number of solver steps in a tick"};
     Param tolerance{"0.001 N", "0 N", "1 N", "residual below which the body counts as balanced"};
     Param step{
-        "0.5 mm", "0.001 mm", "20 mm",
+        "0.5 mm", "0.05 mm", "20 mm",
         "limit of a point's motion per solver step beyond the free distance; never more than half a voxel of the "
         "finest field that is touched"};
     TACTUS_GROUP(stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step)
