@@ -41,6 +41,9 @@ struct QuasiStaticSettings {
     /// m: maximum motion of any point in one tick beyond the motion of the hand. A jump over an edge is spread over as
     /// many ticks as needed, so that the spring force changes by no more than this stretches the springs.
     double slip = std::numeric_limits<double>::infinity();
+    /// m and rad: the same for the shift and for the turn of the body by themselves, each beyond that of the hand: bounds on the change
+    /// of the two springs.
+    double shift = std::numeric_limits<double>::infinity(), turn = std::numeric_limits<double>::infinity();
     double reach = 0.05;  ///< m, greatest distance of the held body's points from the handle: the lever of rotations
     double gyration = 0.02;  ///< m: converts a torque to a force for the residual
 };
@@ -78,9 +81,15 @@ public:
     const QuasiStaticState& update(const Pose& hand, Contact&& contact) noexcept {
         state_.hand_is_valid = is_valid(hand);
         left_ = settings.slip;
+        left_shift_ = settings.shift;
+        left_turn_ = settings.turn;
         if (state_.hand_is_valid) {
             const Pose now{hand.position, glm::normalize(hand.orientation)};
-            left_ += travel_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
+            const Vec3 shift = now.position - hand_.position,
+                       turn = rotation_between(hand_.orientation, now.orientation);
+            left_ += travel_of(shift, turn);
+            left_shift_ += glm::length(shift);
+            left_turn_ += glm::length(turn);
             hand_ = now;
         }
         state_.iterations = 0;
@@ -91,12 +100,12 @@ public:
         state_.energy_before = now.energy;
         while (std::isfinite(now.energy)) {
             state_.balanced = residual(now) < settings.tolerance;
-            if (state_.balanced || state_.iterations >= settings.iterations || !may_evaluate() ||
-                !(left_ > least_way) || !improve(now, contact))
+            if (state_.balanced || state_.iterations >= settings.iterations || !may_evaluate() || !may_move() ||
+                !improve(now, contact))
                 break;
             ++state_.iterations;
         }
-        state_.is_slowed = !state_.balanced && !(left_ > least_way);
+        state_.is_slowed = !state_.balanced && !may_move();
         state_.residual = residual(now);
         state_.energy = now.energy;
         state_.contact = now.contact;
@@ -133,6 +142,7 @@ private:
         return b;
     }
 
+    bool may_move() const noexcept { return left_ > least_way && left_shift_ > least_way && left_turn_ > least_turn; }
     bool may_evaluate() const noexcept { return state_.evaluations < settings.evaluations; }
 
     double residual(const Balance& b) const noexcept {
@@ -204,6 +214,8 @@ private:
         state_.proxy = trial;
         now = there;
         left_ -= travel_of(step.displacement);
+        left_shift_ -= shift_of(step.displacement);
+        left_turn_ -= turn_of(step.displacement);
         return true;
     }
 
@@ -216,14 +228,19 @@ private:
         return travel_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
     }
 
+    static double shift_of(const geometry::Vector6& step) noexcept { return std::hypot(step[0], step[1], step[2]); }
+    static double turn_of(const geometry::Vector6& step) noexcept { return std::hypot(step[3], step[4], step[5]); }
+
     template <class Contact>
     void limit(geometry::Vector6& step, Contact& contact) const noexcept {
-        const double travel = travel_of(step);
+        const double travel = travel_of(step), shift = shift_of(step), turn = turn_of(step);
         double most = left_;
         if (travel > settings.step)
             most = std::min(most, settings.step + std::max(0.0, static_cast<double>(contact.clearance(state_.proxy))));
-        if (!(travel > most)) return;
-        const double share = most / travel;
+        double share = 1.0;
+        if (travel > most) share = most / travel;
+        if (shift > left_shift_) share = std::min(share, left_shift_ / shift);
+        if (turn > left_turn_) share = std::min(share, left_turn_ / turn);
         for (double& s : step) s *= share;
     }
 
@@ -233,13 +250,14 @@ private:
     }
 
     static constexpr int most_halvings = 6;
-    static constexpr double least_way = 1e-9;  // m
+    static constexpr double least_way = 1e-9, least_turn = 1e-8;  // m, rad
     LearnedCurvature curvature_;
     WallGuard guard_;
     QuasiStaticState state_;
     Pose hand_;
     Vec3 rotation_{0.0};
     double left_ = 0.0;  // m that the points may still move in this tick
+    double left_shift_ = 0.0, left_turn_ = 0.0;  // m and rad of the body
 };
 
 }  // namespace tactus::coupling

@@ -68,6 +68,7 @@ struct QuasiStaticCoupling {
         guide(in_hand, tick.elapsed_seconds());
         solver.set(solver_.settings, *contact_, lead_.springs());
         solver_.settings.slip = lead_.slip();
+        SolverParameters::slow_down(solver_.settings, solver_.state().proxy, device, tick.elapsed_seconds());
         if (hold_.holds) solve(in_hand);
         else let_go();
         place = hold_.place;

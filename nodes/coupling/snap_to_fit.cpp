@@ -72,6 +72,7 @@ struct SnapToFit {
                      hold_.holds && settle.connected && settle.get(), solver_.state().balanced, tick.elapsed_seconds());
         solver.set(solver_.settings, *contact_, lead_.springs());
         solver_.settings.slip = lead_.slip();
+        SolverParameters::slow_down(solver_.settings, solver_.state().proxy, device, tick.elapsed_seconds());
         if (hold_.holds) solve(in_hand, tick.elapsed_seconds());
         else let_go();
         place = hold_.place;

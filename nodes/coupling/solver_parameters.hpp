@@ -2,11 +2,14 @@
 // Parameters shared by the quasi-static couplings.
 #pragma once
 
+#include "dsp/core/rotation.hpp"
+#include "dsp/core/types.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tactus::nodes {
 
@@ -32,6 +35,21 @@ struct SolverParameters {
         settings.step = std::min(step.value, contact.safe_step());
         settings.reach = contact.reach();
         settings.gyration = contact.gyration();
+    }
+
+    /// Bounds the motion of the body in the next `elapsed` s beyond that of the hand, m and rad. Where a body tips over an edge,
+    /// its balance ends and the next one lies elsewhere: the body takes so many ticks for the way that the springs change by
+    /// no more than 100 N/s and 5 N·m/s. A saturated spring changes by its force over its stretch.
+    static void slow_down(coupling::QuasiStaticSettings& settings, const Pose& proxy, const Pose& hand,
+                          double elapsed) noexcept {
+        constexpr double force_rate = 100.0, torque_rate = 5.0;
+        settings.shift = settings.turn = std::numeric_limits<double>::infinity();
+        if (!is_valid(hand)) return;
+        const double linear = settings.springs.linear(proxy.position - hand.position).curvature;
+        const double angular =
+            settings.springs.angular(rotation_between(hand.orientation, proxy.orientation)).curvature;
+        if (linear > 0.0) settings.shift = force_rate * elapsed / linear;
+        if (angular > 0.0) settings.turn = torque_rate * elapsed / angular;
     }
 };
 
