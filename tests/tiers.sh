@@ -8,7 +8,7 @@ ledger=tests/ledger.tsv  # when each set of ./dev test --all last ran, and its r
 slice_seconds=180        # processor time that a landing spends on long cases, and again on those of changed rooms
 ledger_limit=50          # commits of the main line after which a set has to run again; a merge counts as one
 real_time='live|kernel|display'  # labels of cases that run in real time
-sets=(landing long walks asan tsan clang fuzz campaign crash chaos chaos-window bench)
+sets=(landing long walks asan tsan clang fuzz campaign crash bits chaos chaos-window bench)
 
 phases=()
 
@@ -132,6 +132,7 @@ run_set() {
         fuzz) need always clang && fuzz "" 600 ;;
         campaign) campaign 500 ;;
         crash) crash 100 ;;
+        bits) bits 300 ;;
         chaos) chaos 10m ;;
         chaos-window) chaos window 10m ;;
         bench) need bench && build release bench tactus-bench && build/release/tests/bench/bench ;;
