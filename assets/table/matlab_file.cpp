@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 namespace tactus::table {
@@ -54,7 +55,9 @@ public:
             if (element.type == packed) {
                 const std::string unpacked = unpack(element.data);
                 std::string_view inside = unpacked;
+                unpacked_ = unpacked.size();
                 if (!inside.empty()) variable(take(inside, false));
+                unpacked_ = 0;
             } else {
                 variable(element);
             }
@@ -105,6 +108,13 @@ private:
         return element;
     }
 
+    /// Each number stands in its channel, and once more in the chosen columns. `bytes`: of what is unpacked.
+    void require_room(std::size_t bytes, std::size_t numbers) const {
+        file::require_room(static_cast<double>(bytes_.size()) + static_cast<double>(bytes) +
+                               16.0 * (static_cast<double>(held_) + static_cast<double>(numbers)),
+                           file_, "its variables");
+    }
+
     std::string unpack(std::string_view data) const {
         constexpr std::size_t at_once = std::size_t{1} << 20;
         z_stream stream{};
@@ -117,7 +127,7 @@ private:
         stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
         stream.avail_in = static_cast<uInt>(data.size());
         for (int code = Z_OK; code != Z_STREAM_END;) {
-            file::require_room(static_cast<double>(out.size() + at_once), file_, "its packed variables");
+            require_room(2 * (out.size() + at_once), 0);
             const std::size_t before = out.size();
             out.resize(before + at_once);
             stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
@@ -208,17 +218,17 @@ private:
         used_ += is_used;
     }
 
-    /// "a (2)" where "a" is taken.
-    std::string own_name(const std::string& wanted) const {
+    /// "a (2)" where "a" is taken, or is the beginning of other channels: "a_1".
+    std::string own_name(const std::string& wanted) {
         std::string name = wanted;
-        for (int n = 2; is_taken(name); ++n) name = fmt::format("{} ({})", wanted, n);
+        while (taken_.contains(name)) name = fmt::format("{} ({})", wanted, ++taken_[wanted]);
         return name;
     }
 
-    bool is_taken(const std::string& name) const {
-        return std::ranges::any_of(recording_.channels, [&](const RecordedChannel& channel) {
-            return channel.name == name || channel.name.starts_with(name + "_");
-        });
+    void note_name(const std::string& name) {
+        taken_.try_emplace(name, 1);
+        for (std::size_t at = name.find('_'); at != std::string::npos; at = name.find('_', at + 1))
+            taken_.try_emplace(name.substr(0, at), 1);
     }
 
     /// Adds the columns of a numeric array; false when it holds no samples and no rate.
@@ -244,6 +254,8 @@ private:
             const auto known = std::ranges::find(lengths_, samples);
             channel.group = static_cast<std::size_t>(known - lengths_.begin());
             if (known == lengths_.end()) lengths_.push_back(samples);
+            held_ += samples;
+            note_name(channel.name);
             recording_.channels.push_back(std::move(channel));
         }
         return true;
@@ -259,7 +271,7 @@ private:
     std::vector<double> values_of(const Element& data, std::size_t count) const {
         const auto with_size = [&](std::size_t size) {
             if (count > data.data.size() / size) fail("a variable has fewer numbers than its dimensions state");
-            file::require_room(16.0 * static_cast<double>(count), file_, "a variable");
+            require_room(unpacked_, count);
             return std::vector<double>(count);
         };
         std::vector<double> values;
@@ -324,6 +336,9 @@ private:
     double rate_ = 0.0;
     std::string left_out_;
     std::vector<std::size_t> lengths_;
+    std::size_t held_ = 0;      // numbers of all channels so far
+    std::size_t unpacked_ = 0;  // bytes of the variable that is read
+    std::unordered_map<std::string, int> taken_;  // names, with how many of each
     Recording recording_;
 };
 

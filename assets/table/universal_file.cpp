@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Universal files (SDRC, 1967; kept by the University of Cincinnati): blocks of lines between lines with -1, each with the
 // number of its dataset. Dataset 58 is a function at nodal degrees of freedom, 58b the same with binary values.
+#include "assets/file/room.hpp"
 #include "assets/table/recording.hpp"
 #include "assets/table/time_unit.hpp"
 #include "dsp/core/blanks.hpp"
@@ -270,12 +271,21 @@ private:
         throw Error(SourceLocation{file_, line, 1}, message);
     }
 
+    /// Each number stands in its channel, and once more in the chosen columns.
+    void require_room(std::size_t numbers) const {
+        file::require_room(static_cast<double>(bytes_.size()) + 16.0 * static_cast<double>(held_ + numbers), file_,
+                           "its functions");
+    }
+
     void read_text(const Function& f, std::string_view data, int line, std::vector<double>& times,
                    std::vector<double>& values) const {
         const std::size_t numbers = f.is_even ? f.count : 2 * f.count;
         // A number and a blank or sign.
         if (numbers > data.size())
             fail_in(line, fmt::format("cut short: {} values are stated, more than the dataset holds", f.count));
+        require_room(numbers);
+        values.reserve(f.count);
+        if (!f.is_even) times.reserve(f.count);
         for (std::size_t n = 0; n < numbers; ++n) {
             const std::string_view word = take_number(data);
             const std::optional<double> number = number_of(word);
@@ -294,6 +304,9 @@ private:
         const std::size_t before = f.is_even ? 0 : data.size() >= f.count * (size + size) ? size : 4;
         if (f.count > data.size() / (size + before))
             fail_in(line, fmt::format("cut short: {} values are stated, more than the dataset holds", f.count));
+        require_room(before > 0 ? 2 * f.count : f.count);
+        values.reserve(f.count);
+        if (before > 0) times.reserve(f.count);
         const auto number_at = [&](std::size_t at, std::size_t width) -> double {
             std::array<char, 8> raw{};
             std::memcpy(raw.data(), data.data() + at, width);
@@ -321,7 +334,9 @@ private:
                 (f.is_even ? known.step == f.step && known.start == f.start : known.times == times))
                 group = n;
         }
+        held_ += values.size();
         if (group == clocks_.size()) {
+            held_ += 2 * times.size();  // the clock has its own
             clocks_.push_back({f.is_even, f.count, f.start, f.step, times});
             if (!f.is_even)
                 recording_.channels.push_back(
@@ -348,7 +363,7 @@ private:
 
     std::string_view bytes_;
     const std::string& file_;
-    std::size_t at_ = 0;
+    std::size_t at_ = 0, held_ = 0;  // numbers of all functions so far
     int line_ = 0, datasets_ = 0, functions_ = 0, others_ = 0, not_in_time_ = 0, complex_ = 0;
     bool is_si_ = false;
     std::vector<Clock> clocks_;

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/table/recording.hpp"
 
+#include "assets/file/room.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/written_recordings.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -239,4 +244,44 @@ TEST_CASE("variables of one name in a MATLAB file are told apart") {
     table::LogSelection how;
     how.columns = {"a (2)"};
     CHECK(largest_difference(place.load("a.mat", test::matlab_file(t + a + b), how).columns[0], wave(40, 2.0)) == 0.0);
+}
+
+TEST_CASE("the channels of all functions or variables of a file together must fit in the memory for one file") {
+    const Recordings place;
+    test::UniversalFunction f;
+    f.is_binary = true, f.type = 2, f.step = 1e-3;
+    f.values = wave(1000);
+    std::string universal, matlab;
+    for (int n = 0; n < 100; ++n) {
+        universal += test::universal_function(f);
+        matlab += test::matlab_packed(test::matlab_numbers(fmt::format("x{}", n), 1000, 1, std::vector(1000, 1.0)));
+    }
+    table::LogSelection how;
+    how.columns = {"1"}, how.rate = 1000.0;
+    const std::uint64_t before = file::memory_limit();
+    // A variable is unpacked in blocks of a megabyte, of which two are counted.
+    for (const auto& [name, bytes, limit] :
+         {std::tuple{"a.uff", universal, 1'500'000}, {"a.mat", test::matlab_file(matlab), 3'000'000}}) {
+        CAPTURE(name, bytes.size());
+        file::set_memory_limit(static_cast<std::uint64_t>(limit));
+        std::string said;
+        try {
+            place.load(name, bytes, how);
+        } catch (const file::NoRoom& error) {
+            said = error.what();
+        }
+        file::set_memory_limit(before);
+        CHECK_THAT(said, ContainsSubstring(name) && ContainsSubstring("--memory"));
+        CHECK(place.load(name, bytes, how).times.size() == 1000);
+    }
+}
+
+TEST_CASE("ten thousand variables of one name in a MATLAB file are told apart in time that grows with them") {
+    const Recordings place;
+    std::string variables;
+    for (int n = 0; n < 10000; ++n)
+        variables += test::matlab_numbers("a", 4, 1, {1.0, 2.0, 3.0, static_cast<double>(n)});
+    table::LogSelection how;
+    how.columns = {"a (10000)"}, how.rate = 1000.0;
+    CHECK(place.load("a.mat", test::matlab_file(variables), how).columns[0].back() == 9999.0);
 }
