@@ -87,6 +87,9 @@ std::optional<ColumnUnit> parse_column_unit(std::string_view text) {
         }
     std::string_view known = text;
     const std::string word = lower(text);
+    // A header in capitals: "M/S^2" divides no mega by siemens.
+    const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
+    if (text.find('/') != std::string_view::npos && std::ranges::none_of(text, is_small)) known = word;
     for (const auto& [spelling, usual] : spellings)
         if (word == spelling) known = usual;
     try {

@@ -50,6 +50,9 @@ private:
     std::size_t find(const std::string& wanted, const char* what) const {
         const std::vector<std::string>& names = shape_.names;
         const auto found = std::find(names.begin(), names.end(), wanted);
+        if (std::count(names.begin(), names.end(), wanted) > 1)
+            fail(fmt::format("there are several columns '{}'; choose by number, from 1: {}", wanted,
+                             fmt::join(names, ", ")));
         if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
         const auto bare = std::ranges::find(out_.named, wanted, &NamedColumn::name);
         if (bare != out_.named.end()) return static_cast<std::size_t>(bare - out_.named.begin());
@@ -70,8 +73,7 @@ private:
 
     std::optional<std::size_t> found_time() const {
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
-            if (can_be_time(i) &&
-                (shape_.header_line > 0 ? is_time_name(out_.named[i].name) : shape_.names.size() > 1))
+            if (can_be_time(i) && (shape_.header_line > 0 ? is_time_name(out_.named[i].name) : shape_.names.size() > 1))
                 return i;
         for (std::size_t i = 0; i < shape_.names.size(); ++i)
             if (can_be_time(i) && shape_.kinds[i] == CellKind::time) return i;
@@ -160,7 +162,8 @@ private:
         for (const std::size_t value : out_.values) {
             std::size_t clock = *out_.time;
             for (std::size_t i = 0; i < value; ++i)
-                if (is_clock(i) && i + 1 < shape_.names.size() && !is_clock(i + 1) && shape_.kinds[i] == CellKind::number)
+                if (is_clock(i) && i + 1 < shape_.names.size() && !is_clock(i + 1) &&
+                    shape_.kinds[i] == CellKind::number)
                     clock = i;
             // Several clocks side by side, before all values: the first counts.
             bool is_between = clock == *out_.time;
@@ -178,17 +181,17 @@ private:
 public:
     static bool names_source(std::string_view name) {
         const std::string word = lower(name);
-        constexpr std::array<std::string_view, 18> sensors{"sensor", "device", "node", "instance", "imu", "source",
-                                                           "address", "addr", "mac", "probe", "sensortype", "sensorid",
-                                                           "deviceid", "i", "id", "channel", "type", "kanal"};
+        constexpr std::array<std::string_view, 18> sensors{
+            "sensor", "device",     "node",     "instance", "imu", "source", "address", "addr", "mac",
+            "probe",  "sensortype", "sensorid", "deviceid", "i",   "id",     "channel", "type", "kanal"};
         if (std::ranges::find(sensors, word) != sensors.end()) return true;
         bool is_sensor = false, is_number = false;
         for (std::size_t at = 0; at < word.size();) {
             const std::size_t end = std::min(word.find_first_of(" _-.:/", at), word.size());
             const std::string_view part = std::string_view(word).substr(at, end - at);
             is_sensor = is_sensor || std::ranges::find(sensors, part) != sensors.end();
-            is_number = is_number || part == "id" || part == "name" || part == "nr" || part == "no" || part == "number" ||
-                        part == "index" || part == "type";
+            is_number = is_number || part == "id" || part == "name" || part == "nr" || part == "no" ||
+                        part == "number" || part == "index" || part == "type";
             at = end + 1;
         }
         return is_sensor && is_number;
@@ -206,7 +209,8 @@ private:
         if (shape_.header_line == 0) return;
         for (std::size_t i = 0; i < shape_.names.size(); ++i) {
             if (i == out_.time || i == out_.where || std::ranges::find(out_.values, i) != out_.values.end()) continue;
-            if (shape_.kinds[i] == CellKind::word || (shape_.kinds[i] == CellKind::number && names_source(shape_.names[i])))
+            if (shape_.kinds[i] == CellKind::word ||
+                (shape_.kinds[i] == CellKind::number && names_source(shape_.names[i])))
                 out_.sources.push_back(i);
         }
     }

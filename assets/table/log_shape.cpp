@@ -62,8 +62,9 @@ std::optional<std::pair<double, std::string>> number_in_text(std::string_view te
     if (begin == std::string_view::npos) return std::nullopt;
     std::string rest(text.substr(begin, 64));
     // "0,0005": no list of a rate has less than three digits behind a comma that separates.
-    if (const std::size_t comma = rest.find_first_not_of("0123456789"); comma != std::string::npos && comma + 1 < rest.size() &&
-        rest[comma] == ',' && rest[comma + 1] >= '0' && rest[comma + 1] <= '9')
+    if (const std::size_t comma = rest.find_first_not_of("0123456789");
+        comma != std::string::npos && comma + 1 < rest.size() && rest[comma] == ',' && rest[comma + 1] >= '0' &&
+        rest[comma + 1] <= '9')
         rest[comma] = '.';
     char* end = nullptr;
     const double number = std::strtod(rest.c_str(), &end);
@@ -80,22 +81,23 @@ std::optional<std::pair<double, std::string>> number_in_text(std::string_view te
 /// Hz: "# sample rate: 3.2 kHz", "Sampling frequency,1000,Hz", "Sample Interval,1e-05,s".
 std::optional<double> rate_in(std::string_view line) {
     const std::string text = lower(line);
-    const auto behind = [&](std::initializer_list<std::string_view> names) -> std::optional<std::pair<double, std::string>> {
+    const auto behind =
+        [&](std::initializer_list<std::string_view> names) -> std::optional<std::pair<double, std::string>> {
         for (const std::string_view name : names)
             if (const std::size_t at = text.find(name); at != std::string::npos)
                 return number_in_text(std::string_view(text).substr(at + name.size()));
         return std::nullopt;
     };
-    if (const auto found = behind({"sample rate", "samplerate", "sample_rate", "sampling rate", "sampling_rate", "samplingrate",
-                                   "sampling frequency", "sample frequency", "sampling freq", "samples per second",
-                                   "abtastrate", "abtastfrequenz"})) {
+    if (const auto found = behind({"sample rate", "samplerate", "sample_rate", "sampling rate", "sampling_rate",
+                                   "samplingrate", "sampling frequency", "sample frequency", "sampling freq",
+                                   "samples per second", "abtastrate", "abtastfrequenz"})) {
         const auto& [number, unit] = *found;
         if (unit.starts_with("khz") || unit.starts_with("ks")) return 1e3 * number;
         if (unit.starts_with("mhz") || unit.starts_with("ms")) return 1e6 * number;
         return number;
     }
-    if (const auto found = behind({"sample interval", "sampling interval", "sample period", "sampling period", "delta_x",
-                                   "time increment", "abtastintervall"})) {
+    if (const auto found = behind({"sample interval", "sampling interval", "sample period", "sampling period",
+                                   "delta_x", "time increment", "abtastintervall"})) {
         const auto& [number, unit] = *found;
         return unit.starts_with("ms") ? 1e3 / number : unit.starts_with("us") ? 1e6 / number : 1.0 / number;
     }
@@ -379,7 +381,8 @@ private:
         const std::string text = lower(line);
         if (const std::size_t at = text.find("sensitivity"); at != std::string::npos && shape.sensitivity.empty()) {
             std::string_view rest = trimmed(line.substr(at + 11));
-            while (!rest.empty() && (rest.front() == ':' || rest.front() == '=' || rest.front() == ',' || rest.front() == ';'))
+            while (!rest.empty() &&
+                   (rest.front() == ':' || rest.front() == '=' || rest.front() == ',' || rest.front() == ';'))
                 rest = trimmed(rest.substr(1));
             const std::size_t end = std::min(rest.find_first_of(",;"), rest.size());
             if (rest.find('/') < end) shape.sensitivity = as_utf8(trimmed(rest.substr(0, end)));
@@ -419,8 +422,11 @@ CellKind kind_of(std::string_view field) {
         field.find_first_of("0123456789") != std::string_view::npos && field.front() != 'e' && field.front() != 'E')
         return CellKind::number;
     const std::string word = lower(field);
-    for (const std::string_view lost : {"nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf", "-", "--",
-                                        "infinity", "-infinity", "-nan", "+nan"})
+    for (const std::string_view lost :
+         {"nan",       "na",      "n/a",      "#n/a",     "null",      "none",   "inf",     "-inf",
+          "+inf",      "-",       "--",       "infinity", "-infinity", "-nan",   "+nan",    "nan(ind)",
+          "-nan(ind)", "1.#qnan", "-1.#qnan", "1.#ind",   "-1.#ind",   "1.#inf", "-1.#inf", "#value!",
+          "#div/0!",   "#num!",   "#ref!",    "#nv",      "#wert!"})
         if (word == lost) return CellKind::lost;
     return split_measure(field) ? CellKind::number : CellKind::word;
 }

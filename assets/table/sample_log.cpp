@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/table/clock_time.hpp"
 #include "assets/table/decimal_sign.hpp"
+#include "assets/table/label_track.hpp"
 #include "assets/table/log_columns.hpp"
 #include "assets/table/log_lines.hpp"
 #include "assets/table/log_shape.hpp"
@@ -44,7 +45,7 @@ public:
         : lines_(std::move(source)),
           file_(file),
           selection_(selection),
-          shape_(find_log_shape(lines_.head(std::size_t{4} << 20), file, selection.skip_rows)),
+          shape_(shape_of(lines_.head(std::size_t{4} << 20), file, selection)),
           sign_(shape_.separator) {}
 
     SampleLog read() {
@@ -84,10 +85,23 @@ private:
         fail_at(line_, static_cast<int>(field) + 1, message);
     }
 
+    static LogShape shape_of(std::string_view head, const std::string& file, const LogSelection& selection) {
+        if (selection.columns.empty() && selection.time_column.empty() && is_label_track(head))
+            throw Error(
+                fmt::format("{}: these are labels of a sound (start, end, text), as Audacity exports them, and no "
+                            "samples; give the sound itself, and the stretch of a label with --from and --to",
+                            file));
+        return find_log_shape(head, file, selection.skip_rows);
+    }
+
     void choose() {
         columns_ = choose_log_columns(shape_, fields_, file_, selection_);
         for (const std::size_t column : columns_.values) {
-            log_.names.push_back(columns_.named[column].name);
+            std::string name = columns_.named[column].name;
+            // Two columns of one name are told apart.
+            if (std::ranges::count(columns_.named, name, &NamedColumn::name) > 1)
+                name += fmt::format(" (column {})", column + 1);
+            log_.names.push_back(std::move(name));
             log_.units.push_back(columns_.named[column].unit);
             needed_ = std::max(needed_, column);
         }
@@ -203,6 +217,12 @@ private:
             ++log_.lost_rows;
             return;
         }
+        // "0.5,1,25": half of a number with a decimal comma would be lost.
+        for (std::size_t extra = shape_.names.size(); extra < fields_.size(); ++extra)
+            if (kind_of(fields_[extra]) == CellKind::number)
+                fail_at(line_, 1,
+                        fmt::format("the row has {} fields, and there are {} columns; are commas decimal here?",
+                                    fields_.size(), shape_.names.size()));
         std::optional<double> time;
         if (columns_.time) time = time_in(*columns_.time);
         else time = index / columns_.rate;

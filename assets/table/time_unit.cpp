@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace tactus::table {
@@ -51,13 +52,15 @@ std::span<const TimeUnit> time_units() {
 
 std::optional<TimeUnit> time_unit_of_word(std::string_view word) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 35> words{
-        {{"s", "s"},           {"sec", "s"},          {"secs", "s"},         {"second", "s"},        {"seconds", "s"},
-         {"sek", "s"},         {"sekunden", "s"},     {"ms", "ms"},          {"msec", "ms"},         {"msecs", "ms"},
-         {"milli", "ms"},      {"millis", "ms"},      {"millisec", "ms"},    {"millisecs", "ms"},    {"millisecond", "ms"},
-         {"milliseconds", "ms"}, {"us", "us"},        {"µs", "us"},          {"μs", "us"},           {"usec", "us"},
-         {"usecs", "us"},      {"micro", "us"},       {"micros", "us"},      {"microsec", "us"},     {"microsecs", "us"},
-         {"microsecond", "us"}, {"microseconds", "us"}, {"ns", "ns"},        {"nsec", "ns"},         {"nano", "ns"},
-         {"nanos", "ns"},      {"nanosec", "ns"},     {"nanosecs", "ns"},    {"nanosecond", "ns"},   {"nanoseconds", "ns"}}};
+        {{"s", "s"},          {"sec", "s"},          {"secs", "s"},          {"second", "s"},
+         {"seconds", "s"},    {"sek", "s"},          {"sekunden", "s"},      {"ms", "ms"},
+         {"msec", "ms"},      {"msecs", "ms"},       {"milli", "ms"},        {"millis", "ms"},
+         {"millisec", "ms"},  {"millisecs", "ms"},   {"millisecond", "ms"},  {"milliseconds", "ms"},
+         {"us", "us"},        {"µs", "us"},          {"μs", "us"},           {"usec", "us"},
+         {"usecs", "us"},     {"micro", "us"},       {"micros", "us"},       {"microsec", "us"},
+         {"microsecs", "us"}, {"microsecond", "us"}, {"microseconds", "us"}, {"ns", "ns"},
+         {"nsec", "ns"},      {"nano", "ns"},        {"nanos", "ns"},        {"nanosec", "ns"},
+         {"nanosecs", "ns"},  {"nanosecond", "ns"},  {"nanoseconds", "ns"}}};
     const std::string small = lower(word);
     for (const auto& [known, symbol] : words)
         if (small == known) return unit_named(symbol);
@@ -65,7 +68,10 @@ std::optional<TimeUnit> time_unit_of_word(std::string_view word) {
 }
 
 std::optional<TimeUnit> time_unit_in_name(std::string_view name) {
-    const std::vector<std::string> words = words_of(name);
+    std::vector<std::string> words = words_of(name);
+    const std::vector<std::string> small = words_of(lower(name));
+    // Capitals may also begin no words, "tImE_mS": what stands between other characters counts first.
+    words.insert(words.end(), small.begin(), small.end());
     for (std::size_t i = words.size(); i-- > 0;) {
         // "milli seconds"
         if (i > 0 && (words[i].starts_with("sec")) &&
@@ -81,17 +87,17 @@ std::optional<TimeUnit> time_unit_in_name(std::string_view name) {
 }
 
 bool is_time_name(std::string_view name) {
-    const std::vector<std::string> words = words_of(name);
     const std::string whole = lower(name);
+    std::vector<std::string> words = words_of(name);
+    // Capitals may also begin no words: "tImE_mS".
+    if (words.size() > 1) std::ranges::copy(words_of(whole), std::back_inserter(words));
     if (whole == "x_value" || whole == "date/time" || whole == "date time") return true;
     if (words.size() == 1 && (words[0] == "t" || time_unit_of_word(words[0]))) return true;
     if (whole.starts_with("t_")) return true;
     return std::ranges::any_of(words, [](const std::string& word) {
-        if (word.starts_with("time") || word.ends_with("time"))
-            return word != "timer" && !word.starts_with("timeout");
-        for (const std::string_view known :
-             {"timestamp", "elapsed", "millis", "micros", "nanos", "zeit", "zeitstempel", "temps", "tid", "tiempo",
-              "tempo", "tempi", "epoch"})
+        if (word.starts_with("time") || word.ends_with("time")) return word != "timer" && !word.starts_with("timeout");
+        for (const std::string_view known : {"timestamp", "elapsed", "millis", "micros", "nanos", "zeit", "zeitstempel",
+                                             "temps", "tid", "tiempo", "tempo", "tempi", "epoch"})
             if (word == known) return true;
         return false;
     });
@@ -123,8 +129,9 @@ TimeUnitGuess guess_time_unit(double first_time, double step) {
     return guess;
 }
 
-SettledTimeUnit settle_time_unit(std::span<const double> times, double origin, double rate, const std::string& rate_place,
-                                 const std::string& column, const std::function<void(const std::string&)>& fail) {
+SettledTimeUnit settle_time_unit(std::span<const double> times, double origin, double rate,
+                                 const std::string& rate_place, const std::string& column,
+                                 const std::function<void(const std::string&)>& fail) {
     const double step = mean_step(times);
     if (step == 0.0) return {time_units().front(), ""};
     const TimeUnitGuess guess = guess_time_unit(origin + times.front(), step);
@@ -140,12 +147,13 @@ SettledTimeUnit settle_time_unit(std::span<const double> times, double origin, d
                                : fmt::format("no unit is stated; only {} is plausible", at_rate(guess.fitting[0]))};
     std::vector<std::string> rates;
     for (const TimeUnit& unit : guess.fitting) rates.push_back(at_rate(unit));
-    fail(fmt::format("the times in column '{}' have no unit, and {}; state it with --time-unit{}", column,
-                     rates.empty() ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
-                                   : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
-                     rates.empty() ? ": s, ms, us or ns"
-                                   : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol,
-                                                 guess.fitting.back().symbol)));
+    fail(fmt::format(
+        "the times in column '{}' have no unit, and {}; state it with --time-unit{}", column,
+        rates.empty() ? fmt::format("in none is their mean step of {:.4g} a rate of 10 Hz to 200 kHz", step)
+                      : fmt::format("their mean step of {:.4g} may be in {}", step, fmt::join(rates, " or in ")),
+        rates.empty()
+            ? ": s, ms, us or ns"
+            : fmt::format(" {} or --time-unit {}", guess.fitting.front().symbol, guess.fitting.back().symbol)));
     return {};
 }
 

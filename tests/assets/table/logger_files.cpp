@@ -228,8 +228,9 @@ TEST_CASE("the files of measurement programs, oscilloscopes and serial monitors 
 
 TEST_CASE("a rate that stands above the rows is used without times, and decides their unit") {
     using namespace std::string_literals;
-    for (const std::string& line : {"# sample rate: 1.6 kHz"s, "Sampling frequency [Hz]: 1600"s, "% fs ; samplerate = 1600"s,
-                                   "# Sample Interval: 0.625 ms"s, "# Abtastrate 1600 Hz"s}) {
+    for (const std::string& line :
+         {"# sample rate: 1.6 kHz"s, "Sampling frequency [Hz]: 1600"s, "% fs ; samplerate = 1600"s,
+          "# Sample Interval: 0.625 ms"s, "# Abtastrate 1600 Hz"s}) {
         CAPTURE(line);
         const table::SampleLog log = read_logger(line + "\nax\n1.5\n2.5\n3.5\n");
         CHECK(log.times[1] == Approx(1.0 / 1600.0));
@@ -244,7 +245,8 @@ TEST_CASE("a table of several sensors is refused with their names, or read for o
     for (int i = 0; i < 40; ++i) text += std::to_string(i) + (i % 2 == 0 ? ",1," : ",2,") + std::to_string(i) + "\n";
     for (int i = 0; i < 40; ++i)
         blocks += std::to_string(i % 20) + (i < 20 ? ",left," : ",right,") + std::to_string(i) + "\n";
-    for (int i = 0; i < 40; ++i) words += std::to_string(i) + (i % 2 == 0 ? ",acc," : ",gyr,") + std::to_string(i) + "\n";
+    for (int i = 0; i < 40; ++i)
+        words += std::to_string(i) + (i % 2 == 0 ? ",acc," : ",gyr,") + std::to_string(i) + "\n";
     CHECK_THROWS_WITH(read_logger(text), ContainsSubstring("l.csv:1:2") && ContainsSubstring("2 sensors") &&
                                              ContainsSubstring("1 (20 rows), 2 (20 rows)") &&
                                              ContainsSubstring("--where \"SENSOR=1\""));
@@ -276,8 +278,8 @@ TEST_CASE("columns follow the clock to their left, clocks of different rates are
     }
     table::LogSelection selection;
     selection.columns = {"acc", "vel"};
-    CHECK_THROWS_WITH(read_logger(text, selection), ContainsSubstring("different rates: t1_ms, t2_ms") &&
-                                                        ContainsSubstring("--time-column"));
+    CHECK_THROWS_WITH(read_logger(text, selection),
+                      ContainsSubstring("different rates: t1_ms, t2_ms") && ContainsSubstring("--time-column"));
     CHECK(read_logger(same, selection).times[1] == Approx(1e-3));
     selection.columns = {"vel"};
     CHECK(read_logger(text, selection).times[1] == Approx(2.5e-3));
@@ -289,8 +291,10 @@ TEST_CASE("columns follow the clock to their left, clocks of different rates are
     CHECK(read_logger(text, selection).times[1] == Approx(1e-3));
 }
 
-TEST_CASE("units, rates and sensitivities in the headers of scopes and programs, and statistics below rows, are understood") {
-    table::SampleLog log = read_logger("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n");
+TEST_CASE(
+    "units, rates and sensitivities in the headers of scopes and programs, and statistics below rows, are understood") {
+    table::SampleLog log =
+        read_logger("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-02,1.0e-05\n0,1.5,,\n1,2.5,,\n2,3.5,,\n");
     CHECK(log.names == std::vector<std::string>{"CH1"});
     CHECK(log.times[1] == Approx(1e-5));
     CHECK_THAT(log.form.time, ContainsSubstring("100000 Hz, as line 2 states"));
@@ -307,4 +311,55 @@ TEST_CASE("units, rates and sensitivities in the headers of scopes and programs,
     CHECK(log.times.size() == 50);
     CHECK(log.form.trailer == 3);
     CHECK_THAT(table::describe(log.form), ContainsSubstring("3 lines of statistics"));
+}
+
+TEST_CASE("labels of a sound are refused as such, and tables of their form are read") {
+    const std::string_view labels[] = {
+        "0.000000\t1.250000\tcutting\n1.250000\t3.400000\tfree air\n4.000000\t5.250000\ta -> b\n",
+        "0.000000\t1.250000\tcutting\r\n\\\t100.0\t2000.0\r\n1.000000\t3.400000\tall\r\n\\\t1.0\t2000.0\r\n",
+        "0,000000\t1,250000\tcutting\n1,250000\t3,400000\t1\n",
+        "0.500000\t1.000000\t1\n1.500000\t2.000000\t2\n2.500000\t3.000000\t3\n3.500000\t4.000000\t4\n",
+        "0.500000\t0.500000\t\n1.500000\t1.500000\t\n2.500000\t2.500000\t\n",
+        "0.500000\t9.500000\tcut\n",
+    };
+    for (const std::string_view text : labels) {
+        CAPTURE(text);
+        CHECK_THROWS_WITH(read_logger(text), ContainsSubstring("labels of a sound") && ContainsSubstring("--from"));
+    }
+    // Whoever names columns means them.
+    CHECK(read_logger(labels[3], {.time_column = "1", .columns = {"2"}, .time_unit = "s"}).times.size() == 4);
+    std::string resting, moving;
+    for (int i = 0; i < 40; ++i) {
+        resting += fmt::format("{:.6f}\t9.810000\tok\n", 0.01 * i);
+        moving += fmt::format("{:.6f}\t{:.6f}\t{}\n", 0.01 * i, 0.01 * i + 0.02 * (i % 3), i % 7);
+    }
+    CHECK(read_logger(resting, {.time_column = {}, .columns = {}, .time_unit = "s"}).times.size() == 40);
+    CHECK_THROWS_WITH(read_logger(moving), ContainsSubstring("--column"));
+}
+
+TEST_CASE("capitals in headers, odd words for no number and columns of one name are understood") {
+    const table::SampleLog capitals = read_logger("TIME (MS),ACC X (M/S^2),ACC Y (MM/S^2)\n0,1,2\n1,3,4\n2,5,6\n");
+    CHECK(capitals.times[1] == Approx(1e-3));
+    CHECK(capitals.units[0]->si == 1.0);
+    CHECK(capitals.units[1]->si == Approx(1e-3));
+    CHECK(read_logger("tImE_mS;aCcEl_X [G]\n0;1\n1;2\n2;3\n").times[1] == Approx(1e-3));
+    std::string text = "time_s,ax\n";
+    for (const char* word : {"1.5", "1.#QNAN", "-1.#IND", "1.#INF", "-nan(ind)", "#DIV/0!", "#N/A", "inf", "2.5"})
+        text += fmt::format("{},{}\n", 0.001 * static_cast<double>(text.size()), word);
+    const table::SampleLog lost = read_logger(text);
+    CHECK(lost.columns[0] == std::vector{1.5, 2.5});
+    CHECK(lost.lost_rows == 7);
+    const std::string_view twice = "time_s,ax,ax\n0,1,2\n0.001,3,4\n0.002,5,6\n";
+    CHECK(read_logger(twice).names == std::vector<std::string>{"ax (column 2)", "ax (column 3)"});
+    CHECK_THROWS_WITH(read_logger(twice, {.time_column = {}, .columns = {"ax"}, .time_unit = {}}),
+                      ContainsSubstring("several columns 'ax'"));
+    CHECK(read_logger(twice, {.time_column = {}, .columns = {"3"}, .time_unit = {}}).columns[0] ==
+          std::vector{2.0, 4.0, 6.0});
+}
+
+TEST_CASE("a number beyond the columns is refused, a word or a separator there is not") {
+    const std::string rows = "time_s,ax\n0.000,1.5\n0.001,2.5\n0.002,3.5\n0.003,4.5\n";
+    CHECK_THROWS_WITH(read_logger(rows + "0.004,5,5\n0.005,6.5\n"),
+                      ContainsSubstring("l.csv:6:1") && ContainsSubstring("are commas decimal"));
+    CHECK(read_logger(rows + "0.004,5.5,\n0.005,6.5,hit\n").columns[0].size() == 6);
 }
