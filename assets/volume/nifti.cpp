@@ -92,7 +92,8 @@ Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
     fields.bytes.resize(540);
     file.read(std::span(fields.bytes).subspan(348));
     const bool is_pair = std::memcmp(&fields.bytes[4], "ni2", 4) == 0;
-    if (!is_pair && std::memcmp(&fields.bytes[4], "n+2", 4) != 0) throw Error(fmt::format("{}: not a NIfTI-2 header", name));
+    if (!is_pair && std::memcmp(&fields.bytes[4], "n+2", 4) != 0)
+        throw Error(fmt::format("{}: not a NIfTI-2 header", name));
     Header h = take<std::int64_t, double, std::int32_t>(fields, {16, 104, 352, 376, 400, 176, 184, 12, 344, 348, 504});
     h.vox_offset = static_cast<double>(fields.get<std::int64_t>(168));
     h.units = fields.get<std::int32_t>(500);
@@ -140,6 +141,20 @@ SampleMap<Frame::ras> from_quaternion(const Header& h, double unit) {
     return map;
 }
 
+// A quaternion longer than 1 is no rotation, and a negative spacing would mirror: which of them is wrong is not known.
+void check_quaternion(const Header& h, const std::string& name) {
+    double square = 0.0;
+    for (const double part : h.quatern) square += part * part;
+    if (square > 1.001)
+        throw Error(
+            fmt::format("{}: the quaternion of its qform has a length of {:.4g}, more than 1; correct the header", name,
+                        std::sqrt(square)));
+    for (std::size_t n = 1; n < 4; ++n)
+        if (h.pixdim[n] < 0.0)
+            throw Error(fmt::format("{}: the voxel spacing along axis {} is {:g}; a qform needs spacings above 0", name,
+                                    n - 1, h.pixdim[n]));
+}
+
 void read_geometry(const Header& h, ScanVolume& volume, const std::string& name) {
     const int code = h.units & 7;
     const double unit = code == 1 ? 1.0 : code == 3 ? 1e-6 : 1e-3;
@@ -148,6 +163,7 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
             fmt::format("{}: has neither sform nor qform, so left and right are unknown; set one where the file "
                         "was made",
                         name));
+    if (h.sform <= 0) check_quaternion(h, name);
     const SampleMap<Frame::ras> map = h.sform > 0 ? from_rows(h, unit) : from_quaternion(h, unit);
     volume.map = to_lps(map);
     volume.file_frame = Frame::ras;
@@ -170,8 +186,8 @@ std::filesystem::path other_of_pair(const std::filesystem::path& path, const cha
     std::string wanted = ending;
     if (is_capital)
         for (char& c : wanted) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    for (const std::filesystem::path& other :
-         {std::filesystem::path(stem).replace_extension(wanted), std::filesystem::path(stem).replace_extension(wanted + ".gz")})
+    for (const std::filesystem::path& other : {std::filesystem::path(stem).replace_extension(wanted),
+                                               std::filesystem::path(stem).replace_extension(wanted + ".gz")})
         if (std::filesystem::exists(other)) return other;
     throw Error(fmt::format("{}: the other file of the pair, {}, is missing", path.string(),
                             std::filesystem::path(stem).replace_extension(wanted).filename().string()));

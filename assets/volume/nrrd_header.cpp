@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <utility>
@@ -248,7 +249,10 @@ private:
     void read_origin(std::string_view rest) {
         const Vec3 origin = take_vector(rest);
         if (!without_blanks(rest).empty()) fail("text follows the space origin");
+        // "(nan,nan,nan)" is an unknown origin.
         if (is_finite(origin)) out_.origin = origin;
+        else if (!std::isnan(origin.x) || !std::isnan(origin.y) || !std::isnan(origin.z))
+            fail("the space origin is not a place");
     }
 
     void read_units(std::string_view rest) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
@@ -322,4 +323,35 @@ TEST_CASE("a DICOM file of a kind with frames that does not count them is refuse
     bytes.erase(at, 8 + static_cast<std::size_t>(bytes[at + 6]));
     CHECK_THROWS_WITH(volume::read_volume(place.write("v.dcm", bytes)),
                       ContainsSubstring("without a number of frames"));
+}
+
+TEST_CASE("a NIfTI header whose qform is no rotation, and an NRRD origin that is no place, are refused") {
+    const Place place;
+    const std::string good = nifti_bytes(ramp(), {.quaternion = true});
+    check_same(volume::read_volume(place.write("a.nii", good)), ramp());
+    const auto with = [&](std::size_t at, float value) {
+        std::string bytes = good;
+        std::memcpy(&bytes[at], &value, sizeof value);
+        return place.write("a.nii", bytes);
+    };
+    constexpr std::size_t quatern_b = 256, pixdim_2 = 84, offset_x = 268;
+    CHECK_THROWS_WITH(volume::read_volume(with(quatern_b, 1.2f)), ContainsSubstring("has a length of"));
+    CHECK_THROWS_AS(volume::read_volume(with(quatern_b, std::nanf(""))), Error);
+    CHECK_THROWS_WITH(volume::read_volume(with(pixdim_2, -0.6f)), ContainsSubstring("spacing along axis 1 is -0.6"));
+    CHECK_THROWS_WITH(volume::read_volume(with(pixdim_2, 0.0f)), ContainsSubstring("spacing along axis 1"));
+    CHECK_THROWS_WITH(volume::read_volume(with(offset_x, INFINITY)), ContainsSubstring("is not a number"));
+    // A scale of 0 is none, as the format defines.
+    std::string unscaled = nifti_bytes(ramp());
+    const float zero = 0.0f;
+    std::memcpy(&unscaled[112], &zero, sizeof zero);
+    CHECK(volume::read_volume(place.write("b.nii", unscaled)).values[0] == (ramp().hu[0] + 1000) / 2);
+
+    const std::string nrrd = nrrd_bytes(ramp());
+    const std::size_t at = nrrd.find("space origin: ") + 14, end = nrrd.find('\n', at);
+    const auto with_origin = [&](const std::string& origin) {
+        return place.write("a.nrrd", std::string(nrrd).replace(at, end - at, origin));
+    };
+    CHECK_THROWS_WITH(volume::read_volume(with_origin("(0,inf,0)")), ContainsSubstring("origin is not a place"));
+    CHECK_THROWS_WITH(volume::read_volume(with_origin("(0,nan,0)")), ContainsSubstring("origin is not a place"));
+    CHECK_THAT(volume::read_volume(with_origin("(nan,nan,nan)")).notes.at(0), ContainsSubstring("no space origin"));
 }
