@@ -14,6 +14,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace tactus::sound {
@@ -86,7 +87,12 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info, std::st
     } else {
         file.reset(sf_open(path.c_str(), SFM_READ, &info));
     }
-    if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
+    if (!file) {
+        const std::string_view why = sf_strerror(nullptr);
+        // What libsndfile says of headers without a rate, and of chunks that follow each other in no known order.
+        if (why.starts_with("Internal error")) fail("cannot be read as sound: its header is damaged");
+        fail(fmt::format("cannot be read as sound: {}", why));
+    }
     if (info.frames <= 0) fail("the sound is empty");
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
     if (info.samplerate > fastest_rate)

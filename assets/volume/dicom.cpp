@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -129,6 +130,47 @@ void set_aside(Images& images, const char* what, const std::function<bool(const 
     notes.push_back("left out: " + counted(others, what));
 }
 
+std::string uid_and_count(const std::string& uid, const Images& images) {
+    return fmt::format("{}, {} {}", uid, images.size(), images.size() == 1 ? "image" : "images");
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// Whether the images are the even slices of one scan, as when an archive split it over several series.
+bool is_one_scan(const Images& images) {
+    const DicomImage& first = images.front();
+    const Vec3 across = glm::cross(first.along_row, first.along_column);
+    if (images.size() < 4 || !first.position || glm::length(across) < 0.5) return false;
+    std::vector<double> heights, gaps;
+    for (const DicomImage& image : images) {
+        if (!image.position || image.rows != first.rows || image.columns != first.columns ||
+            glm::length(image.along_row - first.along_row) + glm::length(image.along_column - first.along_column) >
+                1e-3 ||
+            std::abs(image.row_spacing - first.row_spacing) > 1e-4)
+            return false;
+        heights.push_back(glm::dot(glm::normalize(across), *image.position));
+    }
+    std::ranges::sort(heights);
+    for (std::size_t n = 1; n < heights.size(); ++n) gaps.push_back(heights[n] - heights[n - 1]);
+    const double middle = median_of(gaps);
+    return std::ranges::all_of(gaps, [&](double gap) { return std::abs(gap - middle) < 0.1 * middle; });
+}
+
+// The words between commas.
+std::vector<std::string> wanted_series(const std::string& list) {
+    std::vector<std::string> words;
+    for (std::size_t at = 0; at <= list.size() && !list.empty();) {
+        const std::size_t end = std::min(list.find(',', at), list.size());
+        words.push_back(list.substr(at, end - at));
+        at = end + 1;
+    }
+    return words;
+}
+
 // The images of the selected series, or of the only one. Scout views are not counted. Everything that is left out is noted.
 Images choose(Images all, const std::string& wanted, const std::string& place, std::vector<std::string>& notes) {
     if (std::ranges::all_of(all, &DicomImage::is_colour))
@@ -139,36 +181,51 @@ Images choose(Images all, const std::string& wanted, const std::string& place, s
     std::string list;
     std::vector<std::string> fitting;
     std::size_t positions = 0;
+    const auto is_scout = [](const Images& images) { return std::ranges::all_of(images, &DicomImage::is_localizer); };
     for (const auto& [uid, images] : series) {
-        const bool is_scout = std::ranges::all_of(images, &DicomImage::is_localizer);
         list += fmt::format("\n  {}  {} {} \"{}\"{}", uid, images.size(), images.size() == 1 ? "image" : "images",
-                            images.front().description, is_scout ? " (scout view)" : "");
-        if (wanted.empty() ? !is_scout : uid.ends_with(wanted)) fitting.push_back(uid);
+                            images.front().description, is_scout(images) ? " (scout view)" : "");
+        if (wanted.empty() && !is_scout(images)) fitting.push_back(uid);
         positions += images.front().position.has_value();
+    }
+    for (const std::string& word : wanted_series(wanted)) {
+        std::vector<std::string> matching;
+        for (const auto& [uid, images] : series)
+            if (uid.ends_with(word)) matching.push_back(uid);
+        if (matching.size() != 1 || std::ranges::find(fitting, matching.front()) != fitting.end())
+            throw Error(fmt::format("{}: --series {} matches {} of {} series{}:{}", place, word, matching.size(),
+                                    series.size(), matching.size() == 1 ? ", and is named twice" : "", list));
+        fitting.push_back(matching.front());
     }
     // Documents and captures of a screen lie nowhere in the patient.
     if (wanted.empty() && fitting.size() > 1 && positions > 0)
         std::erase_if(fitting, [&](const std::string& uid) {
-            return std::ranges::none_of(series[uid], [](const DicomImage& image) { return image.position.has_value(); });
+            return std::ranges::none_of(series[uid],
+                                        [](const DicomImage& image) { return image.position.has_value(); });
         });
-    if (fitting.size() == 1) {
-        Images chosen = std::move(series[fitting.front()]);
-        for (const auto& [uid, images] : series)
-            if (uid != fitting.front()) {
-                const bool is_scout = std::ranges::all_of(images, &DicomImage::is_localizer);
-                notes.push_back(fmt::format("left out: series {}, {} {} \"{}\"{}", uid, images.size(),
-                                            images.size() == 1 ? "image" : "images", images.front().description,
-                                            is_scout ? ", a scout view" : ""));
-            }
-        set_aside(chosen, "scout view", [](const DicomImage& image) { return image.is_localizer; }, notes);
-        set_aside(chosen, "image without a position", [](const DicomImage& image) { return !image.position; }, notes);
-        return chosen;
-    }
-    if (wanted.empty())
+    if (fitting.size() != 1 && wanted.empty()) {
+        Images together;
+        for (const std::string& uid : fitting) together.insert(together.end(), series[uid].begin(), series[uid].end());
+        const bool is_split = fitting.size() > 1 && is_one_scan(together);
         throw Error(
-            fmt::format("{}: there are {} series; choose one with --series UID:{}", place, series.size(), list));
-    throw Error(
-        fmt::format("{}: --series {} matches {} of {} series:{}", place, wanted, fitting.size(), series.size(), list));
+            fmt::format("{}: there are {} series; {} with --series {}:{}", place, series.size(),
+                        is_split ? "their slices follow each other as those of one scan: join them" : "choose one",
+                        is_split ? fmt::format("{}", fmt::join(fitting, ",")) : "UID", list));
+    }
+    Images chosen;
+    std::string joined;
+    for (const std::string& uid : fitting) {
+        joined += (joined.empty() ? "" : "; ") + uid_and_count(uid, series[uid]);
+        std::ranges::move(series[uid], std::back_inserter(chosen));
+    }
+    if (fitting.size() > 1) notes.push_back(fmt::format("{} series were joined: {}", fitting.size(), joined));
+    for (const auto& [uid, images] : series)
+        if (std::ranges::find(fitting, uid) == fitting.end())
+            notes.push_back(fmt::format("left out: series {} \"{}\"{}", uid_and_count(uid, images),
+                                        images.front().description, is_scout(images) ? ", a scout view" : ""));
+    set_aside(chosen, "scout view", [](const DicomImage& image) { return image.is_localizer; }, notes);
+    set_aside(chosen, "image without a position", [](const DicomImage& image) { return !image.position; }, notes);
+    return chosen;
 }
 
 // Frames of one file that states one position for all of them, as cone-beam scanners write: they follow each other along
@@ -178,25 +235,30 @@ void stack_frames(Images& images, const std::string& place, std::vector<std::str
     const bool is_one_file = std::ranges::all_of(images, [&](const DicomImage& image) {
         return image.file == first.file && image.is_one_of_several && !image.has_own_position;
     });
-    if (!is_one_file || images.size() < 2 || glm::length(first.along_row) < 0.5 || glm::length(first.along_column) < 0.5)
+    if (!is_one_file || images.size() < 2 || glm::length(first.along_row) < 0.5 ||
+        glm::length(first.along_column) < 0.5)
         return;
     const bool has_spacing = first.slice_spacing != 0.0;
     const double spacing = has_spacing ? first.slice_spacing : first.slice_thickness;
     if (!(std::abs(spacing) > 0.0))
-        throw Error(fmt::format("{}: its {} frames have one position and no spacing between slices; add it to the file "
-                                "(SpacingBetweenSlices), or export one file per slice",
-                                place, images.size()));
+        throw Error(
+            fmt::format("{}: its {} frames have one position and no spacing between slices; add it to the file "
+                        "(SpacingBetweenSlices), or export one file per slice",
+                        place, images.size()));
     const bool has_position = first.position.has_value();
     const Vec3 start = first.position.value_or(Vec3(0.0)),
                normal = glm::normalize(glm::cross(first.along_row, first.along_column));
     for (DicomImage& image : images) image.position = start + normal * (spacing * image.frame);
-    notes.push_back(fmt::format("the file states {} for its {} frames: they were stacked along their normal by the {} of "
-                                "{:.4g} mm; check which end is up",
-                                has_position ? "one position" : "no position", images.size(),
-                                has_spacing ? "spacing between slices" : "slice thickness", std::abs(spacing)));
+    notes.push_back(
+        fmt::format("the file states {} for its {} frames: they were stacked along their normal by the {} of "
+                    "{:.4g} mm; check which end is up",
+                    has_position ? "one position" : "no position", images.size(),
+                    has_spacing ? "spacing between slices" : "slice thickness", std::abs(spacing)));
 }
 
-// Throws unless all images have one size, spacing and orientation.
+std::string unit_of(const DicomImage& image) { return image.rescale_type.empty() ? "HU" : image.rescale_type; }
+
+// Throws unless all images have one size, spacing, orientation and unit of values.
 void check_alike(const Images& images, const std::string& place) {
     const DicomImage& first = images.front();
     for (const DicomImage& image : images) {
@@ -217,6 +279,23 @@ void check_alike(const Images& images, const std::string& place) {
         if (std::abs(image.row_spacing - first.row_spacing) + std::abs(image.column_spacing - first.column_spacing) >
             1e-4)
             throw Error(fmt::format("{}: {} and {} differ in pixel spacing", place, where(first), name));
+        if (image.modality != first.modality)
+            throw Error(fmt::format("{}: {} is {} and {} is {} (Modality); remove the images that do not belong", place,
+                                    where(first), first.modality, name, image.modality));
+        if (image.has_zero_slope != first.has_zero_slope)
+            throw Error(fmt::format("{}: {} states a RescaleSlope of 0, and {} another; export the series again", place,
+                                    where(image.has_zero_slope ? image : first),
+                                    where(image.has_zero_slope ? first : image)));
+        if (image.has_rescale != first.has_rescale)
+            throw Error(
+                fmt::format("{}: {} states a rescale to HU (RescaleSlope, RescaleIntercept) and {} none, so that "
+                            "their values do not compare; export the series again",
+                            place, where(image.has_rescale ? image : first), where(image.has_rescale ? first : image)));
+        if (unit_of(image) != unit_of(first))
+            throw Error(
+                fmt::format("{}: the values of {} are in {} and those of {} in {} (RescaleType); remove the images "
+                            "that do not belong",
+                            place, where(first), unit_of(first), name, unit_of(image)));
     }
     const double cosine = glm::dot(glm::normalize(first.along_row), glm::normalize(first.along_column));
     if (std::abs(cosine) > 1e-3) throw Error(fmt::format("{}: rows and columns are not orthogonal", place));
@@ -248,12 +327,6 @@ Slices in_order(DicomReader& reader, Images images, const std::string& place) {
     }
     if (slices.images.size() < 2) throw Error(fmt::format("{}: one slice is not a volume", place));
     return slices;
-}
-
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Gaps that are about two or more of the gaps around them: slices are missing there. One or two wide gaps in a row are
@@ -399,7 +472,8 @@ public:
         for (std::size_t i = 0; i < each_; ++i) {
             const double y0 = from[a - before][i], y1 = from[b - before][i];
             const double m0 = slope(a, before, b, i) * gap, m1 = slope(b, a, after, i) * gap;
-            const double value = y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1)));
+            const double value =
+                y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1)));
             // A cubic overshoots at edges; densities that no sample has are artefacts.
             double low = y0, high = y0;
             for (std::size_t n = before; n <= after; ++n) {
@@ -473,7 +547,9 @@ public:
         if (found > slices_.images.size())
             about.notes.push_back(fmt::format("{} duplicate images ignored", found - slices_.images.size()));
         if (std::ranges::any_of(slices_.images, &DicomImage::has_decimal_commas))
-            about.notes.push_back("numbers are written with decimal commas, against the standard; they were read as such");
+            about.notes.push_back(
+                "numbers are written with decimal commas, against the standard; they were read as such");
+        if (first.has_zero_slope) about.notes.push_back("RescaleSlope is 0, against the standard; it was read as 1");
         if (first.is_inverted)
             about.notes.push_back("MONOCHROME1: only the display is inverted; the values are not changed");
         samples_.emplace(reader_, slices_, slice_size());
@@ -489,10 +565,11 @@ public:
         const bool is_segmentation = slices_.images.front().modality == "SEG";
         settle_meaning(about, tally, is_segmentation);
         // Also when most voxels are in the segment.
-        if (is_segmentation && tally.whole && tally.high <= 1.0f) about.kind = VolumeKind::labels, about.hu = HuKind::none;
+        if (is_segmentation && tally.whole && tally.high <= 1.0f)
+            about.kind = VolumeKind::labels, about.hu = HuKind::none;
         if (samples_->padded > 0)
-            about.notes.push_back(fmt::format("{} samples are padding ({:g}{}); they were read as air", samples_->padded,
-                                              samples_->padding,
+            about.notes.push_back(fmt::format("{} samples are padding ({:g}{}); they were read as air",
+                                              samples_->padded, samples_->padding,
                                               samples_->is_padding_stated ? "" : ", the only value above 32767"));
         samples_->padded = 0;
         const DicomImage& first = slices_.images.front();

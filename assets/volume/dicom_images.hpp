@@ -35,6 +35,7 @@ struct DicomImage {
     bool is_colour = false;    ///< more than one sample per pixel, or a palette: no CT
     bool is_inverted = false;  ///< MONOCHROME1: displayed with low values bright; the values are not affected
     bool has_decimal_commas = false;  ///< numbers are written as "2,5"
+    bool has_zero_slope = false;  ///< the file states a rescale slope of 0, which is read as 1
     int segment = 0;           ///< of a segmentation: number of the frame's segment; 0: none
     std::string segment_name;
 };

@@ -78,7 +78,7 @@ inline void put_image(MessageWriter& out, const DicomImage& image) {
                                 image.slope, image.intercept})
         out.put(number);
     for (const bool flag : {image.has_rescale, image.is_localizer, image.is_colour, image.is_inverted,
-                            image.has_decimal_commas})
+                            image.has_decimal_commas, image.has_zero_slope})
         out.put(flag);
     out.put(image.segment);
 }
@@ -100,7 +100,7 @@ inline DicomImage get_image(MessageReader& in) {
                            &image.slope, &image.intercept})
         *number = in.get<double>();
     for (bool* flag : {&image.has_rescale, &image.is_localizer, &image.is_colour, &image.is_inverted,
-                       &image.has_decimal_commas})
+                       &image.has_decimal_commas, &image.has_zero_slope})
         *flag = in.get_flag();
     image.segment = in.get<int>();
     return image;

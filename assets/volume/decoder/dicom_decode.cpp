@@ -160,7 +160,13 @@ void take_geometry(const gdcm::DataSet& position, const gdcm::DataSet& orientati
 void take_rescale(const gdcm::DataSet& set, DicomImage& image) {
     const auto slope = decimals_of(set, {0x0028, 0x1053}, image), intercept = decimals_of(set, {0x0028, 0x1052}, image);
     if (slope.empty() && intercept.empty()) return;
+    if (slope.size() > 1 || intercept.size() > 1)
+        throw Error(
+            fmt::format("{}: the rescale to HU (RescaleSlope, RescaleIntercept) has several numbers; correct it "
+                        "in the file",
+                        image.file.string()));
     image.has_rescale = true;
+    image.has_zero_slope = !slope.empty() && slope[0] == 0.0;
     image.slope = slope.empty() || slope[0] == 0.0 ? 1.0 : slope[0];
     image.intercept = intercept.empty() ? 0.0 : intercept[0];
     image.rescale_type = text_of(set, {0x0028, 0x1054});
@@ -192,7 +198,8 @@ public:
         const Item position = group({0x0020, 0x9113}), orientation = group({0x0020, 0x9116}),
                    measures = group({0x0028, 0x9110}), values = group({0x0028, 0x9145}),
                    segment = group({0x0062, 0x000a});
-        take_geometry(position ? *position : none, orientation ? *orientation : none, measures ? *measures : none, image);
+        take_geometry(position ? *position : none, orientation ? *orientation : none, measures ? *measures : none,
+                      image);
         image.has_own_position = image.has_own_position || static_cast<bool>(position);
         if (values) take_rescale(*values, image);
         if (!segment) return;
@@ -293,9 +300,10 @@ std::size_t rescale(const char* bytes, const Layout& layout, const DicomImage& i
             continue;
         }
         if (!has_overlay && !layout.fits(stored))
-            throw Error(fmt::format("{}: a sample of {} does not fit the {} bits that its header states; the file is "
-                                    "damaged, or its header wrong",
-                                    image.file.string(), stored, layout.bits_stored));
+            throw Error(
+                fmt::format("{}: a sample of {} does not fit the {} bits that its header states; the file is "
+                            "damaged, or its header wrong",
+                            image.file.string(), stored, layout.bits_stored));
         out[n] = static_cast<float>(image.slope * value + image.intercept);
         low = std::min(low, out[n]), high = std::max(high, out[n]);
     }
@@ -317,7 +325,8 @@ Padding stated_padding(const gdcm::DataSet& set, const Layout& layout) {
         if (!set.FindDataElement(tag)) return std::nullopt;
         const gdcm::ByteValue* value = set.GetDataElement(tag).GetByteValue();
         if (!value || !value->GetPointer()) return std::nullopt;
-        const std::size_t size = std::min<std::size_t>(value->GetLength(), static_cast<std::size_t>(layout.bits_allocated) / 8);
+        const std::size_t size =
+            std::min<std::size_t>(value->GetLength(), static_cast<std::size_t>(layout.bits_allocated) / 8);
         if (size == 0) return std::nullopt;
         std::uint64_t bits = 0;
         std::memcpy(&bits, value->GetPointer(), size);
@@ -446,6 +455,9 @@ DicomSamples decode_dicom_samples(const DicomSource& source, const std::vector<D
                 reader.SetFileName(file.c_str());
             }
         };
+        const auto require_samples = [&](const gdcm::DataSet& set) {
+            if (!set.FindDataElement(pixel_data)) refuse("it has no samples (PixelData)");
+        };
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
         const std::size_t count = each * images.size();
         // Without the geometry, which GDCM's reader of images derives by assertions. One bit is not for it at all.
@@ -454,6 +466,7 @@ DicomSamples decode_dicom_samples(const DicomSource& source, const std::vector<D
             give(plain, plain_stream);
             if (!plain.Read()) refuse("damaged or cut short");
             const gdcm::DataSet& set = plain.GetFile().GetDataSet();
+            require_samples(set);
             if (binary_of(set, {0x0028, 0x0100}, 8) == 1) {
                 if (plain.GetFile().GetHeader().GetDataSetTransferSyntax().IsEncapsulated())
                     refuse("samples of one bit are compressed; save the segmentation without compression");
@@ -464,7 +477,9 @@ DicomSamples decode_dicom_samples(const DicomSource& source, const std::vector<D
         }
         gdcm::PixmapReader reader;
         give(reader, stream);
-        if (!reader.Read()) refuse("damaged, cut short, or compressed in a way that GDCM does not support");
+        const bool is_read = reader.Read();
+        require_samples(reader.GetFile().GetDataSet());
+        if (!is_read) refuse("damaged, cut short, or compressed in a way that GDCM does not support");
         const gdcm::Pixmap& picture = reader.GetPixmap();
         const gdcm::PixelFormat& format = picture.GetPixelFormat();
         const Layout layout{format.GetBitsAllocated(), format.GetBitsStored(), format.GetHighBit(),
@@ -483,9 +498,10 @@ DicomSamples decode_dicom_samples(const DicomSource& source, const std::vector<D
         const gdcm::DataSet& set = reader.GetFile().GetDataSet();
         std::vector<char> buffer(picture.GetBufferLength());
         // GDCM clears the bits above the stored ones, where padding and damage show: plain samples are taken as they are.
-        const gdcm::ByteValue* plain = first.syntax == "1.2.840.10008.1.2" || first.syntax.starts_with("1.2.840.10008.1.2.1")
-                                           ? set.GetDataElement(pixel_data).GetByteValue()
-                                           : nullptr;
+        const gdcm::ByteValue* plain =
+            first.syntax == "1.2.840.10008.1.2" || first.syntax.starts_with("1.2.840.10008.1.2.1")
+                ? set.GetDataElement(pixel_data).GetByteValue()
+                : nullptr;
         if (plain && plain->GetPointer() && plain->GetLength() >= buffer.size())
             std::memcpy(buffer.data(), plain->GetPointer(), buffer.size());
         else if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");

@@ -157,7 +157,7 @@ Action declare_import(VerbOptions& verb) {
             "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
             "resample to this grid spacing, mm")
         .unit("mm");
-    verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it");
+    verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
     verb.flag("--fill-gaps", choice->fill_gaps, "DICOM: interpolate where slices are missing (default: refuse)");
     add_rescale(verb, [choice](const Rescale& rescale) { choice->rescale = rescale; });
     verb.call<double>(

@@ -113,7 +113,7 @@ int info(const InfoChoice& choice) {
 Action declare_info(VerbOptions& verb) {
     const auto choice = std::make_shared<InfoChoice>();
     verb.add("file", choice->input, "the file").required();
-    verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it");
+    verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it; several between commas are joined");
     verb.flag("--fill-gaps", choice->how.fill_gaps, "DICOM: interpolate where slices are missing (default: refuse)");
     add_unit(verb, choice->how.unit);
     add_rescale(verb, [choice](const Rescale& rescale) { choice->how.rescale = rescale; });

@@ -251,7 +251,7 @@ Action declare_segment(VerbOptions& verb) {
         .unit("mm")
         .range(0.0, 20.0)
         .shows_default();
-    verb.add("--series", settings.read.series, "DICOM: the series to take, by its UID or the end of it");
+    verb.add("--series", settings.read.series, "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
     add_unit(verb, settings.read.unit);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return segment_bone(*choice); };
