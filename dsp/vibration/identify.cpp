@@ -156,6 +156,14 @@ double excess_delay(const FrequencyResponse& response) {
     return spread > 0.0 ? -(w * wfp - wf * wp) / spread / (2.0 * pi) : 0.0;
 }
 
+/// s: of a sweep that halves 5 % of the deviation and of the truncation of a mode.
+double needed_duration(const SweepRun& run, const Mode& mode) {
+    const double noise = std::pow(2.0 * mode.deviation / 0.05, 2.0);
+    const double ringing = std::log(1.0 / 0.05) / (mode.damping * 2.0 * pi * mode.hz);
+    const double passes = std::log(mode.hz / run.sweep.first) / std::log(run.sweep.last / run.sweep.first);
+    return std::max(run.sweep.duration * std::max(1.0, noise), (ringing - run.pause) / std::max(0.05, 1.0 - passes));
+}
+
 /// The mode of a model around its own pole; none unless the pole is within the window, significant and stands out.
 std::optional<Mode> mode_near(const SweepRun& run, const Spectra& spectra, const LocalModel& coarse, double delay,
                               std::vector<ResponseBin>& bins) {
@@ -170,12 +178,22 @@ std::optional<Mode> mode_near(const SweepRun& run, const Spectra& spectra, const
     for (int i = -20; i <= 20; ++i) mode.peak = std::max(mode.peak, std::abs(model(f0 + 0.1 * i * half)));
     for (const double side : {-1.0, 1.0})
         if (mode.peak < 1.1 * std::abs(model(f0 + 2.0 * side * half))) return std::nullopt;
-    const double noise = std::pow(2.0 * mode.deviation / 0.05, 2.0);
-    const double ringing = std::log(1.0 / 0.05) / (mode.damping * 2.0 * pi * f0);
-    const double passes = std::log(f0 / run.sweep.first) / std::log(run.sweep.last / run.sweep.first);
-    mode.needed_duration =
-        std::max(run.sweep.duration * std::max(1.0, noise), (ringing - run.pause) / std::max(0.05, 1.0 - passes));
     return mode;
+}
+
+/// The deviation of a mode, and what a window half or twice as wide finds otherwise: of many windows the one with the least
+/// deviation was taken, which may be so by chance. The narrow window counts where it is not too noisy: the wide one is biased by
+/// what its parabola does not hold.
+double deviation_among_windows(const Spectra& spectra, const Mode& mode, double window, double delay,
+                               std::vector<ResponseBin>& bins) {
+    for (const double other : {0.5 * window, 2.0 * window}) {
+        if (other > 0.5 * mode.hz) continue;
+        const LocalModel model = local_model(spectra, mode.hz, other, delay, bins);
+        const bool is_quiet = model.pole_deviation < 0.025 * model.pole().imag();
+        if (!model.is_significant() || (other < window && !is_quiet)) continue;
+        return std::max(mode.deviation, 0.5 * std::abs(model.damping() / mode.damping - 1.0));
+    }
+    return std::max(mode.deviation, 0.05);
 }
 
 /// Resonances by models of windows from `width` on, up to 64 times as wide: the narrowest window that resolves one leaves
@@ -183,6 +201,7 @@ std::optional<Mode> mode_near(const SweepRun& run, const Spectra& spectra, const
 std::vector<Mode> modes_of(const SweepRun& run, const Spectra& spectra, std::span<const double> hz, double width,
                            double delay) {
     std::vector<Mode> modes;
+    std::vector<double> windows;  // of each mode
     std::vector<ResponseBin> bins;
     std::size_t stride = 1;  // of the centres: windows overlap by more than half
     for (double window = width; window <= 64.0 * width; window *= 2.0, stride = std::min<std::size_t>(2 * stride, 8))
@@ -194,9 +213,15 @@ std::vector<Mode> modes_of(const SweepRun& run, const Spectra& spectra, std::spa
             const auto known = std::ranges::find_if(modes, [&](const Mode& one) {
                 return std::abs(one.hz - mode->hz) < std::max(one.hz * one.damping, mode->hz * mode->damping);
             });
-            if (known == modes.end()) modes.push_back(*mode);
-            else if (known->deviation > 0.025 && mode->deviation < known->deviation) *known = *mode;
+            if (known == modes.end()) modes.push_back(*mode), windows.push_back(window);
+            else if (known->deviation > 0.025 && mode->deviation < known->deviation)
+                *known = *mode, windows[static_cast<std::size_t>(known - modes.begin())] = window;
         }
+    for (std::size_t n = 0; n < modes.size(); ++n) {
+        Mode& mode = modes[n];
+        mode.deviation = deviation_among_windows(spectra, mode, windows[n], delay, bins);
+        mode.needed_duration = needed_duration(run, mode);
+    }
     std::ranges::sort(modes, {}, &Mode::hz);
     return modes;
 }

@@ -2,11 +2,15 @@
 #include "dsp/vibration/identify.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
 #include "tests/dsp/vibration/plant.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <numbers>
+#include <vector>
 
 using namespace tactus;
 using Catch::Matchers::ContainsSubstring;
@@ -170,6 +174,41 @@ TEST_CASE("minimum phase follows from the level alone") {
         if (hz[i] > 30.0 && hz[i] < 1000.0)
             CHECK(std::remainder(phase[i] - std::arg(plant.gain(hz[i])), 2.0 * std::numbers::pi) ==
                   Approx(0.0).margin(0.03));
+}
+
+TEST_CASE("a damping that noise hides is stated to need a longer sweep, one that is claimed is right", "[slow]") {
+    const vibration::SweepRun run{{20.0, 1000.0, 8.0, 0.02}, 1.0, 1.0, 1};
+    constexpr double rate = 4000.0;
+    int claimed = 0, longer = 0;
+    for (const double snr_db : {40.0, 0.0})
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            const Random random{seed * 31 + 7};
+            const double f0 = 80.0 + 60.0 * static_cast<double>(seed),
+                         damping = 0.06 + 0.008 * static_cast<double>(seed);
+            const double angle = 2.0 * std::numbers::pi * f0 / rate, r = std::exp(-damping * angle);
+            const double a1 = 2.0 * r * std::cos(std::sqrt(1.0 - damping * damping) * angle);
+            std::vector<double> y(static_cast<std::size_t>(9.0 * rate));
+            double y1 = 0.0, y2 = 0.0, square = 0.0;
+            for (std::size_t i = 0; i < y.size(); ++i) {
+                y[i] = run.sweep(static_cast<double>(i) / rate) * angle * angle + a1 * y1 - r * r * y2;
+                y2 = y1, y1 = y[i];
+                square += y[i] * y[i];
+            }
+            const double noise = std::sqrt(square / static_cast<double>(y.size())) * std::pow(10.0, -snr_db / 20.0);
+            std::vector<float> heard;
+            for (std::size_t i = 0; i < y.size(); ++i)
+                heard.push_back(static_cast<float>(y[i] + noise * random.normal(i)));
+            for (const vibration::Mode& mode : vibration::identify(run, heard, rate, 2, 12).modes) {
+                if (std::abs(mode.hz / f0 - 1.0) > 0.02) continue;
+                CAPTURE(snr_db, f0, damping, mode.damping, mode.deviation);
+                if (mode.is_resolved()) CHECK(mode.damping == Approx(damping).epsilon(0.05));
+                else CHECK(mode.needed_duration > 8.0);
+                (mode.is_resolved() ? claimed : longer) += snr_db > 20.0 || !mode.is_resolved();
+            }
+        }
+    // Without noise all are claimed; in noise most are not.
+    CHECK(claimed == 4);
+    CHECK(longer >= 2);
 }
 
 TEST_CASE("a record without the sweep is refused") {
