@@ -6,9 +6,11 @@
 #include "assets/volume/write_volume.hpp"
 #include "tests/campaign/limited_run.hpp"
 #include "tests/campaign/other_bone.hpp"
+#include "tests/campaign/packed_dicom.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/bone_files.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/written_recordings.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -94,6 +96,49 @@ std::string mend_riff(std::string bytes, std::uint64_t number) {
         std::memcpy(&bytes[4], &size, sizeof size);
     }
     return bytes;
+}
+
+constexpr std::size_t matlab_header = 128;
+
+/// The elements of a MATLAB file that follow its header, each with its tag; the last is what no whole element holds.
+std::vector<std::string> matlab_elements(const std::string& bytes) {
+    std::vector<std::string> elements;
+    for (std::size_t at = matlab_header; at < bytes.size();) {
+        std::uint32_t size = 0;
+        if (bytes.size() - at >= 8) std::memcpy(&size, &bytes[at + 4], sizeof size);
+        if (bytes.size() - at < 8 || size > bytes.size() - at - 8) size = static_cast<std::uint32_t>(bytes.size() - at);
+        else size += 8;
+        elements.push_back(bytes.substr(at, size));
+        at += size;
+    }
+    return elements;
+}
+
+bool is_big_matlab(const std::string& bytes) { return bytes.size() < matlab_header || bytes.substr(126, 2) != "IM"; }
+
+std::string unpacked_variables(const std::string& bytes) {
+    if (is_big_matlab(bytes)) return bytes;
+    std::string out = bytes.substr(0, matlab_header);
+    for (const std::string& element : matlab_elements(bytes)) {
+        if (!element.starts_with(std::string("\x0f\0\0\0", 4))) {
+            out += element;
+            continue;
+        }
+        std::string plain(std::size_t{1} << 16, '\0');
+        uLongf size = plain.size();
+        uncompress(reinterpret_cast<Bytef*>(plain.data()), &size, reinterpret_cast<const Bytef*>(element.data() + 8),
+                   static_cast<uLong>(element.size() - 8));
+        out += plain.substr(0, size);
+    }
+    return out;
+}
+
+/// Half of the files have each variable packed.
+std::string packed_variables(std::string bytes, std::uint64_t number) {
+    if (number % 2 != 0 || is_big_matlab(bytes)) return bytes;
+    std::string out = bytes.substr(0, matlab_header);
+    for (const std::string& element : matlab_elements(bytes)) out += test::matlab_packed(element);
+    return out;
 }
 
 void pack_seeds(const fs::path& folder) {
@@ -212,6 +257,17 @@ std::vector<Format> make_formats(const fs::path& folder) {
         {.name = "dicom",
          .seeds = files_in(folder / "assets_dicom"),
          .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}}},
+        {.name = "packed",
+         .seeds = packed_dicom(folder / "packed_dicom"),
+         .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}}},
+        {.name = "uff",
+         .seeds = files_in(folder / "assets_universal_file"),
+         .verbs = {{"spectrum", "FILE"}, {"exposure", "FILE", "--column", "1"}}},
+        {.name = "mat",
+         .seeds = files_in(folder / "assets_matlab_file"),
+         .verbs = {{"spectrum", "FILE"}, {"spectrum", "FILE", "--column", "1", "--sample-rate", "1 kHz"}},
+         .open = unpacked_variables,
+         .close = packed_variables},
         {.name = "inv3",
          .seeds = with_ending(folder / "assets_inv3", ".inv3"),
          .verbs = {info},
