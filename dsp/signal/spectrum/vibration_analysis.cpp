@@ -138,7 +138,9 @@ VibrationReport VibrationAnalysis::report() const {
     out.cepstrum = real_cepstrum(out.lines);
     out.peaks = strongest(find_lines(out.lines, 2.0 * out.lines.df, settings_.psd.rate));
     out.hum = find_hum(out.lines, out.fundamental.frequency);
-    out.bands = third_octaves(band_spectrum());
+    const Spectrum of_bands = band_spectrum();
+    out.bands = third_octaves(of_bands);
+    estimate_leakage(out.bands, of_bands);
     if (envelope_spectrum_) {
         const Spectrum& envelope = out.envelope_spectrum.emplace(envelope_spectrum_->spectrum());
         const double highest = 0.5 * (settings_.envelope->second - settings_.envelope->first);

@@ -113,7 +113,7 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
 
 double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum) {
     const double bins = std::max(1.0, (band.high - band.low) / spectrum.noise_bandwidth);
-    return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
+    return std::hypot(10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins), band.leakage_db);
 }
 
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& wanted,

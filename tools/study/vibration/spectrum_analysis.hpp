@@ -68,7 +68,8 @@ struct AnalysedFile {
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
                           const std::function<void(double)>& progress);
 
-/// Standard deviation of a band's level, dB, given the averaging over its bins.
+/// Uncertainty of a band's level, dB: the standard deviation given the averaging over its bins, and what the window leaks over its
+/// borders.
 double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum);
 
 }  // namespace tactus::study
