@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts and asks the process that reads DICOM files.
+#include "assets/file/part.hpp"
 #include "assets/file/room.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/dicom_elements.hpp"
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/dicom_message.hpp"
 #include "dsp/core/clock.hpp"
-#include "assets/file/part.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/stop.hpp"
 
@@ -233,7 +233,9 @@ struct DicomReader::Process {
         if (kind == DecoderReply::refused) throw Error(in.get_text());
         if (kind == DecoderReply::no_room) {
             const std::string why = in.get_text();
-            throw file::NoRoom(why.empty() ? fmt::format("{}: the file needs too much memory", name) : why);
+            throw file::NoRoom(
+                why.empty() ? fmt::format("{}: the file is damaged, or needs more memory than others of its size", name)
+                            : why);
         }
         return reply.substr(sizeof kind);
     }
@@ -269,8 +271,7 @@ std::vector<DicomImage> DicomReader::images(const std::shared_ptr<const file::Zi
                                             const file::ZipFile::Entry& entry) {
     const std::string bytes = archive->read(entry);
     const std::lock_guard lock(one_at_a_time_);
-    std::vector<DicomImage> images =
-        images_in(process_->ask(DecoderRequest::headers, entry.name, &bytes), entry.name);
+    std::vector<DicomImage> images = images_in(process_->ask(DecoderRequest::headers, entry.name, &bytes), entry.name);
     for (DicomImage& image : images) image.archive = archive, image.entry = entry;
     return images;
 }

@@ -11,7 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <new>
 #include <string>
@@ -67,6 +70,31 @@ private:
     std::size_t size_ = 0;
 };
 
+/// Bounds the memory of one file: GDCM reserves what damaged lengths state, gigabytes for a file of kilobytes. Compressed files
+/// unpack to many times their size, which `samples` counts.
+class FileLimit {
+public:
+    FileLimit(double file_size, double samples) {
+        ::getrlimit(RLIMIT_AS, &before_);
+        // Sanitizers reserve terabytes: their processes have no limit.
+        if (before_.rlim_max == RLIM_INFINITY) return;
+        std::size_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        const double present = static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+        rlimit own = before_;
+        own.rlim_cur = static_cast<rlim_t>(
+            std::min(static_cast<double>(before_.rlim_max), present + at_least + 64.0 * file_size + 16.0 * samples));
+        ::setrlimit(RLIMIT_AS, &own);
+    }
+    ~FileLimit() { ::setrlimit(RLIMIT_AS, &before_); }
+    FileLimit(const FileLimit&) = delete;
+    FileLimit& operator=(const FileLimit&) = delete;
+
+private:
+    static constexpr double at_least = 512e6;  // bytes
+    rlimit before_{};
+};
+
 struct Decoder {
     std::map<std::string, std::vector<DicomImage>> headers;  // of the files of a series
     std::size_t count = 0;
@@ -90,7 +118,11 @@ struct Decoder {
             source.bytes = &bytes;
         }
         MessageWriter out;
+        std::error_code unknown;
+        const std::uintmax_t on_disk = source.bytes ? packed : std::filesystem::file_size(source.name, unknown);
+        const double size = unknown ? 0.0 : static_cast<double>(on_disk);
         if (what == DecoderRequest::headers) {
+            const FileLimit limit(size, 0.0);
             headers.erase(source.name);
             const std::vector<DicomImage>& found = images(source);
             out.put(DecoderReply::images);
@@ -100,7 +132,11 @@ struct Decoder {
         }
         SharedMemory memory;
         std::uint64_t samples = 0;
-        const DicomSamples about = decode_dicom_samples(source, images(source), [&](std::size_t count) {
+        const std::vector<DicomImage>& known = images(source);
+        double claimed = 0.0;
+        for (const DicomImage& image : known) claimed += double(image.rows) * image.columns;
+        const FileLimit limit(size, claimed);
+        const DicomSamples about = decode_dicom_samples(source, known, [&](std::size_t count) {
             samples = count;
             return static_cast<float*>(memory.map(count * sizeof(float), true));
         });

@@ -8,6 +8,9 @@
 #include "tests/assets/volume/dicom_changes.hpp"
 #include "tests/assets/volume/written_volume.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/sanitized.hpp"
+
+#include <sys/resource.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,7 +83,8 @@ std::string with_private_bytes(const std::string& bytes, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("slices of another orientation, modality, spacing or number of samples in a series are refused by name") {
+TEST_CASE("slices of another orientation, modality, spacing or number of samples in a series are refused by name",
+          "[slow]") {
     const Series series;
     series.write(4, [](std::string bytes) { return with_value(bytes, 0x20, 0x37, always("0\\1\\0\\0\\0\\-1")); });
     series.check_refused("000.dcm and 004.dcm have different orientations");
@@ -132,7 +136,7 @@ TEST_CASE("a tilted gantry is read at the places that the headers state, and one
     }
 }
 
-TEST_CASE("a scan that was split over two series is refused with how to join it, and joined when asked") {
+TEST_CASE("a scan that was split over two series is refused with how to join it, and joined when asked", "[slow]") {
     for (const bool is_alternating : {false, true}) {
         const Series series;
         for (int k = 0; k < series.v.size[2]; ++k) {
@@ -203,4 +207,23 @@ TEST_CASE("a rescale that changes from slice to slice counts for each, one that 
     CHECK_THAT(notes_of(zero), ContainsSubstring("RescaleSlope is 0"));
     series.write(4, [](std::string bytes) { return with_value(bytes, 0x28, 0x1052, always("-1024\\-1000")); });
     series.check_refused("004.dcm: the rescale to HU (RescaleSlope, RescaleIntercept) has several numbers");
+}
+
+TEST_CASE("an element that states gigabytes costs a small file no memory") {
+    const Series series;
+    // A fragment of run lengths, after an empty table of offsets.
+    const std::string fragments = tag_bytes(0x7fe0, 0x10) + std::string("OB\0\0\xff\xff\xff\xff", 8) +
+                                  tag_bytes(0xfffe, 0xe000) + std::string(4, '\0') + tag_bytes(0xfffe, 0xe000) +
+                                  std::string("\xfe\xff\xff\xff", 4) + std::string(200, '\0');
+    series.write(4, [&](std::string bytes) {
+        const std::string plain("1.2.840.10008.1.2.1\0", 20);
+        return without_samples(
+                   bytes.replace(bytes.find(plain), plain.size(), std::string("1.2.840.10008.1.2.5\0", 20))) +
+               fragments;
+    });
+    CHECK_THROWS(series.read());
+    rusage used{};
+    REQUIRE(::getrusage(RUSAGE_CHILDREN, &used) == 0);
+    // Under sanitizers the process has no limit.
+    if (!test::sanitized) CHECK(used.ru_maxrss < 1'500'000);
 }
