@@ -8,6 +8,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "dsp/signal/spectrum/fundamental.hpp"
+#include "dsp/vibration/order_share.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -58,14 +59,14 @@ void load_samples(Recording& r) {
 }
 
 /// Estimates an unstated rate. Throws Error when the sound has no clear rate or is too short.
-void settle_rate(Recording& r) {
+void settle_rate(Recording& r, const char* how_to_state = "as in rate = \"233 Hz\"") {
     const Part part = part_of(r);
     if (r.rate == 0.0) {
         const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
         const signal::FundamentalEstimate heard = signal::find_fundamental(part_used, r.sample_rate);
         if (!heard.is_certain())
-            throw Error(fmt::format("no rate of reciprocation was found in '{}'; state it, as in rate = \"233 Hz\"",
-                                    r.file.filename().string()));
+            throw Error(fmt::format("no rate of reciprocation was found in '{}'; state it, {}",
+                                    r.file.filename().string(), how_to_state));
         r.rate = heard.frequency;
         r.rate_estimated = true;
     }
@@ -245,7 +246,48 @@ void cut(Recording& r, const Stretch& stretch) {
     settle_rate(r);
 }
 
-RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate) {
+namespace {
+
+struct RatedName {
+    std::filesystem::path file;
+    std::optional<double> rate;  // Hz
+};
+
+/// "my-saw.wav#233 Hz"
+RatedName split(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const std::size_t mark = text.rfind('#');
+    std::error_code ignored;
+    if (mark == std::string::npos || std::filesystem::exists(path, ignored)) return {path, {}};
+    try {
+        return {text.substr(0, mark), parse_as(text.substr(mark + 1), "Hz")};
+    } catch (const Error& error) {
+        throw Error(
+            fmt::format("{}: what follows '#' is the rate of the saw, as in #233 Hz: {}", text, error.message()));
+    }
+}
+
+}  // namespace
+
+bool is_plain_sound(const RecordingSet& set) {
+    return !set.model && set.path.extension() != ".toml" && !set.recordings.empty();
+}
+
+std::string saw_question(const RecordingSet& set) {
+    if (!is_plain_sound(set)) return {};
+    const Recording& r = set.recordings.front();
+    if (r.order_share >= least_order_share) return {};
+    return fmt::format(
+        "is {} the sound of a saw? Only {:.0f} % of its power lies in multiples of {:.4g} Hz{}; of saws it is 18 % or "
+        "more. It is played all the same",
+        r.file.filename().string(), 100.0 * r.order_share, r.rate,
+        r.rate_estimated ? ", the rate that was estimated" : "");
+}
+
+RecordingSet load_recording_set(const std::filesystem::path& name, std::optional<double> given_rate) {
+    const RatedName parts = given_rate ? RatedName{name, given_rate} : split(name);
+    const std::filesystem::path& path = parts.file;
+    const std::optional<double> rate = parts.rate;
     if (rate && !(*rate >= lowest_rate && *rate <= highest_rate))
         throw Error(fmt::format("{}: the rate of a saw must be 5 Hz to 1 kHz", path.string()));
     if (path.extension() == ".toml") {
@@ -260,10 +302,11 @@ RecordingSet load_recording_set(const std::filesystem::path& path, std::optional
     r.rate = rate.value_or(0.0);
     load_samples(r);
     try {
-        settle_rate(r);
+        settle_rate(r, "by --rate \"233 Hz\", or as in my-saw.wav#233 Hz");
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", path.string(), error.message()));
     }
+    r.order_share = vibration::order_share(r.samples, r.sample_rate, r.rate);
     RecordingSet set;
     set.path = path;
     set.title = path.stem().string();

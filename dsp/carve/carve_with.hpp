@@ -275,8 +275,8 @@ private:
         }
         if (low.x > high.x) return true;
         // Neighbouring chunks share their border; each voxel belongs to one of them.
-        if (begin > 0) low.x = std::max(low.x, swept_.begin_of(begin));
-        if (end < spans.size()) high.x = std::min(high.x, swept_.begin_of(end));
+        if (!swept_.is_point() && begin > 0) low.x = std::max(low.x, swept_.begin_of(begin));
+        if (!swept_.is_point() && end < spans.size()) high.x = std::min(high.x, swept_.begin_of(end));
         return KerfStamp{frame_, 0.5 * settings_.kerf, swept_, fraction}.apply(field, low, high, result);
     }
 

@@ -40,6 +40,7 @@ public:
         }
         if (end == 0) return;
         const double length = spans_[end - 1].b1.x - spans_[begin].a1.x;
+        is_point_ = length < 1e-9;
         step_ = std::max(length / static_cast<double>(end - begin), 0.25 * pitch_);
         per_step_ = 1.0 / step_;
         first_ = spans_[begin].a1.x - step_ * static_cast<double>(begin);
@@ -50,6 +51,9 @@ public:
         }
         for (std::size_t b = 0; b < buckets_.size(); ++b) arrange(b, reach);
     }
+
+    /// The edge is a point, as the ball of a burr: it has no order along x, and reaches to both sides of it.
+    bool is_point() const noexcept { return is_point_; }
 
     /// x at the start of span n, m, for spans of equal length.
     double begin_of(std::size_t n) const noexcept { return first_ + step_ * static_cast<double>(n); }
@@ -102,8 +106,8 @@ private:
         bucket.level = steep < 0.1;  // off by at most 0.5 % of the distance
         // The closest point of a sloping edge is offset by the sine of its slope.
         const double margin = bucket.level ? -1e-9 : 1.2 * reach * steep / std::sqrt(1.0 + steep * steep);
-        const double low = b == 0 ? -infinite : begin_of(b) - margin;
-        const double high = b + 1 == buckets_.size() ? infinite : begin_of(b + 1) + margin;
+        const double low = b == 0 || is_point_ ? -infinite : begin_of(b) - margin;
+        const double high = b + 1 == buckets_.size() || is_point_ ? infinite : begin_of(b + 1) + margin;
         bucket.begin = bucket.end = 0;
         bucket.low_y = bucket.low_z = infinite;
         bucket.high_y = bucket.high_z = -infinite;
@@ -145,6 +149,7 @@ private:
     std::vector<Bucket> buckets_;
     double pitch_ = 0.0;
     double first_ = 0.0, step_ = 1.0, per_step_ = 1.0;
+    bool is_point_ = false;
 };
 
 }  // namespace tactus::carve

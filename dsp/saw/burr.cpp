@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,23 @@ const std::array<Vec3, 26>& cube_directions() {
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z)
                     if (x != 0 || y != 0 || z != 0) made[n++] = glm::normalize(Vec3(x, y, z));
+        return made;
+    }();
+    return all;
+}
+
+constexpr std::size_t disc_count = 32;
+
+/// Directions of a half ball about z that share its disc equally: a sunflower's spiral.
+const std::array<Vec3, disc_count>& disc_directions() {
+    static const std::array<Vec3, disc_count> all = [] {
+        std::array<Vec3, disc_count> made;
+        for (std::size_t n = 0; n < disc_count; ++n) {
+            const double square = (static_cast<double>(n) + 0.5) / static_cast<double>(disc_count);
+            const double angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * static_cast<double>(n);
+            const double aside = std::sqrt(square);
+            made[n] = {aside * std::cos(angle), aside * std::sin(angle), std::sqrt(1.0 - square)};
+        }
         return made;
     }();
     return all;
@@ -149,7 +167,7 @@ BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, const
             fresh_ = true;
             shaft_.seat(pose);
         }
-        cut(drive, follow(bone, drive.running, moved), law, contact);
+        cut(bone, drive, follow(bone, drive.running, moved), law, contact);
         shaft_.follow(bone, pose, drive.running);
     } else if (!was_waiting) {
         at_ = target_ + (at_ - target_) * hold_.kept();
@@ -173,14 +191,32 @@ BurrContact Burr::step(const volume::BoneSnapshot& bone, const Pose& pose, const
     return contact;
 }
 
+/// Of the circle in which the ball, seen along its force, is in bone: the chord of a flute that passes through its middle.
+double Burr::width_in(const volume::BoneSnapshot& bone) const noexcept {
+    const Vec3 ahead = glm::normalize(target_ - at_), size = glm::abs(ahead);
+    const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
+                      : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
+                                                           : Vec3(0.0, 0.0, 1.0);
+    const Vec3 u = glm::normalize(glm::cross(ahead, axis)), v = glm::cross(ahead, u);
+    const Vec3& spacing = bone.layout().spacing;
+    const double reach = 0.25 * std::max({spacing.x, spacing.y, spacing.z, 1e-6});
+    double inside = 0.0;
+    for (const Vec3& d : disc_directions())
+        if (bone.value(at_ + (u * d.x + v * d.y + ahead * d.z) * (shape_.radius + reach)) < -0.5 * reach) ++inside;
+    return 2.0 * shape_.radius * std::sqrt(std::max(inside, 1.0) / static_cast<double>(disc_count));
+}
+
 /// The ball advances in bone of that density, which stops it; 0: none does.
-void Burr::cut(const Drive& drive, double density, const CuttingLaw& law, BurrContact& into) noexcept {
+void Burr::cut(const volume::BoneSnapshot& bone, const Drive& drive, double density, const CuttingLaw& law_of_edge,
+               BurrContact& into) noexcept {
     const Vec3 lag = target_ - at_;
     const double distance = glm::length(lag);
     // What rounding leaves of a lag is no contact.
     if (!(density > 0.0) && distance < 1e-8) at_ = target_;
     if (!drive.running || !(drive.rate > 0.0) || !(drive.rendered > 0.0)) return;
     if (!(density >= 1.0) || !(distance > 1e-12)) return;
+    into.width = width_in(bone);
+    const CuttingLaw law = law_of_edge.with_edge(into.width);
     const double scale = law.reference_density / density;
     const double left = left_after_cut(law, distance, shape_.flutes * drive.rate * drive.dt, [&](double stretch) {
         const double stiff = drive.rendered * stiffness_ * scale * saturation_share(stretch * stretch);

@@ -23,6 +23,7 @@ struct BurrContact {
     Wrench wrench;  ///< on the tool about the ball's centre, N and N·m, scene axes
     double load = 0.0;  ///< N, all of the force
     double along = 0.0;  ///< N: force of the flutes around the shaft
+    double width = 0.0;  ///< m of a flute in bone; 0: it does not cut
     double lag = 0.0;  ///< m
     double feed = 0.0;  ///< m/s
     double magnitudes = 0.0;  ///< N, sum of the sizes of the forces of the ball and of all points of the shaft
@@ -31,8 +32,8 @@ struct BurrContact {
 };
 
 /// A ball that rests on bone it has not cut: a god object (Zilles and Salisbury 1995), held by a spring. Running, it
-/// advances along its own force by an implicit step of the cutting law, one flute bearing at a time; otherwise bone
-/// stops it, with Coulomb friction. It never moves away from its target, so that the force is passive. The shaft does
+/// advances along its own force by an implicit step of the cutting law, one flute bearing at a time over the width of
+/// the ball that lies in bone, so that saw and burr share one law of force per width. Otherwise bone stops it, with Coulomb friction. It never moves away from its target, so that the force is passive. The shaft does
 /// not cut.
 class Burr {
 public:
@@ -51,7 +52,9 @@ private:
 
     Touch touch(const volume::BoneSnapshot& bone, const Vec3& lag, double ahead) const noexcept;
     double follow(const volume::BoneSnapshot& bone, bool running, double moved) noexcept;
-    void cut(const Drive& drive, double density, const CuttingLaw& law, BurrContact& into) noexcept;
+    double width_in(const volume::BoneSnapshot& bone) const noexcept;
+    void cut(const volume::BoneSnapshot& bone, const Drive& drive, double density, const CuttingLaw& law,
+             BurrContact& into) noexcept;
 
     BurrShape shape_;
     double stiffness_ = 0.0;

@@ -20,11 +20,19 @@ struct CuttingLaw {
     double shallow = 2e-6, deep = 10e-6;  ///< m
     double deepest = 20e-6;  ///< m a tooth can take at most: twice the range that was measured
     double reference_density = 1800.0;  ///< kg/m³, cortical bone
+    double edge = 1e-3;  ///< m, width of the edge that was measured. Not published: the kerf of a blade is assumed
 
     /// The law of teeth that need that many times less force for the same depth of cut.
     CuttingLaw sharpened(double times) const noexcept {
         CuttingLaw law = *this;
         for (double* force : {&law.cutting, &law.thrust_shallow, &law.thrust_deep, &law.rub}) *force /= times;
+        return law;
+    }
+
+    /// The law of an edge of another width: what counts is the force per width, for all tools.
+    CuttingLaw with_edge(double width) const noexcept {
+        CuttingLaw law = sharpened(edge / width);
+        law.edge = width;
         return law;
     }
 

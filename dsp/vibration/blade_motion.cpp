@@ -14,8 +14,8 @@ BladeMotion::BladeMotion(double rate, const SawBehaviour& behaviour)
       up_share_(signal::lag_share(behaviour.spin_up_time, 1.0 / rate)),
       down_share_(signal::lag_share(behaviour.spin_down_time, 1.0 / rate)) {}
 
-void BladeMotion::command(double thrust, bool trigger, double commanded_rate) noexcept {
-    loaded_ = thrust > (loaded_ ? behaviour_.load_off : behaviour_.load_on);
+void BladeMotion::command(double thrust, bool trigger, double commanded_rate, std::optional<bool> contact) noexcept {
+    loaded_ = contact ? *contact : thrust > (loaded_ ? behaviour_.load_off : behaviour_.load_on);
     const double wanted = trigger && commanded_rate > 0.0 ? std::min(commanded_rate, greatest_rate) : 0.0;
     blade_rate_ += (wanted > 0.0 ? up_share_ : down_share_) * (wanted - blade_rate_);
     if (wanted == 0.0 && blade_rate_ < 1.0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 namespace tactus::vibration {
 
@@ -28,12 +29,13 @@ public:
     BladeMotion(double rate, const SawBehaviour& behaviour);
 
     /// Before a sample: takes the thrust (N), the trigger and the commanded rate (Hz, clamped to [0, greatest_rate]).
-    void command(double thrust, bool trigger, double commanded_rate) noexcept;
+    /// `contact`: the blade touches bone, so that it cuts; without it the thrust decides.
+    void command(double thrust, bool trigger, double commanded_rate, std::optional<bool> contact = {}) noexcept;
     /// After a sample: moves the blade on.
     void advance() noexcept { cycles_ += blade_rate_ / rate_; }
 
     SawState state() const { return state_; }
-    bool loaded() const { return loaded_; }  ///< by the thrust, with hysteresis
+    bool loaded() const { return loaded_; }  ///< by the contact, or by the thrust with hysteresis
     double rate() const { return blade_rate_; }  ///< strokes per second, Hz, at this instant
     double cycles() const { return cycles_; }  ///< since the start
 

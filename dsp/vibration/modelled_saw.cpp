@@ -114,10 +114,11 @@ double ModelledSaw::residual() noexcept {
     return read_between(around_.data(), position_);
 }
 
-float ModelledSaw::tick(double load, double density, bool trigger, double commanded_rate) noexcept {
+float ModelledSaw::tick(double load, double density, bool trigger, double commanded_rate,
+                        std::optional<bool> contact) noexcept {
     wanted_load_ = std::isfinite(load) ? load : 0.0;
     wanted_density_ = std::isfinite(density) ? density : 0.0;
-    blade_.command(wanted_load_, trigger, commanded_rate);
+    blade_.command(wanted_load_, trigger, commanded_rate, contact);
     if (blade_.state() == SawState::off) {
         // The next start begins in silence.
         level_.fill(0.0);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace tactus::vibration {
 
@@ -26,7 +27,9 @@ public:
 
     /// One sample, in the model's unit. `load` in N (non-finite: none), `density` of the bone in kg/m³ (0: unknown),
     /// `commanded_rate` in Hz, clamped to [0, BladeMotion::greatest_rate].
-    float tick(double load, double density, bool trigger, double commanded_rate) noexcept;
+    /// `contact`: the blade touches bone; without it the load decides.
+    float tick(double load, double density, bool trigger, double commanded_rate,
+               std::optional<bool> contact = {}) noexcept;
 
     const BladeMotion& blade() const { return blade_; }
 

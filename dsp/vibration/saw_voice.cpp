@@ -159,9 +159,9 @@ double SawVoice::mix() noexcept {
     return sum * std::sqrt(wanted / (weights * got));
 }
 
-float SawVoice::tick(double load, bool trigger, double commanded_rate) noexcept {
+float SawVoice::tick(double load, bool trigger, double commanded_rate, std::optional<bool> contact) noexcept {
     const double thrust = std::isfinite(load) ? load : 0.0;
-    blade_.command(thrust, trigger, commanded_rate);
+    blade_.command(thrust, trigger, commanded_rate, contact);
     if (!running()) return 0.0f;
     choose_layers(thrust);
     const double slow = std::min(1.0, blade_.rate() / lowest_recorded_);

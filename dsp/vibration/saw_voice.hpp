@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,8 @@ public:
     void prepare(double rate, std::span<const SawRecording> recordings, const SawBehaviour& behaviour = {});
 
     /// One sample. `load` in N (non-finite: none), `commanded_rate` in Hz, clamped to [0, BladeMotion::greatest_rate].
-    float tick(double load, bool trigger, double commanded_rate) noexcept;
+    /// `contact`: the blade touches bone; without it the load decides.
+    float tick(double load, bool trigger, double commanded_rate, std::optional<bool> contact = {}) noexcept;
 
     SawState state() const { return blade_.state(); }
     double reciprocation_rate() const { return blade_.rate(); }  ///< Hz, at this instant

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/site.hpp"
 
+#include "dsp/core/error.hpp"
 #include "dsp/volume/site_geometry.hpp"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +19,7 @@ constexpr double far = 1.0;  // m: distance outside of the grid, where there is 
 constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
 constexpr double hollow_density = 200.0;  // kg/m³: below it, filled air
 constexpr double longest_hollow = 3e-3;  // m: longest gap between two walls of one bone
+constexpr double least_turn = 0.17;        // rad between a given stroke and the feed
 constexpr std::size_t most_candidates = 12'000;
 
 class Search {
@@ -42,7 +46,7 @@ public:
         return best_;
     }
 
-    std::optional<SawSite> at(const Vec3& point, const Vec3& approach) {
+    std::optional<SawSite> at(const Vec3& point, const Vec3& approach, const Vec3& along) {
         std::optional<Vec3> surface =
             glm::length(approach) > 0.0 ? first_hit(point, glm::normalize(approach)) : std::nullopt;
         if (!surface) surface = nearest_surface(point);
@@ -53,6 +57,13 @@ public:
                           : glm::length(g) > 0.1      ? -glm::normalize(g)
                                                       : Vec3(0.0, 0.0, -1.0);
         const double deep = std::max(thickness(*surface, feed), least_thickness);
+        if (const double length = glm::length(along); length > 0.0) {
+            const Vec3 across = along / length - feed * glm::dot(along / length, feed);
+            if (!(glm::length(across) > std::sin(least_turn)))
+                throw Error("the stroke has nearly the direction of the approach; give one across it");
+            const Vec3 stroke = glm::normalize(across);
+            return SawSite{*surface, feed, stroke, deep, std::max(width(*surface, feed, stroke, 0.5 * deep), 0.0)};
+        }
         double best = HUGE_VAL;
         for (int i = 0; i < site_directions; ++i) {
             const Vec3 stroke = site_direction(feed, i);
@@ -282,10 +293,10 @@ private:
 }  // namespace
 
 std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
-                                   const SiteRequest& request) {
+                                   const Vec3& along, const SiteRequest& request) {
     for (const int n : distance.size)
         if (n < 2) return std::nullopt;
-    return Search(distance, density, request).at(point, approach);
+    return Search(distance, density, request).at(point, approach, along);
 }
 
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request) {

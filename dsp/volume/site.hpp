@@ -39,10 +39,11 @@ std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, 
 
 /// The site where a line through `point` along `approach` first meets the bone; without an approach (zero), or where the
 /// line misses, the surface nearest to `point`. The blade lies in the direction, of eight, in which the bone is
-/// narrowest and the blade is free of other bone, if there is one. Empty when there is no surface, or, without an
-/// approach, none within 30 mm of `point`.
+/// narrowest and the blade is free of other bone, if there is one; or along `along`, as far as that is orthogonal to the
+/// feed, unless `along` is zero. Empty when there is no surface, or, without an approach, none within 30 mm of `point`.
+/// Throws Error when `along` is within 10° of the feed.
 std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
-                                   const SiteRequest& request = {});
+                                   const Vec3& along = Vec3(0.0), const SiteRequest& request = {});
 
 /// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there; the density up to the surface
 /// is that of the bone (extend_density). Throws Error when that is more than 40 million samples.

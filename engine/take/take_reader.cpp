@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take/take_reader.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
@@ -190,7 +191,7 @@ std::vector<std::string> Take::changed_assets() const {
     std::vector<std::string> found;
     for (const TakenAsset& asset : assets) {
         if (asset.hash == 0) continue;
-        if (!fs::exists(asset.path))
+        if (!fs::exists(bone::file_of_bone(asset.path)))
             found.push_back(fmt::format("asset '{}' is gone: {}", asset.name, asset.path.string()));
         else if (hash_of_asset(asset.path) != asset.hash)
             found.push_back(fmt::format("asset '{}' has changed since: {}", asset.name, asset.path.string()));

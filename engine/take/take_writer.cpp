@@ -33,10 +33,12 @@ constexpr std::uint64_t flush_every_bytes = 1 << 16;
 Json assets_json(const patch::Patch& patch) {
     Json assets = Json::array();
     for (const patch::PatchAsset& asset : patch.assets)
-        assets.push_back({{"name", asset.name},
-                          {"path", fs::absolute(asset.path).string()},
-                          // A patch may name a file that nothing uses.
-                          {"hash", fmt::format("{:016x}", fs::exists(asset.path) ? hash_of_asset(asset.path) : 0)}});
+        assets.push_back(
+            {{"name", asset.name},
+             {"path", fs::absolute(asset.path).string()},
+             // A patch may name a file that nothing uses.
+             {"hash",
+              fmt::format("{:016x}", fs::exists(bone::file_of_bone(asset.path)) ? hash_of_asset(asset.path) : 0)}});
     return assets;
 }
 

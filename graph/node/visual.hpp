@@ -42,7 +42,7 @@ enum class VisualKind : std::uint8_t {
     box,  ///< around `at`, of `size`
     rope,  ///< the rope output `value`; `asset`: the course from which it was made
     spring,  ///< between `hand` and `pose`
-    mark,  ///< `radius` about `pose`, with the number `value` beside it in the legend, while it is above `length`
+    mark,  ///< a ring of `radius` about the y axis of `pose`, with the number `value` beside it in the legend, while it is above `length`
     task,  ///< the planned cut of the task `asset`, its depth stop and what it spares
     asset_bone,  ///< the bone `asset` at `pose`; without one in its own frame. With `value`: density in that output's cuts
 };

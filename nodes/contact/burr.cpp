@@ -14,7 +14,8 @@ namespace tactus::nodes {
 struct Burr {
     static constexpr auto about =
         "A round burr that rests on the bone it has not cut yet and, running, advances along its own force by the "
-        "cutting law of saw_blade. Its shaft does not cut. 'carve' removes what the ball passes. No push frees it: it "
+        "cutting law of saw_blade, with the force per width of the flute in bone. Its shaft does not cut. 'carve' "
+        "removes what the ball passes. No push frees it: it "
         "is released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force with the hand "
         "outside of the bone.";
 
@@ -44,6 +45,8 @@ struct Burr {
     ContactThreshold threshold;
     Param diameter{structural, "4 mm", "1 mm", "8 mm", "of the ball; also the 'kerf' of carve"};
     Param flutes{structural, "8", "1", "32", "cutting edges; one bears at a time"};
+    Param sharpness{structural, "1", "0.1", "20",
+                    "forces of the published teeth over those of these flutes: the same force cuts that much more"};
     Param shaft_diameter{structural, "2.35 mm", "0 mm", "8 mm",
                          "of the shaft behind the ball, as ISO 1797-1, and at most 0.6 of the ball's; 0: none"};
     Param shaft_length{structural, "25 mm", "1 mm", "150 mm", "from the ball to the handpiece"};
@@ -55,6 +58,7 @@ struct Burr {
 
     void prepare(const Setup& setup) {
         // Behind a small ball the shaft has a neck.
+        law_ = saw::CuttingLaw{}.sharpened(sharpness);
         const double shaft = std::min<double>(shaft_diameter, 0.6 * diameter);
         burr_.emplace(saw::BurrShape{0.5 * diameter, flutes, 0.5 * shaft, shaft_length}, stiffness);
         waits_.attach(setup);
@@ -111,8 +115,8 @@ private:
 };
 
 TACTUS_NODE(Burr, pose, bone, running, release, asked, applied, wrench, load, flute_force, feed, penetration,
-            in_contact, waiting, rendered, front, stiffness, device_scale, threshold, diameter, flutes, shaft_diameter,
-            shaft_length, turn_rate)
+            in_contact, waiting, rendered, front, stiffness, device_scale, threshold, diameter, flutes, sharpness,
+            shaft_diameter, shaft_length, turn_rate)
 TACTUS_VISUALS(Burr)
 
 }  // namespace tactus::nodes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/content_hash.hpp"
 #include "dsp/carve/carver.hpp"
+#include "dsp/carve/kerf_voxels.hpp"
 #include "dsp/saw/saw_shape.hpp"
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/surface_density.hpp"
@@ -48,6 +49,7 @@ struct Carve {
     Flag find_site{true, find_site_about};
     Vector site{"0 mm, 0 mm, 0 mm", site_about};
     Vector approach{"0, 0, 0", approach_about};
+    Vector along{"0, 0, 0", along_about};
     Param bricks_per_tick{structural, "512", "16", "4096",
                           "maximum number of bricks of 8 x 8 x 8 voxels that one tick may change"};
 
@@ -112,19 +114,19 @@ private:
         const double voxels = kerf / std::max({spacing.x, spacing.y, spacing.z});
         refined_ = voxels < 3.0;
         if (!refined_) return;
-        const std::optional<volume::SawSite> where = site_of(*bone_, find_site, site, approach);
+        const std::optional<volume::SawSite> where = site_of(*bone_, find_site, site, approach, along, setup);
         if (!where)
             setup.fail(
                 fmt::format("the kerf of {:.3g} mm is only {:.2g} voxels wide and no site was found to refine "
                             "the bone at; give --site X,Y,Z, or import the bone with --spacing {:.2g} or finer",
-                            kerf * 1e3, voxels, kerf * 1e3 / 3.05));
+                            kerf * 1e3, voxels, carve::coarsest_voxel(kerf) * 1e3));
         auto made = std::make_shared<bone::Bone>();
         made->name = bone_->name;
         made->colour = bone_->colour;
         made->provenance = bone_->provenance;
         volume::SiteVolume fine;
         try {
-            fine = volume::refine_at(*where, bone_->distance, bone_->density, kerf / 3.05);
+            fine = volume::refine_at(*where, bone_->distance, bone_->density, kerf / carve::voxels_per_kerf);
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -185,7 +187,7 @@ private:
 };
 
 TACTUS_NODE(Carve, path, front, load, running, strokes, bone, removed, source, speed, reference_force, reference_rate,
-            reference_density, force_exponent, length, kerf, stroke, find_site, site, approach, bricks_per_tick)
+            reference_density, force_exponent, length, kerf, stroke, find_site, site, approach, along, bricks_per_tick)
 TACTUS_VISUALS(Carve)
 
 }  // namespace tactus::nodes

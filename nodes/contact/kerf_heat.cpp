@@ -50,7 +50,7 @@ struct KerfHeat {
     Param kerf{structural, "1 mm", "0 mm", "8 mm", "width of the cut: the bone in it leaves with its heat"};
 
     std::vector<Visual> visuals() const {
-        return {{.kind = VisualKind::mark, .value = "rise", .pose = "pose", .radius = 2e-3, .length = limit}};
+        return {{.kind = VisualKind::mark, .value = "rise", .pose = "pose", .radius = 6e-3, .length = limit}};
     }
 
     void prepare(const Setup&) {

@@ -17,7 +17,8 @@ namespace tactus::nodes {
 struct SawBlade {
     static constexpr auto about =
         "A saw blade that rests on the bone it has not cut yet: forces on all of its body, and a front of teeth, which "
-        "a running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes. No push "
+        "a running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes. No "
+        "push "
         "frees it: it is released by 'release', by a pause or a jump of the hand, and after 2 s at its greatest force "
         "with the hand outside of the bone.";
 
@@ -97,7 +98,7 @@ struct SawBlade {
                 "a sagittal blade swings about an axis {:.3g} mm behind its teeth, too near for {:.3g} mm of "
                 "teeth and their stroke; lengthen 'height'",
                 shape.height * 1e3, shape.length * 1e3));
-        law_ = saw::CuttingLaw{}.sharpened(sharpness);
+        law_ = saw::CuttingLaw{}.with_edge(kerf).sharpened(sharpness);
         blade_.emplace(shape, stiffness);
         waits_.attach(setup);
         released_.attach(setup);

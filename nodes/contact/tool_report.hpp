@@ -30,6 +30,7 @@ public:
         if (now.state == saw::HoldState::waiting && is_valid(pose)) waited_ += now.seconds;
         if (now.touches) {
             ++touching_;
+            touched_ += now.seconds;
             force_ += now.force * now.rendered;
             deepest_ = std::max(deepest_, now.lag);
             limited_ += now.rendered < 0.99;
@@ -43,6 +44,7 @@ public:
     void tell(Report& report, double scale) const {
         const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
         report.set("contact", "fraction", share(touching_, ticks_));
+        report.set("contact", "seconds", touched_);
         report.set("contact", "max_penetration_mm", deepest_ * 1e3);
         report.set("contact", "limited_fraction", share(limited_, touching_));
         report.set("contact", "waited_s", waited_);
@@ -56,7 +58,7 @@ public:
 
 private:
     double ticks_ = 0.0, touching_ = 0.0, force_ = 0.0, deepest_ = 0.0, clearance_ = 0.0;
-    double limited_ = 0.0, waited_ = 0.0, releases_ = 0.0;
+    double touched_ = 0.0, limited_ = 0.0, waited_ = 0.0, releases_ = 0.0;
     saw::HoldState last_ = saw::HoldState::waiting;
     Vec3 at_{0.0, 0.0, 0.0};
 };

@@ -38,6 +38,7 @@ struct Workspace {
     Flag find_site{true, find_site_about};
     Vector site{"0 mm, 0 mm, 0 mm", site_about};
     Vector approach{"0, 0, 0", approach_about};
+    Vector along{"0, 0, 0", along_about};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
 
     std::vector<Visual> visuals() const {
@@ -98,7 +99,7 @@ private:
     /// Frame of the device for which a handle at its origin holds the tool in front of the site: the tool's x along the
     /// stroke, y into the bone.
     Pose in_front_of(const bone::Bone& target, const Setup& setup) {
-        site_ = site_of(target, find_site, site, approach);
+        site_ = site_of(target, find_site, site, approach, along, setup);
         if (!site_)
             setup.fail(find_site ? "found no site for a saw cut on bone '" + bone.name +
                                        "'; choose one by --site X,Y,Z (mm), or leave 'bone' out and set 'origin' and "
@@ -118,7 +119,7 @@ private:
 };
 
 TACTUS_NODE(Workspace, device, clutch, turn, pose, frame, force_scale, bone, origin, rotation, scale, grip,
-            grip_rotation, find_site, site, approach, clearance)
+            grip_rotation, find_site, site, approach, along, clearance)
 TACTUS_VISUALS(Workspace)
 
 }  // namespace tactus::nodes

@@ -19,6 +19,9 @@ struct ContactEvents {
                     "of the tool: the speed of an event is its speed. Without it, that is how fast 'depth' changes in "
                     "one tick, which is too little for a depth that stays 0 outside",
                     "m/s, rad/s"};
+    In<bool> contact{optional,
+                     "of a tool, such as saw_blade.in_contact: begin and end are its own; unconnected: 'depth' "
+                     "decides"};
     Out<Event> events{"begins and ends"};
     Out<bool> in_contact{"between a begin and an end"};
     Param begin{"0 mm", "-100 mm", "100 mm", "the contact begins beyond this depth"};
@@ -37,11 +40,14 @@ struct ContactEvents {
         is_first_ = false;
         last_ = now;
         const double speed = std::abs(twist.connected ? glm::length(twist->linear) : change);
-        if (!in_contact.get() && now > begin) {
+        const bool touches = contact.connected   ? contact.get()
+                             : !in_contact.get() ? now > begin
+                                                 : now > begin - hysteresis;
+        if (!in_contact.get() && touches) {
             in_contact = true;
             deepest_ = now;
             emit_(events, tick, 0, EventKind::begin, {speed, now});
-        } else if (in_contact.get() && now <= begin - hysteresis) {
+        } else if (in_contact.get() && !touches) {
             in_contact = false;
             emit_(events, tick, 0, EventKind::end, {speed, deepest_});
         }
@@ -54,6 +60,6 @@ private:
     bool is_first_ = true;
 };
 
-TACTUS_NODE(ContactEvents, depth, twist, events, in_contact, begin, hysteresis)
+TACTUS_NODE(ContactEvents, depth, twist, contact, events, in_contact, begin, hysteresis)
 
 }  // namespace tactus::nodes

@@ -12,6 +12,7 @@
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/saw_figure.hpp"
 #include "tools/study/saw/bone_trial.hpp"
+#include "tools/study/saw/burr_trial.hpp"
 #include "tools/study/saw/device_trial.hpp"
 #include "tools/study/saw/grid_study.hpp"
 #include "tools/study/saw/saw_trial.hpp"
@@ -38,7 +39,7 @@ using file::Json;
 struct SawBenchChoice : BenchChoice {
     std::string figure;
     std::vector<std::string> bones;
-    bool devices = false, grid = false;
+    bool devices = false, grid = false, rates = false;
     int poses = 0;
 };
 
@@ -285,6 +286,37 @@ int bench_devices(const SawBenchChoice& choice) {
     return done;
 }
 
+/// Saw and burr under the same thrusts, by the force per width of their edges.
+int bench_rates(const SawBenchChoice& choice) {
+    Json rows = Json::array();
+    const auto row = [&](const char* tool, double thrust, double width, double depth, double along, double removal) {
+        const double energy = along / (width * depth);  // J/m³
+        rows.push_back({{"tool", tool},
+                        {"thrust_N", thrust},
+                        {"edge_in_bone_mm", width * 1e3},
+                        {"force_per_width_N_per_mm", thrust / width * 1e-3},
+                        {"depth_per_pass_um", depth * 1e6},
+                        {"energy_J_per_mm3", energy * 1e-9},
+                        {"removed_mm3_per_s", removal * 1e9}});
+        if (!choice.json)
+            fmt::print(
+                "{:<5} {:>5.1f} N on {:>5.2f} mm of edge: {:>5.2f} N/mm, {:>6.3f} µm a pass, {:>5.1f} J/mm³; {:>7.2f} "
+                "mm³/s\n",
+                tool, thrust, width * 1e3, thrust / width * 1e-3, depth * 1e6, energy * 1e-9, removal * 1e9);
+    };
+    for (const double thrust : {4.0, 5.0, 7.5, 10.0, 15.0}) {
+        const study::SawTrial saw{.thrust = thrust};
+        const study::SawTrialResult sawn = study::run_saw_trial(saw);
+        row("saw", thrust, sawn.teeth * saw.shape.kerf, sawn.feed / (2.0 * saw.blade_rate), sawn.along, sawn.removal);
+        const study::BurrTrial burr{.thrust = thrust, .settle = 0.5, .seconds = 0.5};
+        const study::BurrTrialResult milled = study::run_burr_trial(burr);
+        row("burr", thrust, milled.width, milled.feed / (burr.shape.flutes * burr.turn_rate), milled.along,
+            milled.removal);
+    }
+    if (choice.json) fmt::print("{}\n", Json{{"rates", rows}}.dump(2));
+    return done;
+}
+
 /// One box in voxels of several sizes.
 int bench_grid(const SawBenchChoice& choice) {
     constexpr double voxels[] = {0.2e-3, 0.3e-3, 0.5e-3, 1e-3};
@@ -350,6 +382,7 @@ int bench_saw(const SawBenchChoice& choice) {
     if (!choice.bones.empty()) return bench_bones(choice);
     if (choice.devices) return bench_devices(choice);
     if (choice.grid) return bench_grid(choice);
+    if (choice.rates) return bench_rates(choice);
     if (choice.poses > 0) return bench_poses(choice);
     const Comparison made = compare();
     const Json cost = costs(choice.rounds);
@@ -388,6 +421,7 @@ Verb saw_verb() {
                     .one_each();
                 verb.flag("--devices", choice->devices,
                           "instead: the same cut on simulated devices of different strength");
+                verb.flag("--rates", choice->rates, "instead: saw and burr under the same thrusts");
                 verb.flag("--grid", choice->grid, "instead: the same cut in voxels of 0.2, 0.3, 0.5 and 1 mm");
                 verb.add("--poses", choice->poses,
                          "instead: presses each tool into a box and a jaw at so many random attitudes in all, and "

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/patch_options.hpp"
 
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+
 namespace tactus::command {
 
 void add_patch_options(VerbOptions& verb, session::PatchChoice& choice) {
@@ -22,6 +26,23 @@ void add_device_scale(VerbOptions& verb, std::optional<double>& scale) {
         .range(0.01, 10.0);
 }
 
+void add_saw_options(VerbOptions& verb, session::SawChoice& saw) {
+    const Option file =
+        verb.add("--saw", saw.file, "sound of a saw, recording set or model: what the saw of the patch plays");
+    verb.add(
+            "--rate", saw.rate,
+            "strokes per second of the sound of --saw, Hz (default: estimated from it); the blade then strokes at this "
+            "rate")
+        .unit("Hz")
+        .range(5.0, 1000.0)
+        .needs(file);
+}
+
+void use_saw(session::PatchChoice& choice, const session::SawChoice& saw) {
+    if (const std::string question = session::choose_saw(choice, saw); !question.empty())
+        say(stderr, fmt::format("tactus: {}\n", question));
+}
+
 void add_site_options(VerbOptions& verb, session::SiteText& text) {
     const Option site =
         verb.add("--site", text.site,
@@ -29,6 +50,9 @@ void add_site_options(VerbOptions& verb, session::SiteText& text) {
                  "starts (default: a site is found)");
     verb.add("--approach", text.approach,
              "X,Y,Z: direction of the saw into the bone (default: the surface's normal at --site)")
+        .needs(site);
+    verb.add("--along", text.along,
+             "X,Y,Z: direction in which the blade strokes (default: over the narrowest width of the bone at --site)")
         .needs(site);
 }
 

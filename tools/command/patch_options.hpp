@@ -4,6 +4,7 @@
 
 #include "tools/command/options.hpp"
 #include "tools/session/patch_choice.hpp"
+#include "tools/session/saw_choice.hpp"
 #include "tools/session/site_choice.hpp"
 
 #include <optional>
@@ -16,7 +17,11 @@ void add_patch_options(VerbOptions& verb, session::PatchChoice& choice);
 void add_override_options(VerbOptions& verb, session::PatchChoice& choice);
 /// --device-scale, for session::choose_device_scale.
 void add_device_scale(VerbOptions& verb, std::optional<double>& scale);
-/// --site and --approach, for session::choose_site.
+/// --saw and --rate.
+void add_saw_options(VerbOptions& verb, session::SawChoice& saw);
+/// session::choose_saw, with what it returns on standard error.
+void use_saw(session::PatchChoice& choice, const session::SawChoice& saw);
+/// --site, --approach and --along, for session::choose_site.
 void add_site_options(VerbOptions& verb, session::SiteText& text);
 
 }  // namespace tactus::command

@@ -3,6 +3,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "assets/training/task_file.hpp"
+#include "dsp/carve/kerf_voxels.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ void check_bone(const compile::PlanNode& carve, patch::Problems& problems) {
                      fmt::format("the kerf of {:.3g} mm is only {:.2g} voxels wide in the bone of the task, "
                                  "which a score compares voxel by voxel; import the bone with --spacing "
                                  "{:.2g} or finer",
-                                 kerf * 1e3, voxels, std::floor(kerf * 1e5 / 3.05) / 100.0));
+                                 kerf * 1e3, voxels, carve::coarsest_voxel(kerf) * 1e3));
 }
 
 }  // namespace

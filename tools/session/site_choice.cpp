@@ -5,6 +5,7 @@
 #include "tools/session/load_plan.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -39,9 +40,18 @@ Vec3 three_lengths(const char* option, std::string_view text) {
     return v;
 }
 
+/// 0 for an empty text.
+Vec3 direction(const char* option, const std::string& text) {
+    if (text.empty()) return Vec3(0.0);
+    const Vec3 found = three_lengths(option, text);
+    if (!(glm::length(found) > 1e-9)) throw Error(fmt::format("{} 0,0,0 is no direction", option));
+    return found;
+}
+
 }  // namespace
 
-std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& site_mm, const Vec3& approach) {
+std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& site_mm, const Vec3& approach,
+                                       const Vec3& along) {
     std::vector<SiteSetting> settings;
     for (const patch::PatchNode& node : patch.nodes) {
         const bool has_bone = std::ranges::any_of(
@@ -50,19 +60,21 @@ std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& si
         settings.push_back({node.name, "find_site", "false"});
         settings.push_back({node.name, "site", fmt::format("{} mm, {} mm, {} mm", site_mm.x, site_mm.y, site_mm.z)});
         settings.push_back({node.name, "approach", fmt::format("{}, {}, {}", approach.x, approach.y, approach.z)});
+        settings.push_back({node.name, "along", fmt::format("{}, {}, {}", along.x, along.y, along.z)});
     }
     return settings;
 }
 
 void choose_site(PatchChoice& choice, const SiteText& text) {
-    if (text.site.empty() && text.approach.empty()) return;
-    if (text.site.empty()) throw Error("--approach needs --site: the point that the saw is to meet");
+    if (text.site.empty() && text.approach.empty() && text.along.empty()) return;
+    if (text.site.empty())
+        throw Error(fmt::format("{} needs --site: the point that the saw is to meet",
+                                text.approach.empty() ? "--along" : "--approach"));
     const Vec3 site = three_lengths("--site", text.site);
-    const Vec3 approach = text.approach.empty() ? Vec3(0.0) : three_lengths("--approach", text.approach);
-    if (!text.approach.empty() && !(glm::length(approach) > 1e-9)) throw Error("--approach 0,0,0 is no direction");
+    const Vec3 approach = direction("--approach", text.approach), along = direction("--along", text.along);
     patch::Problems problems;
     const patch::Patch patch = patch::load_patch(find_patch(choice.patch), problems);
-    const std::vector<SiteSetting> settings = site_settings(patch, site, approach);
+    const std::vector<SiteSetting> settings = site_settings(patch, site, approach, along);
     for (const SiteSetting& s : settings)
         choice.overrides.settings.push_back(fmt::format("{}.{}={}", s.node, s.param, s.value));
     const bool any = !settings.empty();

@@ -131,7 +131,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
     Json all = Json::array();
     for (const auto& stream : engine.host().streams) {
         const StreamFormat& format = stream->format();
-        if (format.file.empty()) continue;
+        if (format.file.empty() || !stream->loss().empty()) continue;
         all.push_back(format.file);
         if (format.type == &value::signal)
             json["signals"].push_back(

@@ -15,7 +15,7 @@ namespace tactus::session {
 std::vector<std::string> unrecovered(const run::Engine& engine);
 
 /// The summary as JSON text. `files`: files written besides the recordings; `losses`: files that could not be
-/// completed, and why.
+/// completed, and why. Those are not among the "files" of the summary, nor the "signals".
 std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,
                          const std::vector<std::string>& files, const std::vector<std::string>& losses);
 

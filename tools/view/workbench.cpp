@@ -185,7 +185,7 @@ bool Workbench::cut_at(const Vec3& site) {
     // A hundredth of a millimetre: no voxel is smaller.
     const Vec3 site_mm = glm::round(site * 1e5) * 1e-2;
     const auto settings =
-        session::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), site_mm, Vec3(0.0));
+        session::site_settings(patch::read_patch(editor_->text(), editor_->file(), problems), site_mm);
     if (settings.empty()) {
         tell("this patch has no bone to saw: a site needs a workspace or carve node with a bone", true);
         return false;

@@ -65,16 +65,67 @@ double sink(double force, double rate, double voxel, double seconds = 1.0) {
 }  // namespace
 
 TEST_CASE("a burr sinks faster the harder it is pressed and not at all below its threshold") {
-    const double soft = sink(1.5, 1000.0, 0.33e-3), firm = sink(3.0, 1000.0, 0.33e-3);
+    // The flute of a ball of 4 mm rubs up to 4 times the force at which one of 1 mm does.
+    const double rubbing = 4.0 * saw::CuttingLaw{}.rub;
+    const double soft = sink(rubbing + 1.0, 1000.0, 0.33e-3), firm = sink(rubbing + 2.0, 1000.0, 0.33e-3);
     CHECK(sink(0.5, 1000.0, 0.33e-3) < 0.02e-3);
+    CHECK(sink(0.9 * rubbing, 1000.0, 0.33e-3) < 0.1 * soft);
     CHECK(soft > 0.2e-3);
     CHECK(firm > 1.8 * soft);
 }
 
+TEST_CASE("a flute of a burr cuts by the same force per width as a tooth of a saw") {
+    // 8 flutes of 4 mm, 1000 turns a second, each a depth by the force on a millimetre.
+    for (const double force : {6.0, 12.0}) {
+        const double depth = saw::CuttingLaw{}.depth(force / 4.0).depth;
+        CHECK(sink(force, 1000.0, 0.33e-3, 0.3) == Approx(8.0 * 1000.0 * depth * 0.3).epsilon(0.03));
+    }
+}
+
+TEST_CASE("a burr leaves a hole as wide as its ball, whatever its size and wherever it goes") {
+    for (const double size : {1.5e-3, 4e-3, 7e-3})
+        for (const Vec3& way : {Vec3(0.0, 0.0, -1.0), Vec3(1.0, 0.0, 0.0), Vec3(0.6, 0.0, -0.8), Vec3(0.0, 1.0, 0.0)}) {
+            // Large enough for all of the ball on its way; the band must hold its radius.
+            const auto bone =
+                bone_block({{-0.008, -0.008, -0.013}, {0.008, 0.008, 0.0}, size > 5e-3 ? 0.6e-3 : 0.33e-3});
+            carve::Carver carver;
+            carve::CarveSettings settings;
+            settings.kerf = size;
+            settings.tooth_pitch = saw::tooth_pitch;
+            settings.blade_length = (carve::CutFront::most_nodes - 1) * settings.tooth_pitch - settings.stroke;
+            carver.prepare(*bone, settings);
+            constexpr double length = 2e-3;
+            const Vec3 start(0.0, 0.0, -0.5 * size - 0.5e-3);
+            std::vector<carve::CutFront> path;
+            double before = 0.0;
+            for (int n = 0; n <= 200; ++n) {
+                carve::CutFront& front = path.emplace_back();
+                front.pose = {start + way * (length * n / 200.0), teeth_down};
+                front.kerf = size;
+                front.pitch = 0.5 * size;
+                front.count = 2;
+                front.running = 1;
+                front.seated = 3;
+                front.fresh = n == 0 ? 3 : 0;
+                front.place(0, front.pose.position);
+                front.place(1, front.pose.position);
+                if (n % 20 != 0) continue;
+                carver.update(*bone, path);
+                bone->reclaim(bone->publish().version);
+                path.clear();
+                if (n == 0) before = carver.removed_m3();
+            }
+            const double radius = 0.5 * size, disc = 3.14159265 * radius * radius;
+            CAPTURE(size, way.x, way.y, way.z, before * 1e9);
+            CHECK(before == Approx(disc * radius * 4.0 / 3.0).epsilon(0.05));
+            CHECK(carver.removed_m3() - before == Approx(disc * length).epsilon(0.05));
+        }
+}
+
 TEST_CASE("how fast a burr sinks does not depend on the rate of the force nor on the voxel") {
-    const double reference = sink(2.0, 1000.0, 0.33e-3);
-    for (const double rate : {250.0, 2000.0}) CHECK(sink(2.0, rate, 0.33e-3) == Approx(reference).epsilon(0.02));
-    for (const double voxel : {0.2e-3, 0.5e-3}) CHECK(sink(2.0, 1000.0, voxel) == Approx(reference).epsilon(0.02));
+    const double reference = sink(5.0, 1000.0, 0.33e-3);
+    for (const double rate : {250.0, 2000.0}) CHECK(sink(5.0, rate, 0.33e-3) == Approx(reference).epsilon(0.02));
+    for (const double voxel : {0.2e-3, 0.5e-3}) CHECK(sink(5.0, 1000.0, voxel) == Approx(reference).epsilon(0.02));
 }
 
 TEST_CASE("a burr gives no energy and does not pull on closed paths, running or not") {

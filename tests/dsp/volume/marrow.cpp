@@ -77,14 +77,45 @@ TEST_CASE("a cranium is not filled, though its holes are as small as those of a 
     CHECK(Phantom{}.marrow(leaky_shell(16.0, 19.0, 2.0), no_air) == 0.0);
 }
 
-TEST_CASE("a spinal canal is not filled, where it ends and where the scan ends") {
-    // A tube of 16 mm, through all of the scan or half of it.
-    for (const double top : {60.0, 30.0}) {
-        const auto tube = [top](const Vec3& p) {
-            const double r = std::hypot(p.x - middle.x, p.y - middle.y);
-            return r >= 8.0 && r <= 11.0 && p.z >= 2.0 && p.z <= std::min(top, 47.5);
-        };
-        CHECK(Phantom{}.marrow(tube, no_air) == 0.0);
+namespace {
+
+/// A canal of 16 mm along an axis, from `low` to `high` mm, closed by bone at the ends where it is capped; of vertebrae
+/// of 8 mm with gaps of that width between them.
+struct Canal {
+    int axis = 2;
+    double low = 6.0, high = 44.0, gap = 0.0;
+    bool is_capped_low = true, is_capped_high = true;
+
+    bool operator()(const Vec3& p) const {
+        const Vec3 from = p - middle;
+        const double r = std::hypot(from[(axis + 1) % 3], from[(axis + 2) % 3]), along = p[axis];
+        if (r > 11.0 || along < low || along > high) return false;
+        if ((is_capped_low && along <= low + 3.0) || (is_capped_high && along >= high - 3.0)) return true;
+        return r >= 8.0 && std::fmod(along - low, 8.0 + gap) <= 8.0;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a spinal canal is not filled, where it ends, where the scan ends and between vertebrae") {
+    for (const int axis : {0, 1, 2}) {
+        CAPTURE(axis);
+        // One that is closed on all sides is filled, so that nothing else keeps the others empty.
+        const double closed = Phantom{}.marrow(Canal{axis}, no_air);
+        CHECK(closed == Approx(3.14159 * 64.0 * 32.0).epsilon(0.05));
+        CHECK(Phantom{}.marrow(Canal{axis, 6.0, 44.0, 2.0}, no_air) > 0.9 * closed);
+        CHECK(Phantom{}.marrow(Canal{axis, 6.0, 44.0, 4.5}, no_air) == 0.0);
+        // It ends within the scan, at one end or both.
+        CHECK(Phantom{}.marrow(Canal{axis, 6.0, 44.0, 0.0, true, false}, no_air) == 0.0);
+        CHECK(Phantom{}.marrow(Canal{axis, 6.0, 44.0, 0.0, false, false}, no_air) == 0.0);
+        // The scan ends, with or without samples around what was scanned.
+        for (const int margin : {0, 4}) {
+            const double first = 0.5 * margin, last = 49.5 - 0.5 * margin;
+            CAPTURE(margin);
+            CHECK(Phantom{}.marrow(Canal{axis, first, last, 0.0, false, false}, no_air, margin) == 0.0);
+            CHECK(Phantom{}.marrow(Canal{axis, 6.0, last, 0.0, true, false}, no_air, margin) == 0.0);
+            CHECK(Phantom{}.marrow(Canal{axis, first, 44.0, 0.0, false, true}, no_air, margin) == 0.0);
+        }
     }
 }
 

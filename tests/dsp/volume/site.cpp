@@ -143,6 +143,16 @@ TEST_CASE("a site is chosen by a point and a direction") {
     REQUIRE(nearest);
     CHECK(glm::length(nearest->point - Vec3(-5e-3, 6e-3, 1e-3)) < 0.5e-3);
     CHECK(nearest->feed.y < -0.99);
+    // The stroke can be given; what it has along the approach does not count.
+    const auto given =
+        volume::saw_site_at(bar.distance, bar.density, {10e-3, 0.0, 40e-3}, {0.0, 0.0, -2.0}, {3.0, 0.0, 1.0});
+    REQUIRE(given);
+    CHECK(glm::length(given->stroke - Vec3(1.0, 0.0, 0.0)) < 1e-9);
+    CHECK(given->point == straight->point);
+    CHECK(given->feed == straight->feed);
+    CHECK(given->width > 30e-3);
+    CHECK_THROWS_AS(
+        volume::saw_site_at(bar.distance, bar.density, {10e-3, 0.0, 40e-3}, {0.0, 0.0, -2.0}, {0.1, 0.0, -1.0}), Error);
     // A point far from the bone names no place on it.
     CHECK_FALSE(at({0.0, 500e-3, 0.0}, Vec3(0.0)));
 }

@@ -6,6 +6,7 @@
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/inspection_picture.hpp"
 #include "tools/study/bones/inspection.hpp"
+#include "tools/study/bones/saw_spacing.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,6 +64,14 @@ std::string bars(const volume::Histogram& histogram) {
     return text;
 }
 
+/// In the unit in which the number is neither long nor zero.
+std::string volume_text(double mm3) {
+    if (mm3 >= 1e5) return fmt::format("{:.1f} cm³", mm3 * 1e-3);
+    if (mm3 >= 100.0) return fmt::format("{:.0f} mm³", mm3);
+    if (mm3 >= 1e-3) return fmt::format("{:.3g} mm³", mm3);
+    return fmt::format("{:.3g} µm³", mm3 * 1e9);
+}
+
 std::string text_of(const Inspection& found) {
     const auto& [x, y, z] = found.spacing_mm;
     std::string text = fmt::format("kind: {}, frame {}\n", found.kind, found.frame);
@@ -83,11 +92,12 @@ std::string text_of(const Inspection& found) {
     text += fmt::format("{} component{}:\n", found.parts_in_all, found.parts_in_all == 1 ? "" : "s");
     for (const InspectedPart& part : found.parts) {
         const auto& b = part.bounds_mm;
-        text += fmt::format("  {}: {:.0f} mm³, x {:.1f}:{:.1f}, y {:.1f}:{:.1f}, z {:.1f}:{:.1f} mm\n", part.name,
-                            part.volume_mm3, b[0][0], b[0][1], b[1][0], b[1][1], b[2][0], b[2][1]);
+        text += fmt::format("  {}: {}, x {:.1f}:{:.1f}, y {:.1f}:{:.1f}, z {:.1f}:{:.1f} mm\n", part.name,
+                            volume_text(part.volume_mm3), b[0][0], b[0][1], b[1][0], b[1][1], b[2][0], b[2][1]);
     }
     if (found.parts_in_all > found.parts.size())
         text += fmt::format("  and {} smaller\n", found.parts_in_all - found.parts.size());
+    if (found.kind == "ct" || found.kind == "bone") text += fmt::format("  {}\n", study::saw_line(found.spacing_mm));
     for (const std::string& note : found.notes) text += "  " + note + "\n";
     return text;
 }

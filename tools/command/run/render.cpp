@@ -141,6 +141,8 @@ Action add_render(VerbOptions& verb) {
     add_patch_options(verb, *choice);
     const auto site = std::make_shared<session::SiteText>();
     add_site_options(verb, *site);
+    const auto saw = std::make_shared<session::SawChoice>();
+    add_saw_options(verb, *saw);
     const auto scale = std::make_shared<std::optional<double>>();
     add_device_scale(verb, *scale);
     verb.add("--seconds", choice->seconds, "logical time to render, s").unit("s").shows_default().range(1e-3, 1e6);
@@ -153,8 +155,9 @@ Action add_render(VerbOptions& verb) {
     verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");
-    return [choice, site, scale] {
+    return [choice, site, saw, scale] {
         session::choose_site(*choice, *site);
+        use_saw(*choice, *saw);
         session::choose_device_scale(*choice, *scale);
         return render(*choice);
     };

@@ -82,6 +82,8 @@ Action add_run(VerbOptions& verb) {
     add_patch_options(verb, *choice);
     const auto site = std::make_shared<session::SiteText>();
     add_site_options(verb, *site);
+    const auto saw = std::make_shared<session::SawChoice>();
+    add_saw_options(verb, *saw);
     const auto scale = std::make_shared<std::optional<double>>();
     add_device_scale(verb, *scale);
     verb.add("--seconds", choice->seconds, "stop after this logical time, s").unit("s").range(1e-3, 1e6);
@@ -103,8 +105,9 @@ Action add_run(VerbOptions& verb) {
     verb.flag("--keep-running", choice->view.keep_running, "continue the run when the window is closed").needs(window);
     add_view_options(verb, choice->view);
     verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
-    return [choice, site, scale] {
+    return [choice, site, saw, scale] {
         session::choose_site(*choice, *site);
+        use_saw(*choice, *saw);
         session::choose_device_scale(*choice, *scale);
         return run(*choice);
     };

@@ -26,6 +26,7 @@ Json json_of(const study::Score& s) {
         {"spared", Json::array()},
         {"force",
          {{"mean_N", s.mean_N},
+          {"contact_s", s.contact_s},
           {"over_limit_Ns", s.over_limit_Ns},
           {"shown", or_null(s.shown_share)},
           {"device_scale", s.device_scale},

@@ -2,6 +2,7 @@
 // tactus session: a trainee's tasks in order, with their takes, resumed after a crash.
 #include "assets/bone/content_hash.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/recording_set.hpp"
 #include "assets/training/task_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
@@ -36,6 +37,7 @@ struct SessionChoice {
     fs::path out;
     view::ViewedRunChoice run;  // what all attempts share
     std::optional<double> device_scale;
+    SawChoice saw;
     bool offline = false, is_new = false;
 };
 
@@ -56,6 +58,7 @@ view::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training
     run.overrides.assets = {"task=" + task.file.string(), "bone=" + task.bone.string()};
     run.overrides.assets.insert(run.overrides.assets.end(), choice.run.overrides.assets.begin(),
                                 choice.run.overrides.assets.end());
+    choose_saw(run, choice.saw);
     if (!run.seconds) run.seconds = task.length;
     run.out = at / "run";
     run.record = at / "take";
@@ -131,6 +134,11 @@ int run_session(const SessionChoice& choice) {
         check_bone(choice, task);
         load_plan(attempt_choice(choice, task, "attempt"), assets);
     }
+    if (!choice.saw.file.empty())
+        if (const std::string question =
+                sound::saw_question(sound::load_recording_set(choice.saw.file, choice.saw.rate));
+            !question.empty())
+            say(stderr, fmt::format("tactus: {}\n", question));
     TrainingSession session(wanted);
     if (session.is_resumed())
         say(stderr, fmt::format("resuming {}: {} of {} tasks were completed\n", session.folder().string(),
@@ -171,6 +179,7 @@ Action declare_session(VerbOptions& verb) {
         .range(1e-3, 1e5);
     add_override_options(verb, choice->run);
     add_device_scale(verb, choice->device_scale);
+    add_saw_options(verb, choice->saw);
     verb.add("--audio", choice->run.audio, "sound output: part of a card's name, default, file or none");
     verb.flag("--view", choice->run.view.wanted, "open a window for each attempt; closing it ends the attempt");
     return [choice] { return run_session(*choice); };

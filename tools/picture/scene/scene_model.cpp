@@ -330,7 +330,7 @@ void SceneModel::show_still_bones() {
     }
 }
 
-void SceneModel::show_force(const std::string& port, const Vec3& at) {
+void SceneModel::show_force(const std::string& port, const Vec3& at, double ahead) {
     const auto seen = port.empty() ? std::nullopt : observer_.latest<Wrench>(port);
     if (!seen) return;
     const Vec3 force = seen->value.force;
@@ -341,7 +341,9 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
     // A force of 10 N is drawn half as long as the scene.
     legend_.entries.push_back({fmt::format("{}: {:.1f} N (10 N: {:.3g} mm)", port, size, 1e3 * reach), force_colour});
-    if (size > 0.02) display::add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
+    if (size <= 0.02) return;
+    const Vec3 from = at + force * (ahead / size);
+    display::add_arrow(notes_, from, from + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 
 }  // namespace tactus::picture

@@ -241,7 +241,7 @@ private:
     void show_blades();
     void show_balls();
     void show_gripper();
-    void show_force(const std::string& wrench, const Vec3& at);
+    void show_force(const std::string& wrench, const Vec3& at, double ahead = 0.0);
     void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     void mark(const display::Bounds& bounds, const Pose& pose);
     /// The densities of a file: those of its bone, or of a plan's fragments in their order; empty: being read, or none.

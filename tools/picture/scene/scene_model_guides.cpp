@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace tactus::picture {
 
@@ -30,6 +31,17 @@ void add_bar(geometry::SurfacePatch& patch, const Vec3& from, const Vec3& to, do
     const Vec3 x = glm::normalize(glm::cross(side, z));
     const Quat turn = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(z, x), z)));
     display::add_box(patch, {-radius, -radius, 0.0}, {radius, radius, length}, colour, {from, turn});
+}
+
+/// A ring around the y axis of a tool, which goes into the bone: what it surrounds stays in sight.
+void add_ring(geometry::SurfacePatch& patch, const Pose& tool, double radius, const Vec3& colour) {
+    constexpr int sides = 24;
+    constexpr double thickness = 0.06;  // of the radius
+    const auto at = [&](int n) {
+        const double angle = 2.0 * std::numbers::pi * n / sides;
+        return tool.apply(Vec3(radius * std::cos(angle), 0.0, radius * std::sin(angle)));
+    };
+    for (int n = 0; n < sides; ++n) add_bar(patch, at(n), at(n + 1), thickness * radius, colour);
 }
 
 void add_edges(geometry::SurfacePatch& patch, const Vec3& centre, const Vec3& size, double radius) {
@@ -98,8 +110,9 @@ void SceneModel::show_guides() {
         const double value = number_of(reading.value, 0.0);
         const auto pose = pose_of(reading.pose);
         if (!pose || !(value > reading.limit)) continue;
-        display::add_ball(notes_, pose->position, reading.radius, force_colour);
-        legend_.entries.push_back({fmt::format("{}: {:.3g} {}", reading.value, value, reading.unit), force_colour});
+        add_ring(notes_, *pose, reading.radius, heat_colour);
+        legend_.entries.push_back(
+            {fmt::format("{}: {:.3g} {} (ring)", reading.value, value, reading.unit), heat_colour});
     }
 }
 

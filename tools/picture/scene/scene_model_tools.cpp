@@ -28,7 +28,8 @@ void SceneModel::show_blades() {
         // Margin for its motion.
         show(shape_mesh("blade " + blade.node, patch), *pose, display::bounds_of(patch), 1.0, false, false);
         tool_ = hands_side_of(*pose);
-        show_force(blade.wrench, pose->position);
+        // At the clamp of the blade: an arrow at the teeth would hide the cut.
+        show_force(blade.wrench, pose->apply({-0.5 * blade.shape.length, -blade.shape.height, 0.0}));
     }
 }
 
@@ -52,7 +53,7 @@ void SceneModel::show_balls() {
         show(shape_mesh(ball.pose, patch), *proxy, display::bounds_of(patch), hand ? 0.75 : 1.0, false);
         legend_.entries.push_back({hand ? "proxy" : "tool", proxy_colour});
         if (!hand && !tool_) tool_ = hands_side_of(*proxy);
-        show_force(ball.wrench, proxy->position);
+        show_force(ball.wrench, proxy->position, hand ? 0.0 : ball.radius);
     }
 }
 

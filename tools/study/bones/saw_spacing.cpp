@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/saw_spacing.hpp"
 
+#include "dsp/carve/kerf_voxels.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,17 +10,11 @@
 
 namespace tactus::study {
 
-namespace {
-
-constexpr double voxels_per_kerf = 3.05;
-
-}  // namespace
-
 double narrowest_kerf_mm(const std::array<double, 3>& voxel_mm) {
-    return voxels_per_kerf * *std::max_element(voxel_mm.begin(), voxel_mm.end());
+    return carve::voxels_per_kerf * *std::max_element(voxel_mm.begin(), voxel_mm.end());
 }
 
-double coarsest_spacing_mm(double kerf_mm) { return std::floor(100.0 * kerf_mm / voxels_per_kerf) / 100.0; }
+double coarsest_spacing_mm(double kerf_mm) { return carve::coarsest_voxel(kerf_mm * 1e-3) * 1e3; }
 
 std::string saw_line(const std::array<double, 3>& voxel_mm) {
     const double narrowest = narrowest_kerf_mm(voxel_mm);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/saw/bone_trial.hpp"
 
+#include "dsp/carve/kerf_voxels.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/saw/saw_blade.hpp"
 #include "tools/study/saw/saw_trial.hpp"
@@ -71,7 +72,7 @@ BoneTrial run_bone_trial_at(const volume::SawSite& site, const bone::Bone& bone,
                             double measured, const saw::SawShape& shape, double stiffness) {
     const Vec3& spacing = bone.distance.spacing;
     const double voxel = std::max({spacing.x, spacing.y, spacing.z});
-    BoneTrial trial{site, std::min(voxel, shape.kerf / 3.05), {}};
+    BoneTrial trial{site, std::min(voxel, shape.kerf / carve::voxels_per_kerf), {}};
     const volume::SiteVolume fine = volume::refine_at(site, bone.distance, bone.density, trial.voxel, {.travel = 2e-3});
     for (const double thrust : thrusts) {
         volume::BoneEditor editor(fine.distance, fine.density,

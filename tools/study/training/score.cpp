@@ -219,6 +219,7 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
     const training::MotionMeasures motion =
         training::motion_of(run.samples, cut, run.task.limits.force.value_or(std::numeric_limits<double>::infinity()));
     score.mean_N = motion.mean_force;
+    score.contact_s = motion.contact;
     score.over_limit_Ns = motion.over_limit;
     if (said.has_force && motion.contact > 0.0) score.shown_share = 1.0 - motion.without_force / motion.contact;
     score.jerk = motion.jerk;

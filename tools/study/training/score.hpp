@@ -30,6 +30,7 @@ struct Score {
     double over_mm3 = 0.0, under_mm3 = 0.0;
     std::vector<SparedScore> spared;
     double mean_N = 0.0, over_limit_Ns = 0.0;  ///< of the tool, which `device_scale` divides from that of the hand
+    double contact_s = 0.0;  ///< time of contact
     double device_scale = 1.0;  ///< forces on the device over those of the tool
     double limited = 0.0;  ///< fraction of the time of contact in which the device gave less than the tool wanted
     std::optional<double> shown_share;  ///< of the time of contact, in which the hand was given a force

@@ -149,7 +149,7 @@ TEST_CASE("the scores of a run have exactly the documented shape", "[slow]") {
     CHECK(keys == std::vector<std::string>{"breakthrough", "force", "heat_s", "over_mm3", "path_mm", "plane", "seconds",
                                            "spared", "strokes", "under_mm3", "validity"});
     CHECK(score["plane"].size() == 3);
-    CHECK(score["force"].size() == 6);
+    CHECK(score["force"].size() == 7);
     CHECK(score["force"]["device_scale"] == 1.0);
     CHECK(score["force"].contains("limited"));
     CHECK(score["force"]["shown"].is_number());
