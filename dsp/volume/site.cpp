@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -36,7 +37,7 @@ public:
 
     std::optional<SawSite> run() {
         const std::vector<int> found = candidates();
-        middle_ = middle_of_bone();
+        find_middle();
         for (const int index : found) look_at(index);
         if (!(best_score_ > 0.0)) {
             border_counts_ = false;
@@ -109,20 +110,23 @@ private:
         return g;
     }
 
-    /// Mean position of samples in bone, every 4 mm or so.
-    Vec3 middle_of_bone() const {
+    /// Mean position of samples in bone, every 4 mm or so, and their spread about it.
+    void find_middle() {
         Vec3 sum(0.0);
-        double count = 0.0;
+        double count = 0.0, squares = 0.0;
         int stride[3];
         for (int a = 0; a < 3; ++a) stride[a] = std::max(1, static_cast<int>(4e-3 / distance_.spacing[a]));
         for (int k = 0; k < distance_.size[2]; k += stride[2])
             for (int j = 0; j < distance_.size[1]; j += stride[1])
                 for (int i = 0; i < distance_.size[0]; i += stride[0])
                     if (distance_.at(i, j, k) < 0.0f) {
-                        sum += distance_.position(i, j, k);
+                        const Vec3 p = distance_.position(i, j, k);
+                        sum += p;
+                        squares += glm::dot(p, p);
                         count += 1.0;
                     }
-        return count > 0.0 ? sum / count : sum;
+        if (count > 0.0) middle_ = sum / count;
+        if (count > 0.0) spread_ = std::sqrt(std::max(squares / count - glm::dot(middle_, middle_), 1e-6));
     }
 
     /// Where a line through `point` enters bone, from 150 mm before it to 150 mm behind it.
@@ -157,7 +161,14 @@ private:
         const double border = border_counts_ ? std::min({room.x, room.y, room.z}) : 1.0;
         const Vec3 inwards = middle_ - p;
         const bool from_inside = glm::dot(inwards, feed) < -0.3 * glm::length(inwards);
-        return (border < 20e-3 ? 0.3 : 1.0) * (from_inside ? 0.2 : 1.0);
+        return (border < 20e-3 ? 0.3 : 1.0) * (from_inside ? 0.2 : 1.0) * centrality(p);
+    }
+
+    /// 1 in the middle of the bone, 0.75 as far from it as bone is on the mean, towards 0.5 at its ends: of sites that are
+    /// as good for a blade, the one on the body of a bone is that which a person means, not one on a process or a rib.
+    double centrality(const Vec3& p) const {
+        const Vec3 away = (p - middle_) / spread_;
+        return 0.5 + 0.5 / (1.0 + glm::dot(away, away));
     }
 
     bool near_border(const Vec3& p) const {
@@ -222,18 +233,25 @@ private:
 
     /// Width of the bone along the blade at a depth; negative when the blade would touch another bone beside it.
     double width(const Vec3& p, const Vec3& feed, const Vec3& stroke, double depth) const {
+        const std::array<double, 2> sides = widths(p, feed, stroke, depth);
+        return sides[0] < 0.0 ? -1.0 : sides[0] + sides[1];
+    }
+
+    /// To both sides; {-1, -1} when the blade would touch another bone.
+    std::array<double, 2> widths(const Vec3& p, const Vec3& feed, const Vec3& stroke, double depth) const {
         const Vec3 middle = p + feed * depth;
-        double sum = 0.0;
-        for (const double sign : {-1.0, 1.0}) {
+        std::array<double, 2> sides{};
+        for (const std::size_t side : {0u, 1u}) {
+            const double sign = side == 0 ? -1.0 : 1.0;
             bool left = false;
             for (double t = 0.0; t <= reach_; t += 1e-3) {
                 const bool in_bone = d(middle + stroke * (sign * t)) < 0.0;
-                if (in_bone && left) return -1.0;
-                if (in_bone) sum += 1e-3;
+                if (in_bone && left) return {-1.0, -1.0};
+                if (in_bone) sides[side] += 1e-3;
                 else left = true;
             }
         }
-        return sum;
+        return sides;
     }
 
     /// Amount of bone on both sides of the cut: cutting off a corner is no cut through the bone.
@@ -266,9 +284,13 @@ private:
 
     void look_along(const Vec3& p, const Vec3& feed, const Vec3& stroke, double deep, double depth_score) {
         if (!body_is_free(p, feed, stroke)) return;
-        const double wide = width(p, feed, stroke, 0.5 * deep);
+        const auto [one, other] = widths(p, feed, stroke, 0.5 * deep);
+        const double wide = one + other;
         if (wide < least_thickness) return;
         double score = depth_score * request_.blade_length / (request_.blade_length + wide);
+        // A blade is put on the middle of a bone, not on its edge.
+        score *= 0.4 + 0.6 * std::min(one, other) / std::max(one, other);
+        if (score <= best_score_) return;
         score *= both_sides(p + feed * (0.5 * deep), glm::cross(feed, stroke));
         if (score <= best_score_) return;
         score *= evenness(p, feed, stroke, std::clamp(0.4 * wide, 2e-3, 6e-3)) *
@@ -286,6 +308,7 @@ private:
     SiteRequest request_;
     double reach_, step_ = 0.0, coarse_ = 0.0, best_score_ = 0.0;
     Vec3 middle_{0.0, 0.0, 0.0};
+    double spread_ = 1.0;  // m
     bool border_counts_ = true;
     SawSite best_;
 };

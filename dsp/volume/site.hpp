@@ -30,8 +30,8 @@ struct SawSite {
 /// Evaluates surface points about 3 mm apart (more on a large bone, which bounds the time to a fraction of a second)
 /// and eight blade directions at each. A site must be reachable in a straight line from outside of the grid, the blade
 /// must touch no other bone on its way, and the site must not be on a face where the grid cuts the bone. Among these
-/// the best has about the preferred depth, is narrow along the blade, has bone on both sides, and lies under an even
-/// surface. `density` (kg/m³, same samples) distinguishes bone from filled hollows. Empty when there is no site.
+/// the best has about the preferred depth, is narrow along the blade and in the middle of that width, has bone on both
+/// sides, lies under an even surface, and near the middle of the bone. `density` (kg/m³, same samples) distinguishes bone from filled hollows. Empty when there is no site.
 /// A site near the border of the grid counts less, as does one that is reached from the side of the bone's own middle,
 /// such as the inside of a rib cage. When every face lies at the border, as on a block with a tight grid, they count as
 /// any other. Deterministic.

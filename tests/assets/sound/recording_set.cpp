@@ -119,6 +119,31 @@ TEST_CASE("a sound file is a set of one cutting recording") {
     CHECK_THROWS_WITH(sound::load_recording_set(folder / "set.toml", 100.0), ContainsSubstring("states its own rates"));
 }
 
+TEST_CASE("the rate of a sound file may follow its name") {
+    const Folder folder;
+    const sound::RecordingSet set = sound::load_recording_set(folder / "a.wav#100 Hz");
+    CHECK(set.recordings[0].rate == 100.0);
+    CHECK_FALSE(set.recordings[0].rate_estimated);
+    CHECK(set.recordings[0].file.filename() == "a.wav");
+    CHECK_THROWS_WITH(sound::load_recording_set(folder / "a.wav#fast"), ContainsSubstring("#233 Hz"));
+    CHECK_THROWS_WITH(sound::load_recording_set(folder / "a.wav#2 kHz"), ContainsSubstring("5 Hz to 1 kHz"));
+    CHECK_THROWS_WITH(sound::load_recording_set(folder / "b.wav#100 Hz"), ContainsSubstring("no such sound file"));
+    folder.load(cutting);
+    CHECK_THROWS_WITH(sound::load_recording_set(folder / "set.toml#100 Hz"), ContainsSubstring("states its own rates"));
+}
+
+TEST_CASE("a sound in which a rate is hardly heard is questioned, and a set that somebody wrote is not") {
+    const Folder folder;
+    CHECK(sound::saw_question(sound::load_recording_set(folder / "a.wav#200 Hz")).empty());
+    std::vector<float> noise(48000);
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<float>(0.1 * Random{5}.normal(i));
+    folder.write("a.wav", noise);
+    const sound::RecordingSet set = sound::load_recording_set(folder / "a.wav#200 Hz");
+    CHECK_THAT(sound::saw_question(set),
+               ContainsSubstring("is a.wav the sound of a saw?") && ContainsSubstring("200 Hz"));
+    CHECK(sound::saw_question(folder.load(cutting)).empty());
+}
+
 TEST_CASE("noise has no rate, and a sound of a few cycles is too short") {
     const Folder folder;
     std::vector<float> noise(48000);

@@ -125,6 +125,25 @@ TEST_CASE("a rib cage is sawn from outside") {
     CHECK(glm::dot(site->feed, site->point) < 0.0);
 }
 
+TEST_CASE("a plate with thin processes, as a sternum with ribs, is cut in the middle of the plate") {
+    // A plate of 120 by 36 mm, 11 mm thick, and five bars on each side, which are narrower and as good for a blade.
+    const auto sternum = [](const Vec3& p) {
+        double d = box(p, {60e-3, 18e-3, 5.5e-3});
+        for (const double x : {-48e-3, -24e-3, 0.0, 24e-3, 48e-3})
+            for (const double side : {-1.0, 1.0})
+                d = std::min(d, box(p - Vec3(x, side * 30e-3, 0.0), {5e-3, 14e-3, 5e-3}));
+        return d;
+    };
+    for (const double spacing : {1e-3, 1.5e-3}) {
+        const auto site = find(make(Vec3(90e-3, 75e-3, 40e-3), sternum, spacing));
+        REQUIRE(site);
+        CAPTURE(spacing, site->point.x, site->point.y, site->point.z);
+        CHECK(std::abs(site->point.y) < 4e-3);
+        CHECK(std::abs(site->point.x) < 30e-3);
+        CHECK(std::abs(site->feed.z) > 0.95);
+    }
+}
+
 TEST_CASE("a site is chosen by a point and a direction") {
     const Vec3 half(30e-3, 6e-3, 9e-3);
     const Made bar = make(Vec3(45e-3, 30e-3, 30e-3), [half](const Vec3& p) { return box(p, half); });

@@ -80,6 +80,8 @@ TEST_CASE("on a disk that gets full, a render and a run keep every whole row and
         CHECK(json::parse(full.out) == summary);
         CHECK(summary["seconds"] == 2.0);
         CHECK(summary["lost"].size() == 2);
+        CHECK(summary["files"] == json::array({"summary.json"}));
+        CHECK(summary["signals"].empty());
         CHECK(summary["groups"].size() == 2);
         // What there was no room for at all leaves no file.
         if (fs::exists(folder.path / out / "sound.wav")) {

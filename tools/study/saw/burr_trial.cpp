@@ -40,6 +40,7 @@ BurrTrialResult run_burr_trial(const BurrTrial& trial) {
         }
         const saw::BurrContact now = burr.step(read, pose, drive, law);
         if (n >= settle) {
+            result.thrust += now.wrench.force.z;
             result.along += now.along;
             result.width += now.width;
             ++measured;
@@ -57,6 +58,7 @@ BurrTrialResult run_burr_trial(const BurrTrial& trial) {
     }
     const double seconds = measured / trial.tick_rate;
     result.feed = (start - burr.at().z) / seconds;
+    result.thrust /= measured;
     result.along /= measured;
     result.width /= measured;
     result.removal = (carver.removed_m3() - removed) / seconds;

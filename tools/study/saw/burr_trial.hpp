@@ -18,6 +18,7 @@ struct BurrTrial {
 
 struct BurrTrialResult {
     double feed = 0.0;  ///< m/s, mean
+    double thrust = 0.0;  ///< N, mean: what the hand's own damping leaves
     double along = 0.0;  ///< N, mean force of the flutes around the shaft
     double width = 0.0;  ///< m of a flute in bone, mean
     double removal = 0.0;  ///< m³/s

@@ -278,3 +278,27 @@ TEST_CASE("a worse hand scores worse in every measure, and a take scores as its 
     CHECK(scored(folder, good + "/take") == g);
     CHECK(json::parse(test::slurp(good + "/score.json")) == g);
 }
+
+// Renders a minute and a half of two tasks.
+TEST_CASE("the hand of the library passes the tasks of the library", "[slow]") {
+    const Folder folder;
+    const std::string out = (folder.path / "out").string();
+    const Outcome session =
+        folder.tactus("session mandible-canal fibula-osteotomy --trainee P01 --offline --out " + out);
+    INFO(session.err);
+    REQUIRE(session.code == 0);
+    // Their limits: see assets/library/tasks.
+    for (const auto& [name, margin, time] :
+         {std::tuple{"01-mandible-canal", 0.5, 30.0}, std::tuple{"02-fibula-osteotomy", 1.0, 60.0}}) {
+        const json score = json::parse(test::slurp(folder.path / "out/P01/1" / name / "score.json"));
+        INFO(name << ": " << score.dump());
+        CHECK(score["heat_s"].get<double>() < 5.0);
+        CHECK(score["force"]["over_limit_Ns"] == 0.0);
+        CHECK(score["seconds"].get<double>() < time);
+        CHECK(score["over_mm3"].get<double>() < 0.5);
+        for (const json& one : score["spared"]) CHECK(one["closest_mm"].get<double>() >= margin);
+        CHECK(score["spared"].size() == 1);
+    }
+    const json fibula = json::parse(test::slurp(folder.path / "out/P01/1/02-fibula-osteotomy/score.json"));
+    CHECK(fibula["under_mm3"].get<double>() < 0.5);
+}
