@@ -19,6 +19,8 @@ constexpr double near_enough = 30e-3;  // m from a point that somebody names to 
 constexpr double far = 1.0;  // m: distance outside of the grid, where there is no bone
 constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
 constexpr double hollow_density = 200.0;  // kg/m³: below it, filled air
+constexpr double metal_density = 2500.0;   // kg/m³: above it, no bone
+constexpr double least_width = 8e-3;       // m: narrower bone is a process, or a wire in it
 constexpr double longest_hollow = 3e-3;  // m: longest gap between two walls of one bone
 constexpr double least_turn = 0.17;        // rad between a given stroke and the feed
 constexpr std::size_t most_candidates = 12'000;
@@ -274,6 +276,7 @@ private:
         if (glm::dot(g, g) < 0.25) return;
         const Vec3 feed = -glm::normalize(g);
         const double deep = thickness(p, feed);
+        if (value_at(density_, p + feed * (0.5 * deep), 0.0) > metal_density) return;
         if (deep < least_thickness || !is_open(p - feed * 3e-3, -feed, 2e-3)) return;
         const double depth_score =
             liking(p, feed) * (deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep);
@@ -288,8 +291,8 @@ private:
         const double wide = one + other;
         if (wide < least_thickness) return;
         double score = depth_score * request_.blade_length / (request_.blade_length + wide);
-        // A blade is put on the middle of a bone, not on its edge.
-        score *= 0.4 + 0.6 * std::min(one, other) / std::max(one, other);
+        // A blade is put on the middle of a bone, not on its edge, nor on what sticks out of it.
+        score *= (0.4 + 0.6 * std::min(one, other) / std::max(one, other)) * std::min(1.0, wide / least_width);
         if (score <= best_score_) return;
         score *= both_sides(p + feed * (0.5 * deep), glm::cross(feed, stroke));
         if (score <= best_score_) return;
@@ -320,6 +323,22 @@ std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, co
     for (const int n : distance.size)
         if (n < 2) return std::nullopt;
     return Search(distance, density, request).at(point, approach, along);
+}
+
+double resting_clearance(const Grid& distance, const SawSite& site, double clearance, const SiteRequest& request) {
+    constexpr double most = 60e-3, step = 1e-3;
+    const double reach = 0.5 * request.blade_length + request.travel;
+    const auto is_clear = [&](double away) {
+        for (const double height : {0.0, 0.5 * request.blade_height, request.blade_height})
+            for (double t = -reach; t <= reach; t += 2.0 * step) {
+                const Vec3 at = site.point - site.feed * (away + height) + site.stroke * t;
+                if (value_at(distance, at, far) < request.least_gap) return false;
+            }
+        return true;
+    };
+    for (double more = 0.0; more <= most; more += step)
+        if (is_clear(clearance + more)) return clearance + more;
+    return clearance;
 }
 
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request) {

@@ -45,6 +45,11 @@ std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, 
 std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
                                    const Vec3& along = Vec3(0.0), const SiteRequest& request = {});
 
+/// How far in front of a site the middle of the tooth line rests so that all of the blade, and its travel to either
+/// side, is clear of bone: `clearance` m, or more where bone stands in the way, as beside a site that lies in a hollow; at
+/// most 60 mm more.
+double resting_clearance(const Grid& distance, const SawSite& site, double clearance, const SiteRequest& request = {});
+
 /// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there; the density up to the surface
 /// is that of the bone (extend_density). Throws Error when that is more than 40 million samples.
 struct SiteVolume {

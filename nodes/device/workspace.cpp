@@ -39,7 +39,9 @@ struct Workspace {
     Vector site{"0 mm, 0 mm, 0 mm", site_about};
     Vector approach{"0, 0, 0", approach_about};
     Vector along{"0, 0, 0", along_about};
-    Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
+    Param clearance{
+        structural, "5 mm", "0 mm", "100 mm",
+        "from the resting tool to the bone; more where a blade at that distance would lie in bone beside the site"};
 
     std::vector<Visual> visuals() const {
         return {{.kind = VisualKind::workspace, .value = "force_scale", .hand = "device", .frame = "frame"},
@@ -69,6 +71,7 @@ struct Workspace {
         report.set("site", "stroke", list(site_->stroke));
         report.set("site", "thickness_mm", site_->thickness * 1e3);
         report.set("site", "width_mm", site_->width * 1e3);
+        report.set("site", "clearance_mm", away_ * 1e3);
     }
 
 private:
@@ -106,7 +109,8 @@ private:
                                        "'rotation'"
                                  : "bone '" + bone.name + "' has no surface near 'site'; give a point on or above it");
         const Mat3 axes(site_->stroke, site_->feed, glm::cross(site_->stroke, site_->feed));
-        const Pose tool{site_->point - site_->feed * clearance.value, glm::normalize(glm::quat_cast(axes))};
+        away_ = volume::resting_clearance(target.distance, *site_, clearance);
+        const Pose tool{site_->point - site_->feed * away_, glm::normalize(glm::quat_cast(axes))};
         return tool * placement_.grip.inverse();
     }
 
@@ -116,6 +120,7 @@ private:
     Pose last_;
     bool holds_ = false, turns_ = false;
     std::optional<volume::SawSite> site_;
+    double away_ = 0.0;  // m from the resting tool to the site
 };
 
 TACTUS_NODE(Workspace, device, clutch, turn, pose, frame, force_scale, bone, origin, rotation, scale, grip,

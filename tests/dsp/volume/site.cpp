@@ -144,6 +144,40 @@ TEST_CASE("a plate with thin processes, as a sternum with ribs, is cut in the mi
     }
 }
 
+TEST_CASE("a blade rests clear of all bone in front of a site, as between two humps") {
+    const auto valley = [](const Vec3& p) {
+        return std::min({box(p, {40e-3, 8e-3, 6e-3}), box(p - Vec3(18e-3, 0.0, 10e-3), {4e-3, 8e-3, 6e-3}),
+                         box(p + Vec3(18e-3, 0.0, -10e-3), {4e-3, 8e-3, 6e-3})});
+    };
+    const Made bone = make(Vec3(60e-3, 30e-3, 40e-3), valley);
+    const auto site =
+        volume::saw_site_at(bone.distance, bone.density, {0.0, 0.0, 30e-3}, {0.0, 0.0, -1.0}, {1.0, 0.0, 0.0});
+    REQUIRE(site);
+    CHECK(site->point.z == Approx(6e-3).margin(0.3e-3));
+    // The humps are 10 mm higher than the site.
+    CHECK(volume::resting_clearance(bone.distance, *site, 5e-3) == Approx(11e-3).margin(1e-3));
+    const auto across =
+        volume::saw_site_at(bone.distance, bone.density, {0.0, 0.0, 30e-3}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0});
+    REQUIRE(across);
+    CHECK(volume::resting_clearance(bone.distance, *across, 5e-3) == 5e-3);
+}
+
+TEST_CASE("a wire in a bone is no place for a cut") {
+    const auto plate = [](const Vec3& p) { return box(p, {40e-3, 14e-3, 5e-3}); };
+    const auto wire = [](const Vec3& p) { return std::hypot(p.x, p.z - 6.5e-3) - 3e-3; };
+    Made made = make(Vec3(60e-3, 40e-3, 35e-3),
+                     [&](const Vec3& p) { return std::min(plate(p), std::max(wire(p), std::abs(p.y) - 14e-3)); });
+    for (int k = 0; k < made.density.size[2]; ++k)
+        for (int j = 0; j < made.density.size[1]; ++j)
+            for (int i = 0; i < made.density.size[0]; ++i)
+                if (wire(made.density.position(i, j, k)) < 0.0) made.density.at(i, j, k) = 3000.0f;
+    const auto site = find(made);
+    REQUIRE(site);
+    CAPTURE(site->point.x, site->point.y, site->point.z);
+    CHECK(wire(site->point) > 0.5e-3);
+    CHECK(std::abs(plate(site->point)) < 0.5e-3);
+}
+
 TEST_CASE("a site is chosen by a point and a direction") {
     const Vec3 half(30e-3, 6e-3, 9e-3);
     const Made bar = make(Vec3(45e-3, 30e-3, 30e-3), [half](const Vec3& p) { return box(p, half); });

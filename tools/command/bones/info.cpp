@@ -69,7 +69,7 @@ std::string volume_text(double mm3) {
     if (mm3 >= 1e5) return fmt::format("{:.1f} cm³", mm3 * 1e-3);
     if (mm3 >= 100.0) return fmt::format("{:.0f} mm³", mm3);
     if (mm3 >= 1e-3) return fmt::format("{:.3g} mm³", mm3);
-    return fmt::format("{:.3g} µm³", mm3 * 1e9);
+    return fmt::format("{:.0f} µm³", mm3 * 1e9);
 }
 
 std::string text_of(const Inspection& found) {

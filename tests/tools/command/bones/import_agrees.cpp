@@ -126,9 +126,24 @@ TEST_CASE("import says which saw can cut the bone, and carving agrees", "[slow]"
         return json::parse(done.out)["carve"]["refined"].get<double>();
     };
     CHECK(refined() == 0.0);
-    CHECK_THAT(folder.tactus("import " + mesh + " --spacing 0.4 -o " + bone).out,
-               ContainsSubstring(fmt::format("needs --spacing {:g} or finer", fine)));
+    const std::string proposal = fmt::format("needs --spacing {:g} or finer", fine);
+    CHECK_THAT(folder.tactus("info " + bone).out, ContainsSubstring("a saw can cut it"));
+    CHECK_THAT(folder.tactus("import " + mesh + " --spacing 0.4 -o " + bone).out, ContainsSubstring(proposal));
+    CHECK_THAT(folder.tactus("info " + bone).out, ContainsSubstring(proposal));
+    CHECK_THAT(slurp(source_folder() / "docs/tutorial/own-ct-and-saw.md"),
+               ContainsSubstring(fmt::format("--spacing {:g}\n", fine)));
     CHECK(refined() == 1.0);
+}
+
+TEST_CASE("info prints a volume in a unit in which it is neither zero nor long") {
+    const Folder folder;
+    const std::string file = (folder.path / "box.obj").string();
+    // The box is 0.12 of the cube of its length.
+    for (const auto& [length, text] :
+         {std::pair{200.0, "960.0 cm³"}, {20.0, "960 mm³"}, {1.0, "0.12 mm³"}, {0.05, "15000 µm³"}}) {
+        file::write_whole_file(file, box_obj(length));
+        CHECK_THAT(folder.tactus("info " + file + " --unit mm").out, ContainsSubstring(text));
+    }
 }
 
 TEST_CASE("a mesh is given one density from the command line, a scan refuses it") {
