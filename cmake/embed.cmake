@@ -21,12 +21,42 @@ target_include_directories(tactus_embed INTERFACE
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tactus>)
 add_dependencies(tactus_embed tactus-device-host tactus-scan-decoder)
 
+# Tactus::node: how a plug-in with nodes is compiled. It links nothing: its functions are those of the program that loads it. Names
+# that it shares with Tactus, as of a struct Gain, stay its own when they are hidden.
+add_library(tactus_node INTERFACE)
+add_dependencies(tactus_node abi_headers)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/as_installed)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/as_installed/tactus SYMBOLIC)
+set_target_properties(tactus_node PROPERTIES EXPORT_NAME node)
+target_include_directories(tactus_node INTERFACE
+  $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/as_installed> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${TACTUS_GENERATED}>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tactus>)
+target_compile_features(tactus_node INTERFACE cxx_std_20)
+target_compile_options(tactus_node INTERFACE -ffp-contract=off -fvisibility=hidden -fvisibility-inlines-hidden
+  # An error in the list of members names that line only.
+  $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique;-ftrack-macro-expansion=0>)
+
+# tactus-check-node FILE.so: what the tests check of the nodes of the tree.
+add_executable(tactus-check-node tests/check_node/main.cpp tests/check_node/node_checks.cpp
+  tests/support/node_harness.cpp tests/support/node_values.cpp tests/support/sample_assets.cpp tests/support/realtime_check.cpp
+  tests/support/realtime_counters.cpp tests/support/refused_threads.cpp tests/support/system_call_trap.cpp
+  tests/support/virtual_clock.cpp)
+target_include_directories(tactus-check-node PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(tactus-check-node PRIVATE tactus_embed glm::glm fmt::fmt tactus_flags ${CMAKE_DL_LIBS} Threads::Threads)
+target_compile_options(tactus-check-node PRIVATE $<$<CONFIG:Release>:-O1>)
+set_target_properties(tactus-check-node PROPERTIES EXPORT_NAME check-node RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+add_executable(Tactus::check-node ALIAS tactus-check-node)
+install(TARGETS tactus-check-node EXPORT tactus RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT development)
+
+install(TARGETS tactus_node EXPORT tactus)
 install(TARGETS tactus_embed EXPORT tactus LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         COMPONENT library NAMELINK_COMPONENT development)
 install(FILES tools/embed/tactus.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 foreach(room dsp assets graph devices nodes engine)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 endforeach()
+install(FILES ${TACTUS_GENERATED}/graph/node/abi_headers.hpp
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/graph/node COMPONENT development)
 install(FILES tools/embed/embedded.hpp tools/embed/host_hand.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/embed COMPONENT development)
 install(FILES tools/session/output_folder.hpp tools/session/patch_choice.hpp

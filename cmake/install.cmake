@@ -23,6 +23,9 @@ tactus_place(TACTUS_INSTALLED_PROGRAMS ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tactus
 install(TARGETS tactus-openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactus COMPONENT common)
 tactus_place(TACTUS_INSTALLED_MODULES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus assets/file/module.cpp)
 
+# Nodes from outside that all users have.
+tactus_place(TACTUS_INSTALLED_NODES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus graph/plugin/plugins.cpp)
+
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         COMPONENT common FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} COMPONENT common FILES_MATCHING PATTERN "*.png")

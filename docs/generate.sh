@@ -3,6 +3,7 @@
 # Writes the pages that repeat what the command says, reference/nodes.md, value-types.md and verbs.md:
 # docs/generate.sh [COMMAND [FOLDER]]
 set -euo pipefail
+unset TACTUS_NODES  # nodes of the user are not of these pages
 docs=$(dirname "$(readlink -f "$0")")
 tactus=${1:-$docs/../build/release/tactus}
 folder=${2:-$docs/reference}

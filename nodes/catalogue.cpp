@@ -2,7 +2,13 @@
 // One line per node type, sorted. A test fails when a file of nodes/ is missing here.
 #include "nodes/catalogue.hpp"
 
+#include "dsp/core/error.hpp"
+#include "graph/plugin/plugins.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 #include <vector>
 
 // name of the struct, family (folder), file
@@ -156,6 +162,26 @@
 
 namespace tactus::nodes {
 
+namespace {
+
+void add(const plugin::Plugin& plugin, std::vector<const NodeType*>& all) {
+    for (const NodeType* type : plugin.types) {
+        const auto known = std::ranges::find(all, type->name, &NodeType::name);
+        if (known == all.end()) {
+            all.push_back(type);
+            continue;
+        }
+        std::string origin = "Tactus";
+        for (const plugin::Plugin& other : plugin::all())
+            if (std::ranges::find(other.types, *known) != other.types.end()) origin = other.file.string();
+        throw Error(fmt::format(
+            "{}: {} has a node type '{}' already; give the struct another name, or leave out one of the two",
+            plugin.file.string(), origin, type->name));
+    }
+}
+
+}  // namespace
+
 #define X(Type, family) const NodeType& node_type_##Type();
 TACTUS_NODES(X)
 #undef X
@@ -167,6 +193,7 @@ compile::Catalogue catalogue() {
             TACTUS_NODES(X)
 #undef X
         };
+        for (const plugin::Plugin& plugin : plugin::all()) add(plugin, all);
         std::ranges::sort(all, {}, &NodeType::name);
         return all;
     }();

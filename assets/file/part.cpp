@@ -15,10 +15,12 @@ namespace tactus::file {
 
 namespace fs = std::filesystem;
 
-fs::path this_object() {
+namespace {
+
+fs::path find_this_object() {
     Dl_info where;
     link_map* object = nullptr;
-    const auto* self = reinterpret_cast<const void*>(&this_object);
+    const auto* self = reinterpret_cast<const void*>(&find_this_object);
     // The loader knows the program itself by an empty name.
     if (::dladdr1(self, &where, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0 && object && object->l_name &&
         *object->l_name)
@@ -26,6 +28,18 @@ fs::path this_object() {
     std::error_code failure;
     return fs::read_symlink("/proc/self/exe", failure);
 }
+
+const fs::path& place_of_this() {
+    static const fs::path place = find_this_object();
+    return place;
+}
+
+/// Found when this is loaded: a library may have been loaded by a relative path, and the program changes its folder later.
+[[maybe_unused]] const fs::path& place_at_load = place_of_this();
+
+}  // namespace
+
+fs::path this_object() { return place_of_this(); }
 
 std::vector<fs::path> places_of_part(std::string_view name, std::string_view installed) {
     const fs::path folder = this_object().parent_path();

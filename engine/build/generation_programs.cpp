@@ -267,7 +267,7 @@ void GenerationBuilder::find_outputs_before(GroupProgram& program, const GroupPr
     for (std::size_t k = 0; k < old.published.size(); ++k) past.emplace(old.published[k].name, k);
     for (PublishedOutput& output : program.published) {
         const auto found = past.find(output.name);
-        if (found != past.end() && old.published[found->second].port->type == output.port->type)
+        if (found != past.end() && *old.published[found->second].port->type == *output.port->type)
             output.before = static_cast<int>(found->second);
     }
 }

@@ -14,10 +14,10 @@ constexpr std::size_t bone_ring_bytes = std::size_t{1} << 23;
 constexpr std::size_t least_ring_bytes = std::size_t{1} << 14, most_ring_bytes = std::size_t{1} << 20;
 constexpr double kept_seconds = 1.0;
 
-bool is_bone(const ValueType& type) { return &type == &value::snapshot<volume::BoneSnapshot>; }
-bool is_scene(const ValueType& type) { return &type == &value::snapshot<coupling::Scene>; }
-bool is_rope(const ValueType& type) { return &type == &value::snapshot<rope::RopeShape>; }
-bool is_body(const ValueType& type) { return &type == &value::snapshot<coupling::Body>; }
+bool is_bone(const ValueType& type) { return type == value::snapshot<volume::BoneSnapshot>; }
+bool is_scene(const ValueType& type) { return type == value::snapshot<coupling::Scene>; }
+bool is_rope(const ValueType& type) { return type == value::snapshot<rope::RopeShape>; }
+bool is_body(const ValueType& type) { return type == value::snapshot<coupling::Body>; }
 
 std::size_t words_of(std::size_t bytes) { return (bytes + 7) / 8; }
 

@@ -194,7 +194,7 @@ bool Observer::read_latest(const std::string& name, const ValueType& type, std::
     if (named == named_.end()) return false;
     const Reading* reading = newest(named->second);
     const auto port = reading ? reading->port.lock() : nullptr;
-    if (!port || &port->type != &type) return false;
+    if (!port || port->type != type) return false;
     when = 0;
     if (pace_ == Pace::live) {
         std::int64_t index = 0;

@@ -4,6 +4,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "graph/plugin/plugins.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -147,6 +148,10 @@ Take Take::load(const fs::path& folder) {
         take.build = json.at("build");
         take.cpu = json.at("cpu");
         read_assets(json.at("assets"), take.assets);
+        if (json.contains("plugins"))
+            for (const ParsedJson& plugin : json.at("plugins"))
+                take.plugins.push_back(
+                    {plugin.at("name"), plugin.at("path").get<std::string>(), bits_of(plugin.at("hash"))});
         take.text = file::read_whole_file(folder / "patch-0.toml");
 
         reading = folder / "events.jsonl";
@@ -184,6 +189,16 @@ std::vector<std::string> Take::differences() const {
     if (cpu != cpu_family())
         found.push_back(
             fmt::format("the take was made on another kind of processor ({}, this is {})", cpu, cpu_family()));
+    for (const TakenPlugin& taken : plugins) {
+        const auto now = std::ranges::find(plugin::all(), taken.name, &plugin::Plugin::name);
+        if (now == plugin::all().end())
+            found.push_back(
+                fmt::format("the take was made with the plug-in '{}' ({}), which is not loaded; give it by --nodes",
+                            taken.name, taken.path.string()));
+        else if (now->hash != taken.hash)
+            found.push_back(fmt::format("the plug-in '{}' has changed since the take was made: {}", taken.name,
+                                        now->file.string()));
+    }
     return found;
 }
 

@@ -21,6 +21,12 @@ struct TakenAsset {
     std::filesystem::path path;
     std::uint64_t hash = 0;
 };
+/// A plug-in with node types that was loaded (graph/plugin/plugins.hpp).
+struct TakenPlugin {
+    std::string name;
+    std::filesystem::path path;  ///< where it was; nothing is loaded from there
+    std::uint64_t hash = 0;
+};
 /// A plan that took over while the run went on.
 struct TakenEdit {
     std::int64_t number = 0;
@@ -46,6 +52,7 @@ struct Take {
     TakeAbout about;
     std::string title, text, build, cpu;
     std::vector<TakenAsset> assets;  ///< of all plans
+    std::vector<TakenPlugin> plugins;
     std::vector<std::variant<TakenEdit, TakenChange>> events;  ///< in the order they happened
     std::vector<io::RecordedDevice> devices;
     std::vector<TakeStreamInfo> streams;

@@ -10,6 +10,7 @@
 #include "engine/run/group_runtime.hpp"
 #include "engine/take/take_sink.hpp"
 #include "graph/patch/sub_patch.hpp"
+#include "graph/plugin/plugins.hpp"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,17 @@ Json assets_json(const patch::Patch& patch) {
              {"hash",
               fmt::format("{:016x}", fs::exists(bone::file_of_bone(asset.path)) ? hash_of_asset(asset.path) : 0)}});
     return assets;
+}
+
+/// All that are loaded: an edit may use what the first patch did not.
+Json plugins_json() {
+    Json list = Json::array();
+    for (const plugin::Plugin& plugin : plugin::all())
+        list.push_back({{"name", plugin.name},
+                        {"version", plugin.version},
+                        {"path", plugin.file.string()},
+                        {"hash", fmt::format("{:016x}", plugin.hash)}});
+    return list;
 }
 
 Json sample_json(const DeviceSample& s) {
@@ -142,6 +154,7 @@ void TakeWriter::begin(const patch::Patch& patch, std::uint64_t plan_hash) {
               {"build", build_identity()},
               {"cpu", cpu_family()},
               {"assets", assets_json(patch)}};
+    if (Json plugins = plugins_json(); !plugins.empty()) json["plugins"] = std::move(plugins);
     if (about_.seed) json["seed"] = *about_.seed;
     log_ = std::make_unique<TimingLogWriter>(folder_ / "timing.log", plan_hash, about_.seconds,
                                              TimingLogWriter::Name::at_once);

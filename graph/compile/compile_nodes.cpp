@@ -83,7 +83,10 @@ const NodeType* find_type(const patch::PatchNode& node, Catalogue catalogue, pat
         if (type->name == node.type) return type;
     std::vector<std::string> names;
     for (const NodeType* type : catalogue) names.push_back(type->name);
-    problems.add(node.type_where, fmt::format("unknown node type '{}'{}", node.type, did_you_mean(node.type, names)));
+    const std::string near = did_you_mean(node.type, names);
+    problems.add(node.type_where,
+                 fmt::format("unknown node type '{}'{}", node.type,
+                             near.empty() ? "; one from outside of Tactus is given by --nodes FILE" : near));
     return nullptr;
 }
 

@@ -155,9 +155,13 @@ private:
         }
         const ValueType& type = source_type();
         if (port.kind == InputKind::any) take_type(port, type);
-        if (port.type != &type)
-            throw Error(fmt::format("'{}.{}' gives {}, but '{}.{}' takes {}", source_.from_node, source_.from_port,
-                                    with_article(type), source_.to_node, source_.to_port, with_article(*port.type)));
+        if (*port.type != type)
+            throw Error(fmt::format("'{}.{}' gives {}, but '{}.{}' takes {}{}", source_.from_node, source_.from_port,
+                                    with_article(type), source_.to_node, source_.to_port, with_article(*port.type),
+                                    port.type->name == type.name
+                                        ? " of another layout; build the plug-ins that share it "
+                                          "from one header"
+                                        : ""));
         if (port.kind == InputKind::events) return check_events(port);
         check_mode(port, type);
         port.period = plan_.groups[static_cast<std::size_t>(node(wire_.from_node).group)].period;

@@ -44,7 +44,8 @@ struct SnapshotFile<volume::BoneSnapshot> {
     static std::shared_ptr<const void> load(const std::string& path, void* out);
 };
 
-/// What the engine needs to know about a type of value. One object per type; compared by address.
+/// What the engine needs to know about a type of value. Plain types have one object each and may be compared by address;
+/// of a snapshot each shared object may have its own: compare those by `==`.
 struct ValueType {
     std::string_view name;  ///< as users see it: "pose", "signal"
     std::size_t size = 0;  ///< bytes of one value
@@ -58,7 +59,25 @@ struct ValueType {
     /// Loads a snapshot from a file: puts the handle in `out` and returns its owner. Throws Error. Null: no file holds
     /// one.
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
+    std::uint64_t layout = 0;  ///< of a snapshot: `layout_of` its type in C++
 };
+
+/// Whether one wire may carry both: one object, or snapshots of one name and one layout.
+inline bool operator==(const ValueType& a, const ValueType& b) noexcept {
+    return &a == &b || (a.layout != 0 && a.layout == b.layout && a.name == b.name);
+}
+
+/// A hash over the name of a type in C++, its size and its alignment; never 0. A change of its members that keeps all three is
+/// not seen: for types of Tactus, plug-ins compare the headers as well.
+template <class T>
+consteval std::uint64_t layout_of() {
+    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    const auto add = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3ULL; };
+    for (const char letter : std::string_view(__PRETTY_FUNCTION__)) add(static_cast<unsigned char>(letter));
+    add(sizeof(T));
+    add(alignof(T));
+    return hash | 1;
+}
 
 /// All numbers of a plain value are finite; true for snapshots and events. Wait-free.
 bool is_finite_value(const ValueType& type, const void* value) noexcept;
@@ -103,6 +122,7 @@ inline const ValueType snapshot{
     .make_default = [](void* out) { new (out) T{}; },
     .version = [](const void* p) { return static_cast<std::int64_t>(static_cast<const T*>(p)->version); },
     .load_asset = SnapshotFile<T>::load,
+    .layout = layout_of<T>(),
 };
 }  // namespace value
 

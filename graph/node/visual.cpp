@@ -9,7 +9,7 @@ namespace tactus {
 
 namespace {
 
-/// Filled before main, read only afterwards.
+/// Filled before main and while plug-ins are loaded, which is before a plan is compiled; read only afterwards.
 std::map<const NodeType*, VisualsDeclaration::Gives>& declared() {
     static std::map<const NodeType*, VisualsDeclaration::Gives> all;
     return all;

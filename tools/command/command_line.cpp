@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/room.hpp"
+#include "graph/plugin/plugins.hpp"
+#include "nodes/catalogue.hpp"
 #include "tools/command/declare.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
@@ -24,6 +26,18 @@ void modernise(const OldSpellings& old, std::vector<std::string>& words) {
         for (const auto& [before, now] : old.renamed)
             if (word == before) word = now;
             else if (word.starts_with(before + "=")) word = now + word.substr(before.size());
+}
+
+/// Moves --nodes, an option of the program, in front of the verb: users write it where they write the patch.
+void bring_forward_nodes(std::vector<std::string>& words) {
+    std::vector<std::string> before, after;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const bool is_nodes = words[i] == "--nodes" || words[i].starts_with("--nodes=");
+        (is_nodes ? before : after).push_back(words[i]);
+        if (words[i] == "--nodes" && i + 1 < words.size()) before.push_back(words[++i]);
+    }
+    words = std::move(before);
+    words.insert(words.end(), after.begin(), after.end());
 }
 
 /// Index of the verb: the first word after the program's own options.
@@ -93,9 +107,11 @@ int command_line(const Program& program, int argc, char** argv) {
     try {
         declare(app, program, declared);
         std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+        bring_forward_nodes(words);
         const std::vector<std::string> handed_on = words_handed_on(program, app, declared, words);
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
         const DeclaredVerb& chosen = declared.at(given_verb(app));
+        if (plugin::are_given()) nodes::catalogue();  // an error of them is one of the command line
         return chosen.verb->forward ? chosen.verb->forward(handed_on) : chosen.run();
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;

@@ -2,6 +2,7 @@
 #include "tools/command/declare.hpp"
 
 #include "assets/file/room.hpp"
+#include "graph/plugin/plugins.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -31,6 +32,17 @@ void declare(CLI::App& app, const Program& program, DeclaredVerbs& declared) {
            "--memory", [](const std::string& size) { file::set_memory_limit(file::parse_memory_size(size)); },
            "memory limit for one file, such as \"2 GB\" (default: half of the machine's)")
         ->trigger_on_parse();
+    app.add_option_function<std::vector<std::string>>(
+           "--nodes",
+           [](const std::vector<std::string>& paths) {
+               for (const std::string& path : paths) plugin::use(path);
+           },
+           "a shared object with nodes of your own, or a folder of such; before or after the verb")
+        ->trigger_on_parse()
+        ->type_size(1)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("FILE|DIR");
     declare_verbs(app, program.verbs, declared);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/json.hpp"
 #include "dsp/core/units.hpp"
+#include "graph/plugin/plugins.hpp"
 #include "nodes/catalogue.hpp"
+#include "tools/command/machine/node_project.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 
@@ -78,19 +80,32 @@ public:
     }
 };
 
+std::string text_of(const Json& json, const char* key) {
+    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+}
+
 Json describe(const NodeType& type) {
     const compile::NodeInstance node(type.create(), type.destroy);
     Describer describer;
     type.visit(node.get(), describer);
-    return {{"type", type.name},
-            {"about", type.about},
-            {"inputs", describer.ports_in},
-            {"outputs", describer.ports_out},
-            {"parameters", describer.parameters}};
+    Json json{{"type", type.name},
+              {"about", type.about},
+              {"inputs", describer.ports_in},
+              {"outputs", describer.ports_out},
+              {"parameters", describer.parameters}};
+    if (const plugin::Plugin* of = plugin::plugin_of(type))
+        json["plugin"] = Json{{"name", of->name},
+                              {"version", of->version},
+                              {"path", of->file.string()},
+                              {"hash", fmt::format("{:016x}", of->hash)}};
+    return json;
 }
 
-std::string text_of(const Json& json, const char* key) {
-    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+/// "my-lab 1.2, /home/me/my-lab.so"; "" for one of Tactus.
+std::string origin_of(const Json& node) {
+    if (!node.contains("plugin")) return "";
+    const Json& of = node["plugin"];
+    return fmt::format("{} {}, {}", text_of(of, "name"), text_of(of, "version"), text_of(of, "path"));
 }
 
 /// What a parameter may be, and what it is when the patch does not say.
@@ -111,6 +126,7 @@ std::string values_of(const Json& parameter) {
 
 void print_whole(const Json& node) {
     fmt::print("{}\n  {}\n", text_of(node, "type"), text_of(node, "about"));
+    if (const std::string origin = origin_of(node); !origin.empty()) fmt::print("  from {}\n", origin);
     for (const auto& [title, key] : {std::pair{"in", "inputs"}, {"out", "outputs"}})
         for (const Json& port : node[key])
             fmt::print("  {:>3}  {:<18} {:<16} {}{}{}\n", title, text_of(port, "name"), text_of(port, "type"),
@@ -131,19 +147,42 @@ int nodes(const std::string& wanted, bool json) {
     if (json) fmt::print("{}\n", Json{{"version", 1}, {"rows", list}}.dump(2));
     else if (!wanted.empty()) print_whole(list[0]);
     else
-        for (const Json& node : list) fmt::print("{:<16} {}\n", text_of(node, "type"), text_of(node, "about"));
+        for (const Json& node : list) {
+            const std::string origin = origin_of(node);
+            fmt::print("{:<16} {}{}\n", text_of(node, "type"), text_of(node, "about"),
+                       origin.empty() ? "" : fmt::format(" [{}]", origin));
+        }
+    return done;
+}
+
+int make_project(const std::string& name) {
+    const std::string folder = write_node_project(name).string();
+    fmt::print(
+        "made {0}: {0}.cpp is the node, test.cpp its test\n"
+        "  cmake -S {0} -B {0}/build && cmake --build {0}/build && ctest --test-dir {0}/build\n"
+        "  tactus nodes {0} --nodes {0}/build/{0}.so\n",
+        folder);
     return done;
 }
 
 Action declare_nodes(VerbOptions& verb) {
     struct Choice {
-        std::string type;
-        bool json = false;
+        std::string type, made;
+        bool is_new = false, json = false;
     };
     const auto choice = std::make_shared<Choice>();
     verb.add("type", choice->type, "only this type");
     verb.flag("--json", choice->json, "as JSON");
-    return [choice] { return nodes(choice->type, choice->json); };
+    verb.call<std::string>(
+            "--new",
+            [choice](const std::string& name) {
+                choice->made = name;
+                choice->is_new = true;
+            },
+            "make a folder of this name with the project of a new node: source, test, CMakeLists.txt")
+        .value_name("NAME")
+        .excludes(verb.find("type"));
+    return [choice] { return choice->is_new ? make_project(choice->made) : nodes(choice->type, choice->json); };
 }
 
 }  // namespace

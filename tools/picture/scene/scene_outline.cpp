@@ -164,13 +164,13 @@ void add_still_bones(const compile::Plan& plan, SceneOutline& outline) {
     for (const compile::PlanWire& wire : plan.wires) {
         if (wire.from_node >= 0 || wire.to_input < 0) continue;
         const compile::PlanNode& to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
-        if (to.inputs[static_cast<std::size_t>(wire.to_input)].port->type == &bone_type)
+        if (*to.inputs[static_cast<std::size_t>(wire.to_input)].port->type == bone_type)
             wired.emplace(path_of(plan, wire.asset), wire.asset);
     }
     for (const compile::PlanNode& node : plan.nodes) {
         const bool shows = std::ranges::any_of(node.outputs, [](const compile::PlanOutput& out) {
-            const ValueType* type = out.port->type;
-            return type == &bone_type || type == &body_type || type == &scene_type;
+            const ValueType& type = *out.port->type;
+            return type == bone_type || type == body_type || type == scene_type;
         });
         for (const AssetParam* asset : node.assets) {
             if (asset->name.empty() || asset->type_name != AssetLoader<bone::Bone>::name) continue;
