@@ -3,6 +3,7 @@
 #include "tools/embed/tactus.h"
 
 #include "dsp/core/error.hpp"
+#include "tools/embed/c_errors.hpp"
 #include "tools/embed/embedded.hpp"
 
 #include <fmt/format.h>
@@ -11,11 +12,7 @@
 #include <atomic>
 #include <cstring>
 #include <memory>
-#include <new>
-#include <stdexcept>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -35,40 +32,7 @@ struct tactus_run {
 
 namespace {
 
-template <std::size_t size>
-void put(char (&to)[size], std::string_view text) {
-    const std::size_t count = std::min(text.size(), size - 1);
-    std::memcpy(to, text.data(), count);
-    to[count] = '\0';
-}
-
-void put(tactus_error* error, std::string_view text, const SourceLocation& where = {}) {
-    if (!error) return;
-    put(error->text, text);
-    put(error->file, where.file);
-    error->line = where.line;
-    error->column = where.column;
-}
-
-/// Runs `work` and gives what it returns, or `failed` with the reason in `error`.
-template <class Result, class Work>
-Result guarded(tactus_error* error, Result failed, const Work& work) noexcept {
-    put(error, "");
-    try {
-        return work();
-    } catch (const embed::PatchErrors& failure) {
-        put(error, failure.all(), failure.where());
-    } catch (const Error& failure) {
-        put(error, failure.what(), failure.where());
-    } catch (const std::bad_alloc&) {
-        put(error, "no memory is left");
-    } catch (const std::exception& failure) {
-        put(error, failure.what());
-    } catch (...) {
-        put(error, "an unknown failure");
-    }
-    return failed;
-}
+using embed::guarded;
 
 /// The right to use a patch or a run.
 template <class Object>

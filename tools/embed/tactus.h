@@ -132,6 +132,42 @@ const char* tactus_summary(tactus_run* run);
 uint64_t tactus_hash(tactus_run* run);
 void tactus_free_run(tactus_run* run);
 
+/* Analyses of records in memory: `count` samples at `rate` Hz, all of them finite. Any number of threads may call them. */
+
+/* Power spectral density by Welch's method: half-overlapping Hann segments of `segment` samples (0: 0.75 s, or as long as eight
+ * of them fit), each without its mean; the conventions of scipy.signal.welch. Fills at most `most` bins of `frequencies` (Hz) and
+ * `density` (unit²/Hz) and returns how many; with `most` 0 it returns how many bins there are. 0: an error. */
+size_t tactus_spectrum(const double* samples, size_t count, double rate, size_t segment, double* frequencies,
+                       double* density, size_t most, tactus_error* error);
+
+/* What `tactus compare` finds of two vibrations; NaN: not known of these two. */
+typedef struct tactus_comparison {
+    double delay, correlation;   /* s by which the output lags, and of the waveforms there; NaN: not recorded together */
+    double lowest, highest;      /* Hz: the band of all that follows */
+    double reference_rms, output_rms;
+    double gain_db;              /* that gives the output the reference's power */
+    double spectral_distance_db; /* r.m.s. of the logarithmic difference, to 500 Hz */
+    double spectral_cosine;      /* 1: equal spectra */
+    double touch_cosine, touch_gap_db; /* weighted by how well touch perceives each frequency */
+    double spectrogram_similarity;
+    double st_sim, spqi, signal_to_noise_db, coherence; /* of takes recorded together */
+    double reference_hz, output_hz; /* fundamentals; 0: none */
+} tactus_comparison;
+/* Takes of at least 0.5 s, of any rates and lengths. */
+int tactus_compare(const double* reference, size_t reference_count, double reference_rate, const double* output,
+                   size_t output_count, double output_rate, tactus_comparison* comparison, tactus_error* error);
+
+typedef struct tactus_exposure {
+    double weighted[3]; /* a_hw of each axis, m/s² */
+    double total;       /* a_hv, m/s² */
+    double a8;          /* A(8), m/s² */
+    double seconds_to_action, seconds_to_limit; /* a day until 2.5 and 5 m/s² of directive 2002/44/EC; infinity: never */
+} tactus_exposure;
+/* Vibration exposure of the hand (ISO 5349-1) from accelerations in m/s² along three axes. A record below 2.5 kHz ends within the
+ * band of the standard: its values are lower bounds. */
+int tactus_hand_arm_exposure(const double* const axes[3], size_t count, double rate, double seconds_a_day,
+                             tactus_exposure* exposure, tactus_error* error);
+
 #ifdef __cplusplus
 }
 #endif

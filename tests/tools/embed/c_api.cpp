@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // libtactus as a program sees it: by its C functions, through the shared library.
 #include "tests/support/catch.hpp"
+#include "tests/tools/embed/any_calls.hpp"
 #include "tools/embed/tactus.h"
 
 #include <array>
@@ -264,6 +265,31 @@ TEST_CASE("two threads on one run: one works, the other gets an error, and the r
     CHECK(tactus_time(run.get()) == Approx(0.001 * done));
 }
 
+TEST_CASE("two threads on one patch: one is served, the other gets an error, and no setting is lost or torn") {
+    const Patch patch = loaded("touch-sphere");
+    std::atomic<int> refused{0}, set{0}, begun{0}, others{0};
+    const auto note = [&](const tactus_error& own) {
+        if (std::string(own.text).find("another thread") != std::string::npos) ++refused;
+        else ++others;
+    };
+    const auto work = [&](const char* setting) {
+        tactus_error own;
+        for (int i = 0; i < 20; ++i) {
+            if (tactus_configure(patch.get(), setting, &own) == 0) ++set;
+            else note(own);
+            if (Run run(tactus_start(patch.get(), nullptr, &own)); run) ++begun;
+            else note(own);
+        }
+    };
+    std::thread one(work, "coupling.stiffness=0.4 N/mm"), two(work, "coupling.stiffness=0.6 N/mm");
+    one.join();
+    two.join();
+    CHECK(others == 0);
+    CHECK(set + begun + refused == 80);
+    CHECK(set > 0);
+    CHECK(begun > 0);
+}
+
 TEST_CASE("a run writes its results into a folder, and refuses one that has some") {
     const fs::path folder = fs::temp_directory_path() / ("tactus_embed_" + std::to_string(std::rand()));
     const Patch patch = loaded("touch-sphere");
@@ -289,66 +315,7 @@ TEST_CASE("a run writes its results into a folder, and refuses one that has some
 TEST_CASE("calls in any order, with any arguments, give errors and never a crash") {
     std::mt19937 random(7);
     const auto pick = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
-    const char* const words[] = {nullptr,
-                                 "",
-                                 "simulated",
-                                 "coupling.stiffness",
-                                 "coupling.wrench",
-                                 "scene.scene",
-                                 "1 N/mm",
-                                 "-1",
-                                 "nan",
-                                 "coupling.stiffness=2 N/mm",
-                                 "place.pose",
-                                 "\xff\xfe",
-                                 "a.b.c",
-                                 "trajectory=/nowhere"};
-    const auto word = [&] { return words[pick(std::size(words))]; };
-    const double numbers[] = {0.0, 0.001, -1.0, 1e300, std::numeric_limits<double>::quiet_NaN(), 0.01};
-    for (int round = 0; round < 20; ++round) {
-        tactus_patch* patch = pick(8) ? tactus_load("touch-sphere", &error) : nullptr;
-        tactus_run* run = nullptr;
-        tactus_motion motion{};
-        std::array<double, 64> values{};
-        for (int call = 0; call < 60; ++call) {
-            tactus_error* const told = pick(4) ? &error : nullptr;
-            tactus_options options = with_seconds(numbers[pick(6)]);
-            if (options.seconds > 1.0) options.seconds = 0.01;
-            switch (pick(16)) {
-                case 0: tactus_configure(patch, word(), told); break;
-                case 1: tactus_use_asset(patch, word(), told); break;
-                case 2: tactus_attach_hand(patch, word(), nullptr, told); break;
-                case 3:
-                    if (!run) run = tactus_start(patch, pick(2) ? &options : nullptr, told);
-                    break;
-                case 4: tactus_advance(run, numbers[pick(6)] > 1.0 ? 0.002 : numbers[pick(2)], told); break;
-                case 5: tactus_render(run, told); break;
-                case 6: tactus_set(run, word(), word(), told); break;
-                case 7: tactus_find_hand(run, word(), told); break;
-                case 8:
-                    motion.position[pick(3)] = numbers[pick(6)];
-                    tactus_move_hand(run, pick(3) - 1, pick(5) ? &motion : nullptr);
-                    break;
-                case 9: tactus_hand_force(run, pick(3) - 1, pick(5) ? values.data() : nullptr); break;
-                case 10: tactus_output(run, word(), pick(2), nullptr, told); break;
-                case 11: tactus_newest(run, pick(4) - 1, pick(5) ? values.data() : nullptr); break;
-                case 12: tactus_fetch(run, pick(4) - 1, nullptr, pick(5) ? values.data() : nullptr, 4); break;
-                case 13: tactus_finish(run, told); break;
-                case 14:
-                    tactus_hash(run), tactus_summary(run), tactus_time(run), tactus_output_name(run, pick(50) - 1);
-                    break;
-                default:
-                    if (pick(3) == 0) {
-                        tactus_free_run(run);
-                        run = nullptr;
-                    }
-            }
-        }
-        // In either order.
-        if (pick(2)) tactus_free_patch(std::exchange(patch, nullptr));
-        tactus_free_run(run);
-        tactus_free_patch(patch);
-    }
+    for (int round = 0; round < 20; ++round) tactus::test::make_any_calls(pick, 60);
     SUCCEED();
 }
 
@@ -365,7 +332,7 @@ TEST_CASE("the library exports what is Tactus', and nothing of the libraries wit
         }
     }
     ::pclose(names);
-    CHECK(functions == 24);
+    CHECK(functions == 27);
     CHECK(others == 0);
 }
 

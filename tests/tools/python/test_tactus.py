@@ -4,6 +4,7 @@
 import gc
 import os
 import pathlib
+import re
 import resource
 import socket
 import subprocess
@@ -130,6 +131,127 @@ class Patches(unittest.TestCase):
             ticks.append(time.monotonic())
             time.sleep(0.001)
         self.assertGreater(len(ticks), 5)
+
+
+def vibration(rate, seconds=4.0, seed=1, tone=120.0):
+    t = np.arange(int(rate * seconds)) / rate
+    return np.sin(2 * np.pi * tone * t) + 0.5 * np.sin(4 * np.pi * tone * t) + \
+        0.1 * np.random.default_rng(seed).standard_normal(len(t))
+
+
+class Analyses(unittest.TestCase):
+    def test_a_spectrum_is_the_mean_of_windowed_periodograms(self):
+        rate, segment = 2000.0, 512
+        x = vibration(rate)
+        frequencies, density = tactus.spectrum(x, rate, segment)
+        window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(segment) / segment)
+        starts = range(0, len(x) - segment + 1, segment // 2)
+        parts = [np.abs(np.fft.rfft(window * (x[k:k + segment] - x[k:k + segment].mean())))**2 for k in starts]
+        expected = np.mean(parts, axis=0) / (rate * np.sum(window**2))
+        expected[1:-1] *= 2
+        np.testing.assert_allclose(frequencies, np.fft.rfftfreq(segment, 1 / rate))
+        np.testing.assert_allclose(density, expected, rtol=1e-9, atol=1e-12)
+        # A tone of amplitude 1 has the power 1/2.
+        near = (frequencies > 105) & (frequencies < 135)
+        self.assertAlmostEqual(density[near].sum() * frequencies[1], 0.5, delta=0.02)
+
+    def test_a_column_of_a_run_can_be_analysed_as_it_is(self):
+        force = tactus.load("touch-sphere").render(2.0)["coupling.wrench"]
+        frequencies, density = tactus.spectrum(force["fz"], force.rate)
+        self.assertEqual(frequencies[-1], 500.0)
+        self.assertTrue(np.all(density >= 0.0))
+
+    def test_a_comparison_finds_delay_gain_and_likeness(self):
+        rate = 4000.0
+        x = np.random.default_rng(3).standard_normal(int(4 * rate))
+        same = tactus.compare(x, x, rate)
+        self.assertAlmostEqual(same.delay, 0.0, delta=1e-3)
+        self.assertAlmostEqual(same.spectral_cosine, 1.0, delta=1e-6)
+        self.assertAlmostEqual(same.gain_db, 0.0, delta=1e-6)
+        late = tactus.compare(x, np.concatenate([np.zeros(200), 0.5 * x])[:len(x)], rate)
+        self.assertAlmostEqual(late.delay, 0.05, delta=1e-3)
+        self.assertAlmostEqual(late.gain_db, 20 * np.log10(2), delta=0.2)
+        other = tactus.compare(x, vibration(rate, seed=9), rate)
+        self.assertTrue(np.isnan(other.delay))
+        self.assertLess(other.spectral_cosine, 0.9)
+
+    def test_an_exposure_is_that_of_the_weighted_tone(self):
+        rate = 20000.0
+        t = np.arange(int(10 * rate)) / rate
+        tone = np.sqrt(2) * np.sin(2 * np.pi * 15.915 * t)  # 1 m/s² r.m.s.; Wh there is 0.896 (ISO 5349-1, table A.2: 16 Hz)
+        found = tactus.exposure(np.stack([tone, 0 * t, 2 * tone], axis=1), rate, 4 * 3600.0)
+        self.assertAlmostEqual(found.weighted[0], 0.896, delta=0.01)
+        self.assertEqual(found.weighted[1], 0.0)
+        self.assertAlmostEqual(found.total, np.sqrt(5) * found.weighted[0], delta=1e-3)
+        self.assertAlmostEqual(found.a8, found.total * np.sqrt(0.5), delta=1e-9)
+        self.assertAlmostEqual(found.seconds_to_action, 8 * 3600 * (2.5 / found.total)**2, delta=1.0)
+
+    def test_wrong_records_are_errors_that_say_what(self):
+        for samples, words in (("text", "not numbers"), ([], "no samples"), ([[1, 2], [3, 4]], "shape"),
+                               ([1.0, np.nan], "sample 1 is not finite"), ([1 + 2j], "not numbers"),
+                               (np.array([object()]), "not numbers")):
+            with self.assertRaisesRegex(tactus.Error, words):
+                tactus.spectrum(samples, 1000.0)
+        for rate in (0.0, -1.0, 1e300, float("nan"), float("inf")):
+            with self.assertRaisesRegex(tactus.Error, "rate"):
+                tactus.spectrum([1.0, 2.0], rate)
+        with self.assertRaises(tactus.Error):
+            tactus.compare(np.zeros(1000), np.zeros(1000), 1000.0)
+        with self.assertRaises(tactus.Error):
+            tactus.compare([1.0], [2.0], 1000.0)
+        with self.assertRaisesRegex(tactus.Error, "column for each axis"):
+            tactus.exposure(np.zeros(10), 1000.0)
+        with self.assertRaisesRegex(tactus.Error, "a day"):
+            tactus.exposure(np.zeros((10, 3)), 1000.0, 1e9)
+
+    def test_integers_floats_and_strided_columns_give_the_same(self):
+        whole = (100 * vibration(1000.0)).astype(np.int16)
+        expected = tactus.spectrum(whole.astype(float), 1000.0)[1]
+        for samples in (whole, whole.astype(np.float32), np.stack([whole, whole], axis=1)[:, 0], whole.reshape(-1, 1)):
+            np.testing.assert_array_equal(tactus.spectrum(samples, 1000.0)[1], expected)
+
+
+class Plugins(unittest.TestCase):
+    def test_nodes_from_outside_run_in_python(self):
+        # A process of its own: nodes are loaded once.
+        script = """
+import numpy, tactus
+run = tactus.parse('wires = ["v.signal -> f.in"]\\n[nodes.v]\\ntype = "sine"\\nrate = "48 kHz"\\n'
+                   '[nodes.f]\\ntype = "fold"\\nrate = "48 kHz"\\ngain = "3"\\n').render(0.1)
+numpy.testing.assert_allclose(run["f.out"].values, numpy.sin(3.0 * run["v.signal"].values), atol=1e-6)
+"""
+        fold = pathlib.Path(os.environ["TACTUS_TEST_PLUGINS"]) / "fold.so"
+        done = subprocess.run([sys.executable, "-c", script], env={**os.environ, "TACTUS_NODES": str(fold)},
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        wrong = subprocess.run([sys.executable, "-c", "import tactus; tactus.load('touch-sphere')"], capture_output=True,
+                               env={**os.environ, "TACTUS_NODES": str(fold.with_name("faulty_other_headers.so"))}, text=True)
+        self.assertIn("tactus.errors.Error", wrong.stderr)
+        self.assertIn("Rebuild", wrong.stderr)
+
+
+class Tutorial(unittest.TestCase):
+    def test_its_blocks_run_in_order(self):
+        """What it does not run is marked as in all pages; matplotlib may be missing."""
+        page = (pathlib.Path(__file__).parents[3] / "docs/tutorial/python.md").read_text()
+        blocks = re.findall(r"^(<!-- not run: .*? -->\n)?```(\w+)\n(.*?)^```$", page, re.M | re.S)
+        self.assertGreater(len(blocks), 5)
+        names, before = {}, os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                for mark, language, text in blocks:
+                    if mark:
+                        continue
+                    with self.subTest(block=text):
+                        if language == "python":
+                            exec(compile(text, "python.md", "exec"), names)
+                        elif language == "sh":
+                            path = f"{pathlib.Path(COMMAND).parent}:{os.environ['PATH']}"
+                            subprocess.run(["sh", "-ec", text], check=True, env={**os.environ, "PATH": path},
+                                           capture_output=True)
+            finally:
+                os.chdir(before)
 
 
 class LiveRuns(unittest.TestCase):

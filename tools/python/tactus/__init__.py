@@ -15,10 +15,12 @@
 Units are SI. Patches need libtactus (package libtactus0.1); takes need numpy only.
 """
 
+from .analysis import Comparison, Exposure, compare, exposure, spectrum
 from .live import Live
 from .patch import Patch, Run, load, parse, version
 from .stream import Stream
 from .take import Take, open
 from .errors import Error
 
-__all__ = ["Error", "Live", "Patch", "Run", "Stream", "Take", "load", "open", "parse", "version"]
+__all__ = ["Comparison", "Error", "Exposure", "Live", "Patch", "Run", "Stream", "Take", "compare", "exposure", "load", "open",
+           "parse", "spectrum", "version"]

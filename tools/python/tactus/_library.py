@@ -34,6 +34,18 @@ class OutputInfo(c.Structure):
     _fields_ = [("type", c.c_char_p), ("names", c.POINTER(c.c_char_p)), ("columns", c.c_int), ("rate", c.c_double)]
 
 
+class Comparison(c.Structure):
+    _fields_ = [(name, c.c_double) for name in (
+        "delay", "correlation", "lowest", "highest", "reference_rms", "output_rms", "gain_db", "spectral_distance_db",
+        "spectral_cosine", "touch_cosine", "touch_gap_db", "spectrogram_similarity", "st_sim", "spqi",
+        "signal_to_noise_db", "coherence", "reference_hz", "output_hz")]
+
+
+class Exposure(c.Structure):
+    _fields_ = [("weighted", c.c_double * 3), ("total", c.c_double), ("a8", c.c_double),
+                ("seconds_to_action", c.c_double), ("seconds_to_limit", c.c_double)]
+
+
 _ERROR, _DOUBLES = c.POINTER(ErrorText), c.POINTER(c.c_double)
 _FUNCTIONS = {
     "version": (c.c_char_p, []),
@@ -60,6 +72,10 @@ _FUNCTIONS = {
     "summary": (c.c_char_p, [c.c_void_p]),
     "hash": (c.c_uint64, [c.c_void_p]),
     "free_run": (None, [c.c_void_p]),
+    "spectrum": (c.c_size_t, [_DOUBLES, c.c_size_t, c.c_double, c.c_size_t, _DOUBLES, _DOUBLES, c.c_size_t, _ERROR]),
+    "compare": (c.c_int, [_DOUBLES, c.c_size_t, c.c_double, _DOUBLES, c.c_size_t, c.c_double, c.POINTER(Comparison),
+                          _ERROR]),
+    "hand_arm_exposure": (c.c_int, [_DOUBLES * 3, c.c_size_t, c.c_double, c.c_double, c.POINTER(Exposure), _ERROR]),
 }
 
 
@@ -74,6 +90,11 @@ def library() -> c.CDLL:
         function = getattr(loaded, "tactus_" + name)
         function.restype, function.argtypes = result, arguments
     return loaded
+
+
+def doubles(array):
+    """The memory of an array of float64."""
+    return array.ctypes.data_as(_DOUBLES)
 
 
 def call(name: str, *arguments):

@@ -14,7 +14,7 @@ from typing import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from . import _library
-from ._library import call, library
+from ._library import call, doubles, library
 from .errors import Error
 from .stream import Stream, table_of
 
@@ -223,7 +223,7 @@ class Run:
     def force(self, name: str) -> np.ndarray:
         """Force (N) and torque (N·m) on an attached hand: 6 numbers."""
         wrench = np.empty(6)
-        library().tactus_hand_force(self._pointer, self._hand(name), _doubles(wrench))
+        library().tactus_hand_force(self._pointer, self._hand(name), doubles(wrench))
         return wrench
 
     def _hand(self, name: str) -> int:
@@ -235,7 +235,7 @@ class Run:
         """The newest value of an output."""
         number, _, names, _ = self._output(port, False)
         values = np.empty(len(names))
-        library().tactus_newest(self._pointer, number, _doubles(values))
+        library().tactus_newest(self._pointer, number, doubles(values))
         return values
 
     def fetch(self, port: str) -> Stream:
@@ -245,7 +245,7 @@ class Run:
         number, kind, names, rate = self._outputs[port]
         count = library().tactus_available(self._pointer, number)
         t, values = np.empty(count), np.empty((count, len(names)))
-        got = library().tactus_fetch(self._pointer, number, _doubles(t), _doubles(values), count) if count else 0
+        got = library().tactus_fetch(self._pointer, number, doubles(t), doubles(values), count) if count else 0
         return Stream(port, kind, names, rate, values[:got], t[:got])
 
     def finish(self) -> None:
@@ -255,7 +255,3 @@ class Run:
         call("finish", self._pointer)
         self.hash = f"{library().tactus_hash(self._pointer):016x}"
         self.summary = json.loads(library().tactus_summary(self._pointer).decode())
-
-
-def _doubles(array: np.ndarray):
-    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls of the C functions of libtactus in any order and with any arguments, as a source of choices has it: random numbers in a
+// test, bytes in a fuzzer.
+#pragma once
+
+#include "tools/embed/tactus.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace tactus::test {
+
+/// `pick(n)`: from 0 to n − 1. `count` calls on one patch and one run of it; both are freed at the end. Aborts when a function
+/// fails and states no reason.
+inline void make_any_calls(const std::function<int(int)>& pick, int count) {
+    constexpr std::array<const char*, 15> words{nullptr,
+                                                "",
+                                                "simulated",
+                                                "coupling.stiffness",
+                                                "coupling.wrench",
+                                                "scene.scene",
+                                                "1 N/mm",
+                                                "-1",
+                                                "nan",
+                                                "coupling.stiffness=2 N/mm",
+                                                "place.pose",
+                                                "\xff\xfe",
+                                                "a.b.c",
+                                                "trajectory=/nowhere",
+                                                "[nodes.a]\ntype = \"sine\"\nrate = \"48 kHz\"\n"};
+    constexpr std::array<double, 6> numbers{0.0, 0.001, -1.0, 1e300, std::numeric_limits<double>::quiet_NaN(), 0.01};
+    const auto word = [&] { return words[static_cast<std::size_t>(pick(words.size()))]; };
+    const auto number = [&] { return numbers[static_cast<std::size_t>(pick(numbers.size()))]; };
+    tactus_error error{};
+    tactus_patch* patch = nullptr;
+    switch (pick(8)) {
+        case 0: break;
+        case 1: patch = tactus_parse(word(), word(), &error); break;
+        default: patch = tactus_load("touch-sphere", &error);
+    }
+    tactus_run* run = nullptr;
+    tactus_motion motion{};
+    std::array<double, 64> values{};
+    std::vector<double> samples(3000);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<double>(i % 17);
+    for (int call = 0; call < count; ++call) {
+        tactus_error* const told = pick(4) ? &error : nullptr;
+        tactus_options options{};
+        options.size = pick(9) ? sizeof(options) : static_cast<std::size_t>(pick(100));
+        options.seconds = number();
+        if (options.seconds > 1.0) options.seconds = 0.01;
+        options.threads = pick(3);
+        std::memset(&error, 0, sizeof(error));
+        bool has_failed = false;
+        double* const room = pick(5) ? values.data() : nullptr;
+        switch (pick(19)) {
+            case 0: has_failed = tactus_configure(patch, word(), told) < 0; break;
+            case 1: has_failed = tactus_use_asset(patch, word(), told) < 0; break;
+            case 2: has_failed = tactus_attach_hand(patch, word(), nullptr, told) < 0; break;
+            case 3:
+                if (run) break;
+                run = tactus_start(patch, pick(2) ? &options : nullptr, told);
+                has_failed = !run;
+                break;
+            case 4: has_failed = tactus_advance(run, std::min(number(), 0.002), told) < 0; break;
+            case 5: has_failed = tactus_render(run, told) < 0; break;
+            case 6: has_failed = tactus_set(run, word(), word(), told) < 0; break;
+            case 7: has_failed = tactus_find_hand(run, word(), told) < 0; break;
+            case 8:
+                motion.position[pick(3)] = number();
+                tactus_move_hand(run, pick(3) - 1, pick(5) ? &motion : nullptr);
+                break;
+            case 9: tactus_hand_force(run, pick(3) - 1, room); break;
+            case 10: {
+                tactus_output_info info{};
+                has_failed = tactus_output(run, word(), pick(2), pick(2) ? &info : nullptr, told) < 0;
+                break;
+            }
+            case 11: tactus_newest(run, pick(4) - 1, room); break;
+            case 12: tactus_fetch(run, pick(4) - 1, nullptr, room, 4); break;
+            case 13: has_failed = tactus_finish(run, told) < 0; break;
+            case 14:
+                tactus_hash(run), tactus_summary(run), tactus_time(run), tactus_output_name(run, pick(50) - 1);
+                tactus_available(run, pick(4) - 1);
+                break;
+            case 15:
+                has_failed = tactus_spectrum(pick(5) ? samples.data() : nullptr, static_cast<std::size_t>(pick(3000)),
+                                             1e3 * number(), static_cast<std::size_t>(pick(300)), room, room,
+                                             static_cast<std::size_t>(pick(64)), told) == 0;
+                break;
+            case 16: {
+                tactus_comparison comparison{};
+                has_failed = tactus_compare(samples.data(), static_cast<std::size_t>(pick(3000)), 2e3 * number(),
+                                            samples.data() + 7, 2000, 1e3, pick(5) ? &comparison : nullptr, told) < 0;
+                break;
+            }
+            case 17: {
+                const std::array<const double*, 3> axes{samples.data(), samples.data(),
+                                                        pick(4) ? samples.data() : nullptr};
+                tactus_exposure exposure{};
+                has_failed = tactus_hand_arm_exposure(axes.data(), static_cast<std::size_t>(pick(3000)), 1e3 * number(),
+                                                      number(), pick(5) ? &exposure : nullptr, told) < 0;
+                break;
+            }
+            default:
+                if (pick(3) == 0) {
+                    tactus_free_run(run);
+                    run = nullptr;
+                }
+        }
+        if (told && has_failed != (error.text[0] != '\0')) std::abort();
+    }
+    // In either order.
+    if (pick(2)) tactus_free_patch(std::exchange(patch, nullptr));
+    tactus_free_run(run);
+    tactus_free_patch(patch);
+}
+
+}  // namespace tactus::test
