@@ -18,9 +18,12 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # libtactus stands in none of the system's folders while dependencies are looked for.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
 
-# tactus_package(COMPONENT NAME [ARCHITECTURE all] [DEPENDS ...] SUMMARY DESCRIPTION): also its copyright and changelog.
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package/compress_manuals.cmake)
+
+# tactus_package(COMPONENT NAME [ARCHITECTURE all] [DEPENDS ...] [CONTROL FILE ...] SUMMARY DESCRIPTION): also its copyright and
+# changelog. CONTROL: files of its control archive.
 function(tactus_package component name)
-  cmake_parse_arguments(PACKAGE "" "ARCHITECTURE;DEPENDS;SECTION;SUMMARY;DESCRIPTION" "" ${ARGN})
+  cmake_parse_arguments(PACKAGE "" "ARCHITECTURE;DEPENDS;SECTION;SUMMARY;DESCRIPTION" "CONTROL" ${ARGN})
   string(TOUPPER ${component} upper)
   set(all "set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})\nset(CPACK_COMPONENT_${upper}_DESCRIPTION \"${PACKAGE_SUMMARY}\n${PACKAGE_DESCRIPTION}\")\n")
   if(PACKAGE_ARCHITECTURE)
@@ -28,6 +31,9 @@ function(tactus_package component name)
   endif()
   if(PACKAGE_DEPENDS)
     string(APPEND all "set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS \"${PACKAGE_DEPENDS}\")\n")
+  endif()
+  if(PACKAGE_CONTROL)
+    string(APPEND all "set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA \"${PACKAGE_CONTROL}\")\n")
   endif()
   if(PACKAGE_SECTION)
     string(APPEND all "set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${PACKAGE_SECTION})\n")
@@ -40,18 +46,22 @@ endfunction()
 
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
 execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${CMAKE_BINARY_DIR}/package/changelog.gz)
+file(WRITE ${CMAKE_BINARY_DIR}/package/conffiles "/etc/security/limits.d/tactus-limits.conf\n")
+file(WRITE ${CMAKE_BINARY_DIR}/package/triggers "activate-noawait ldconfig\n")
+file(WRITE ${CMAKE_BINARY_DIR}/package/shlibs "libtactus ${TACTUS_ABI} libtactus${TACTUS_ABI} (>= ${PROJECT_VERSION})\n")
 set(same "(= ${PROJECT_VERSION})")
 tactus_package(command tactus DEPENDS "tactus-common ${same}"
   SUMMARY "real-time signal processing for haptics"
   DESCRIPTION " Patches of nodes and wires compute forces at 1 kHz, carve bone at 60 Hz and play\n vibration at audio rate, live with a haptic device or offline with the same bits.\n This package has the command, its window and its benchmarks.")
-tactus_package(common tactus-common
+tactus_package(common tactus-common CONTROL ${CMAKE_BINARY_DIR}/package/conffiles
   SUMMARY "files that the tactus command and its library share"
   DESCRIPTION " Patches, bones, saws and tasks of the library of Tactus, and the programs that run\n drivers and read scans.")
 tactus_package(library libtactus${TACTUS_ABI} DEPENDS "tactus-common ${same}" SECTION libs
+  CONTROL ${CMAKE_BINARY_DIR}/package/triggers ${CMAKE_BINARY_DIR}/package/shlibs
   SUMMARY "Tactus patches inside other programs"
   DESCRIPTION " The shared library: load a patch, advance it from a loop of one's own or run it\n live, move its hands, read its outputs.")
 tactus_package(development libtactus-dev DEPENDS "libtactus${TACTUS_ABI} ${same}, libglm-dev, libfmt-dev" SECTION libdevel
-  SUMMARY "headers of libtactus"
+  SUMMARY "headers of libtactus, and the check of nodes"
   DESCRIPTION " The C header tactus.h, the C++ headers of the rooms of Tactus, and files for CMake\n and pkg-config.")
 tactus_package(python python3-tactus ARCHITECTURE all DEPENDS "python3, python3-numpy, libtactus${TACTUS_ABI}" SECTION python
   SUMMARY "Tactus in Python"

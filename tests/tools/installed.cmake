@@ -89,12 +89,13 @@ if(PYTHON)
   build_project(${EXAMPLES}/driver ${SCRATCH}/driver)
   set(ENV{TACTUS_DEVICE_HOST} ${SCRATCH}/driver/udp_arm)
   string(RANDOM LENGTH 4 ALPHABET 0123456789 port)
-  execute_process(COMMAND ${tactus} run ${EXAMPLES}/driver/patch.toml --set arm.port=4${port} --seconds 6 --out run
+  execute_process(COMMAND ${tactus} run ${EXAMPLES}/driver/patch.toml --set arm.port=4${port} --seconds 5 --out run
                   COMMAND ${PYTHON} ${EXAMPLES}/driver/arm.py 4${port}
                   WORKING_DIRECTORY ${SCRATCH} OUTPUT_VARIABLE said ERROR_VARIABLE complaints RESULTS_VARIABLE codes)
   if(NOT codes STREQUAL "0;0")
     message(FATAL_ERROR "an arm behind a driver from outside: exit codes ${codes}\n${said}\n${complaints}")
   endif()
+  unset(ENV{TACTUS_DEVICE_HOST})
 endif()
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)

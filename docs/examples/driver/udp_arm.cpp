@@ -93,7 +93,7 @@ int main() {
     haptic::HapticDriver driver;
     driver.name = "udp_arm";
     driver.summary = "an arm behind a UDP port";
-    driver.is_real = true;
+    driver.is_real = true;  // runs in real time, in this process
     driver.backend = make_udp_arm;
     haptic::add_haptic_driver(driver);
     return hosted::run_device_host();

@@ -17,6 +17,18 @@
 
 namespace tactus::test {
 
+/// With the names of touch-sphere, and prepared a hundred times faster.
+inline constexpr const char* light_patch = R"(
+wires = ["hand.pose -> coupling.pose", "coupling.wrench -> out.wrench"]
+[devices.simulated]
+driver = "scripted"
+targets = "0 s: 0 0 60 mm; 0.1 s: 0 0 50 mm"
+[nodes]
+hand = { type = "device_input", rate = "1 kHz" }
+coupling = { type = "sphere_contact", rate = "1 kHz" }
+out = { type = "device_output", rate = "1 kHz" }
+)";
+
 /// `pick(n)`: from 0 to n − 1. `count` calls on one patch and one run of it; both are freed at the end. Aborts when a function
 /// fails and states no reason.
 inline void make_any_calls(const std::function<int(int)>& pick, int count) {
@@ -40,10 +52,11 @@ inline void make_any_calls(const std::function<int(int)>& pick, int count) {
     const auto number = [&] { return numbers[static_cast<std::size_t>(pick(numbers.size()))]; };
     tactus_error error{};
     tactus_patch* patch = nullptr;
-    switch (pick(8)) {
+    switch (pick(40)) {
         case 0: break;
         case 1: patch = tactus_parse(word(), word(), &error); break;
-        default: patch = tactus_load("touch-sphere", &error);
+        case 2: patch = tactus_load("touch-sphere", &error); break;
+        default: patch = tactus_parse(light_patch, nullptr, &error);
     }
     tactus_run* run = nullptr;
     tactus_motion motion{};

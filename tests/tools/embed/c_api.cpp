@@ -315,7 +315,7 @@ TEST_CASE("a run writes its results into a folder, and refuses one that has some
 TEST_CASE("calls in any order, with any arguments, give errors and never a crash") {
     std::mt19937 random(7);
     const auto pick = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
-    for (int round = 0; round < 20; ++round) tactus::test::make_any_calls(pick, 60);
+    for (int round = 0; round < 200; ++round) tactus::test::make_any_calls(pick, 60);
     SUCCEED();
 }
 
