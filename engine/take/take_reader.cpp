@@ -190,8 +190,10 @@ std::vector<std::string> Take::differences() const {
         found.push_back(
             fmt::format("the take was made on another kind of processor ({}, this is {})", cpu, cpu_family()));
     for (const TakenPlugin& taken : plugins) {
-        const auto now = std::ranges::find(plugin::all(), taken.name, &plugin::Plugin::name);
-        if (now == plugin::all().end())
+        const plugin::Plugin* now = nullptr;  // of that name; of several the one with that content
+        for (const plugin::Plugin& loaded : plugin::all())
+            if (loaded.name == taken.name && (!now || loaded.hash == taken.hash)) now = &loaded;
+        if (!now)
             found.push_back(
                 fmt::format("the take was made with the plug-in '{}' ({}), which is not loaded; give it by --nodes",
                             taken.name, taken.path.string()));

@@ -4,7 +4,6 @@
 import gc
 import os
 import pathlib
-import re
 import resource
 import socket
 import subprocess
@@ -228,30 +227,6 @@ numpy.testing.assert_allclose(run["f.out"].values, numpy.sin(3.0 * run["v.signal
                                env={**os.environ, "TACTUS_NODES": str(fold.with_name("faulty_other_headers.so"))}, text=True)
         self.assertIn("tactus.errors.Error", wrong.stderr)
         self.assertIn("Rebuild", wrong.stderr)
-
-
-class Tutorial(unittest.TestCase):
-    def test_its_blocks_run_in_order(self):
-        """What it does not run is marked as in all pages; matplotlib may be missing."""
-        page = (pathlib.Path(__file__).parents[3] / "docs/tutorial/python.md").read_text()
-        blocks = re.findall(r"^(<!-- not run: .*? -->\n)?```(\w+)\n(.*?)^```$", page, re.M | re.S)
-        self.assertGreater(len(blocks), 5)
-        names, before = {}, os.getcwd()
-        with tempfile.TemporaryDirectory() as folder:
-            os.chdir(folder)
-            try:
-                for mark, language, text in blocks:
-                    if mark:
-                        continue
-                    with self.subTest(block=text):
-                        if language == "python":
-                            exec(compile(text, "python.md", "exec"), names)
-                        elif language == "sh":
-                            path = f"{pathlib.Path(COMMAND).parent}:{os.environ['PATH']}"
-                            subprocess.run(["sh", "-ec", text], check=True, env={**os.environ, "PATH": path},
-                                           capture_output=True)
-            finally:
-                os.chdir(before)
 
 
 class LiveRuns(unittest.TestCase):

@@ -210,7 +210,8 @@ TEST_CASE("the project of a new node is refused under a name that a type cannot 
         return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "said"), ""};
     };
     CHECK_THAT(made("gain").out, ContainsSubstring("already") && ContainsSubstring("my_gain"));
-    for (const char* wrong : {"Gain", "my-gain", "../gain", "a_2", "_gain", "gain_", "''", "my__gain", "1gain", "test"}) {
+    for (const char* wrong :
+         {"Gain", "my-gain", "../gain", "a_2", "_gain", "gain_", "''", "my__gain", "1gain", "test"}) {
         INFO(wrong);
         CHECK(made(wrong).code == 2);
     }
