@@ -12,10 +12,15 @@
 
 #include <cxxabi.h>
 #include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <fstream>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -65,6 +70,24 @@ std::string reason_of(const fs::path& file) {
     return reason;
 }
 
+/// Of a file that was cut short, as by a copy that was ended, the loader maps what is not there: the first access would end the
+/// program.
+void check_whole(const fs::path& file, std::uintmax_t size) {
+    std::ifstream bytes(file, std::ios::binary);
+    ElfW(Ehdr) head{};
+    if (!bytes.read(reinterpret_cast<char*>(&head), sizeof(head)) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 ||
+        head.e_ident[EI_CLASS] != (sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32))
+        return;  // the loader says what it is instead
+    for (unsigned i = 0; i < head.e_phnum; ++i) {
+        ElfW(Phdr) part{};
+        bytes.seekg(static_cast<std::streamoff>(head.e_phoff + i * std::uint64_t{head.e_phentsize}));
+        const bool is_read = static_cast<bool>(bytes.read(reinterpret_cast<char*>(&part), sizeof(part)));
+        if (!is_read || (part.p_type == PT_LOAD && (part.p_offset > size || part.p_filesz > size - part.p_offset)))
+            throw Error(fmt::format("{}: not a plug-in with nodes: the file is cut short; build or copy it again",
+                                    file.string()));
+    }
+}
+
 /// Inside a program that loaded libtactus for itself alone, as Python does, plug-ins would not find its functions.
 void share_own_symbols() {
     static_cast<void>(::dlopen(file::this_object().c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL));
@@ -105,7 +128,7 @@ std::vector<fs::path> wanted_files() {
 
 Plugin load(const fs::path& given) {
     const fs::path file = fs::weakly_canonical(given);
-    file::require_file(file);
+    check_whole(file, file::require_file(file));
     share_own_symbols();
     void* const object = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!object) {

@@ -157,6 +157,14 @@ TEST_CASE("what is no shared object, no file or no folder is refused as nodes") 
     CHECK_THAT(seen.err, ContainsSubstring(text) && ContainsSubstring("not a plug-in"));
     CHECK(folder.tactus("nodes --nodes " + folder.write("empty.so", "").string()).code == 2);
     CHECK(folder.tactus("nodes --nodes /dev/null").code == 2);
+    const std::string whole = slurp(file_of("fold"));
+    for (const std::size_t kept :
+         {std::size_t{10}, std::size_t{64}, std::size_t{200}, std::size_t{2000}, std::size_t{4096}, whole.size() / 3}) {
+        INFO(kept << " bytes");
+        const Outcome cut = folder.tactus("nodes --nodes " + folder.write("cut.so", whole.substr(0, kept)).string());
+        CHECK(cut.code == 2);
+        CHECK_THAT(cut.err, ContainsSubstring("cut.so") && ContainsSubstring("not a plug-in"));
+    }
     CHECK(folder.tactus("nodes --nodes").code == 2);
     const Outcome missing = folder.tactus("nodes --nodes " + (folder.path / "none.so").string());
     CHECK(missing.code == 2);
@@ -166,7 +174,7 @@ TEST_CASE("what is no shared object, no file or no folder is refused as nodes") 
     CHECK(folder.tactus("nodes --nodes " + (folder.path / "bare").string()).code == 0);
 }
 
-TEST_CASE("'tactus-check-node' finds each fault of a node, also a crash, and none in good ones") {
+TEST_CASE("'tactus-check-node' finds each fault of a node, also a crash, and none in good ones", "[slow]") {
     const Folder folder;
     const auto checked = [&](const std::string& arguments) {
         const std::string program = (fs::path(command()).parent_path() / "tactus-check-node").string();
