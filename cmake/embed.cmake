@@ -6,12 +6,14 @@ file(GLOB embed CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/embed/*.cpp)
 add_library(tactus_embed SHARED ${embed})
 set_source_files_properties(tools/embed/c_api.cpp PROPERTIES COMPILE_DEFINITIONS "TACTUS_VERSION=\"${PROJECT_VERSION}\"")
 set(rooms_in_library tactus_dsp tactus_assets tactus_graph tactus_devices tactus_nodes tactus_engine)
+# The objects, not the archives: of these the linker would take what the C functions need.
+foreach(room ${rooms_in_library})
+  target_sources(tactus_embed PRIVATE $<TARGET_OBJECTS:${room}>)
+endforeach()
 target_link_libraries(tactus_embed PRIVATE ${rooms_in_library} tactus_tools tactus_flags)
-string(REPLACE ";" "," rooms_in_library "${rooms_in_library}")
 set_target_properties(tactus_embed PROPERTIES
   OUTPUT_NAME tactus EXPORT_NAME tactus VERSION ${PROJECT_VERSION} SOVERSION ${TACTUS_ABI}
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
-  LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,${rooms_in_library}"
   LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
 # Exported is what is Tactus': of the libraries that are linked in, two of a kind may meet in one program.
 target_link_options(tactus_embed PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map -Wl,-Bsymbolic-functions)
