@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/mesh/three_mf.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/surface_net.hpp"
 #include "dsp/volume/cubic_interpolant.hpp"
@@ -104,7 +105,8 @@ void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem
     const std::string kind = path.extension().string();
     if (kind == ".stl") file::write_whole_file(path, stl_of(surfaces, static_cast<std::uint32_t>(triangles)));
     else if (kind == ".ply") file::write_whole_file(path, ply_of(surfaces, static_cast<std::uint32_t>(triangles)));
-    else throw Error(fmt::format("{}: a mesh is written as .stl or .ply", path.string()));
+    else if (kind == ".3mf") file::write_whole_file(path, three_mf_of(surfaces));
+    else throw Error(fmt::format("{}: a mesh is written as .stl, .ply or .3mf", path.string()));
 }
 
 geometry::TriangleSurface export_surface(const volume::Grid& distance) {

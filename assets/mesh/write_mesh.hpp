@@ -15,8 +15,8 @@ struct ColouredSurface {
     Vec3 colour{0.90, 0.86, 0.76};
 };
 
-/// Writes all surfaces into one binary STL or PLY (by extension), coordinates in mm. The header states SPACE=LPS, which
-/// 3D Slicer and others read; PLY keeps shared vertices and colours. Written atomically. Throws Error for other
+/// Writes all surfaces into one binary STL, PLY or 3MF (by extension), coordinates in mm. The header states SPACE=LPS,
+/// which 3D Slicer and others read; PLY and 3MF keep shared vertices and colours, 3MF the unit and separate objects. Written atomically. Throws Error for other
 /// extensions, for no triangles, and when the file cannot be written.
 void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem::path& path);
 

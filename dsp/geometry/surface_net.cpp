@@ -2,6 +2,7 @@
 #include "dsp/geometry/surface_net.hpp"
 
 #include "dsp/core/stop.hpp"
+#include "dsp/geometry/cell_sheets.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -12,74 +13,13 @@ namespace tactus::geometry {
 
 namespace {
 
-// The edges of a cell that cross the surface, by the in/out state of its eight samples; an edge is named by its low
-// corner and axis. Crossing edges are linked around the faces of the cell; each closed ring is one sheet with its own
-// vertex. A face with inside samples at opposite corners is cut around each inside corner: both cells that share the
-// face get the same cuts, so that neighbouring sheets meet without a hole.
-struct Sheets {
-    std::array<int, 24> of_edge{};  // index of the sheet for 3 · low corner + axis; -1: no crossing
-    int count = 0;
-
-    Sheets() = default;
-    explicit Sheets(unsigned in) {
-        const auto is_in = [in](int corner) { return (in >> corner & 1u) != 0; };
-        for (int edge = 0; edge < 24; ++edge) {
-            const int low = edge / 3, high = low | 1 << edge % 3;
-            of_edge[at(edge)] = high != low && is_in(low) != is_in(high) ? edge : -1;
-        }
-        for (int axis = 0; axis < 3; ++axis)
-            for (const int face : {0, 1 << axis}) {
-                const int b = 1 << (axis + 1) % 3, c = 1 << (axis + 2) % 3;
-                const std::array<int, 4> corner{face, face | b, face | b | c, face | c};
-                std::array<int, 4> edge{};  // from each corner to the next
-                int crossings = 0;
-                for (int n = 0; n < 4; ++n) {
-                    edge[at(n)] = between(corner[at(n)], corner[at((n + 1) % 4)]);
-                    crossings += of_edge[at(edge[at(n)])] >= 0;
-                }
-                for (int n = 0; n < 4; ++n) {
-                    const int before = edge[at((n + 3) % 4)];
-                    if (crossings == 4 && is_in(corner[at(n)])) join(before, edge[at(n)]);
-                    for (int m = 0; crossings == 2 && m < n; ++m) join(edge[at(m)], edge[at(n)]);
-                }
-            }
-        std::array<int, 24> number;
-        number.fill(-1);
-        for (int& sheet : of_edge) {
-            if (sheet < 0) continue;
-            int& known = number[at(sheet)];
-            if (known < 0) known = count++;
-            sheet = known;
-        }
-    }
-
-    static std::size_t at(int n) { return static_cast<std::size_t>(n); }
-    static int between(int a, int b) {
-        const int along = a ^ b;
-        return 3 * std::min(a, b) + (along == 4 ? 2 : along - 1);
-    }
-
-    // Until the end a sheet is identified by one of its edges.
-    void join(int a, int b) {
-        const int kept = of_edge[at(a)], dropped = of_edge[at(b)];
-        if (kept < 0 || dropped < 0) return;
-        std::replace(of_edge.begin(), of_edge.end(), dropped, kept);
-    }
-};
-
-std::vector<Sheets> all_sheets() {
-    std::vector<Sheets> all;
-    for (unsigned in = 0; in < 256; ++in) all.emplace_back(in);
-    return all;
-}
-
 struct Netter {
     const volume::Grid& grid;
     float iso;
     bool inside_above;
     SurfaceNet& net;
     std::array<std::vector<int>, 2> vertex;  // first vertex per cell of this layer and the previous one, or -1
-    std::vector<Sheets> sheets;  // for each of the 256 in/out states
+    std::vector<CellSheets> sheets;  // for each of the 256 in/out states
 
     bool is_in(int i, int j, int k) const { return (grid.at(i, j, k) >= iso) == inside_above; }
 
@@ -88,7 +28,7 @@ struct Netter {
             k & 1)][static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.size[0]) + static_cast<std::size_t>(i)];
     }
 
-    const Sheets& sheets_of(int i, int j, int k) const {
+    const CellSheets& sheets_of(int i, int j, int k) const {
         std::size_t in = 0;
         for (int c = 0; c < 8; ++c)
             in |= static_cast<std::size_t>(is_in(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))) << c;
@@ -97,17 +37,17 @@ struct Netter {
 
     void make_vertices(int i, int j, int k) {
         slot(i, j, k) = -1;
-        const Sheets& sheet = sheets_of(i, j, k);
+        const CellSheets& sheet = sheets_of(i, j, k);
         if (sheet.count == 0) return;
         std::array<Vec3, 4> sum{};
         std::array<int, 4> crossings{};
         for (int edge = 0; edge < 24; ++edge) {
-            if (sheet.of_edge[Sheets::at(edge)] < 0) continue;
+            if (sheet.of_edge[CellSheets::at(edge)] < 0) continue;
             const int from = edge / 3;
             Vec3 at(from & 1, from >> 1 & 1, from >> 2), step(0.0);
             step[edge % 3] = 1.0;
             const double a = value(Vec3(i, j, k) + at), b = value(Vec3(i, j, k) + at + step);
-            const auto n = Sheets::at(sheet.of_edge[Sheets::at(edge)]);
+            const auto n = CellSheets::at(sheet.of_edge[CellSheets::at(edge)]);
             sum[n] += at + step * ((double(iso) - a) / (b - a));
             ++crossings[n];
         }
@@ -124,7 +64,7 @@ struct Netter {
 
     // Vertex of the cell whose lowest sample is (i, j, k) for its edge from corner `low` along `axis`.
     int vertex_at(int i, int j, int k, int low, int along) {
-        return slot(i, j, k) + sheets_of(i, j, k).of_edge[Sheets::at(3 * low + along)];
+        return slot(i, j, k) + sheets_of(i, j, k).of_edge[CellSheets::at(3 * low + along)];
     }
 
     // The four cells around an edge, counter-clockwise seen from its far end.
@@ -195,7 +135,7 @@ struct Neighbours {
 SurfaceNet surface_net(const volume::Grid& grid, float iso, bool inside_above) {
     SurfaceNet net;
     if (grid.size[0] > 1 && grid.size[1] > 1 && grid.size[2] > 1)
-        Netter{grid, iso, inside_above, net, {}, all_sheets()}.run();
+        Netter{grid, iso, inside_above, net, {}, CellSheets::of_all_states()}.run();
     return net;
 }
 

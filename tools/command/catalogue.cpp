@@ -77,7 +77,8 @@
     X(plan_margin, reconstruct)      \
     X(plan_limits, reconstruct)      \
     X(plan_paddle, reconstruct)      \
-    X(plan_reach, reconstruct)
+    X(plan_reach, reconstruct)       \
+    X(plan_guide, reconstruct)
 
 namespace tactus::command {
 

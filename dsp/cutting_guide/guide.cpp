@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/cutting_guide/guide.hpp"
+
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/cutting_guide/guide_solid.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace tactus::cutting_guide {
+
+namespace {
+
+// m: bodies that are subtracted side by side overlap by this much, so that no skin is left between them.
+constexpr double overlap = 2e-6;
+constexpr double ledge = 3e-3;  // m: what is free in front of a ledge
+constexpr double crumb = 8e-9;  // m³: smaller parts fall off and are removed
+constexpr double most_samples = 150e6;
+
+/// A cut in the frame of the guide.
+struct Slot {
+    Vec3 origin, normal;
+    double low_y = infinity, high_y = -infinity, top = -infinity;  // of the bone in the plane
+    double bottom = infinity;  // of the block: below the widest place of the bone, where no thin edge can be left
+    double end_y = 0.0;  // of the block, at the open end of the slot
+    Sides sides = Sides::three;
+    std::optional<std::size_t> faces{};  // the cut with which it shares a free space, without a strip between them
+
+    double out_of(const Vec3& p) const { return glm::dot(normal, p - origin); }
+    /// x at which the plane passes through (y, z).
+    double x_at(double y, double z) const {
+        return origin.x - (normal.y * (y - origin.y) + normal.z * (z - origin.z)) / normal.x;
+    }
+};
+
+void check(const GuideSettings& s) {
+    const auto positive = [](double value, const char* what) {
+        if (!(value > 0.0 && value < 1.0)) throw Error(fmt::format("a guide needs a {} above 0", what));
+    };
+    positive(s.thickness, "thickness"), positive(s.blade, "thickness of the blade"), positive(s.depth, "depth of slot");
+    positive(s.wall, "thickness of walls"), positive(s.voxel, "voxel"), positive(s.rail, "thickness of its rail");
+    if (!(s.offset > 0.0)) throw Error("a guide needs an offset above 0 from the bone: without it, it does not seat");
+    if (!(s.clearance >= 0.0)) throw Error("a slot cannot be narrower than its blade: the clearance is below 0");
+    if (!(s.wrap > 0.1 && s.wrap < 6.0)) throw Error("a guide wraps the bone by 6 to 340 degrees");
+    if (!(s.text_depth < s.rail)) throw Error("the text is as deep as the rail is thick");
+}
+
+class Maker {
+public:
+    Maker(const GuideDesign& design, const RunJobs& run) : design_(design), set_(design.settings), run_(run) {}
+
+    MadeGuide make() {
+        check(set_);
+        if (design_.cuts.empty() || design_.base.empty()) throw Error("a guide needs at least one cut and one base");
+        make_frame();
+        find_slots();
+        find_heights();
+        find_grid();
+        const geometry::TriangleTree tree(bone_);
+        const double cap = set_.offset + set_.thickness + 2.0 * mm;
+        const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm), 2.0 * set_.voxel, cap, run_);
+        lift_rail(bone);
+        GuideSolid solid(bone);
+        add_parts(solid);
+        add_cuts(solid, bone);
+        geometry::Contour contour = geometry::dual_contour(layout(), solid, crumb, run_);
+        if (contour.surface.triangles.empty()) throw Error("nothing is left of the guide: it does not reach the bone");
+        made_.flipped = contour.flipped, made_.smoothed = contour.smoothed;
+        for (Vec3& v : contour.surface.vertices) v = made_.frame.apply(v);
+        made_.surface = std::move(contour.surface);
+        return std::move(made_);
+    }
+
+private:
+    void make_frame() {
+        const Vec3 z = glm::normalize(design_.removal);
+        Vec3 x = design_.along - glm::dot(design_.along, z) * z;
+        if (!(glm::length(x) > 0.2 * glm::length(design_.along)))
+            throw Error("the guide would be taken off along itself: choose another approach");
+        x = glm::normalize(x);
+        const Vec3 y = glm::cross(z, x);
+        Vec3 middle(0.0);
+        for (const GuideCut& c : design_.cuts) middle += c.plane.origin / static_cast<double>(design_.cuts.size());
+        made_.frame = {middle, glm::normalize(glm::quat_cast(Mat3(x, y, z)))};
+        to_guide_ = made_.frame.inverse();
+        bone_ = design_.bone;
+        for (Vec3& v : bone_.vertices) v = to_guide_.apply(v);
+    }
+
+    void find_slots() {
+        for (const GuideCut& c : design_.cuts) {
+            Slot s;
+            s.origin = to_guide_.apply(c.plane.origin), s.normal = to_guide_.rotate(glm::normalize(c.plane.normal));
+            s.sides = set_.sides;
+            const double tilt = std::asin(std::clamp(std::abs(s.normal.z), 0.0, 1.0)),
+                         across = std::abs(s.normal.x) / std::max(1e-9, std::hypot(s.normal.x, s.normal.y));
+            if (tilt > 70.0 * degree || across < 0.35)
+                throw Error(fmt::format(
+                    "no blade can come along the approach into the plane of cut {} ({}): they are {:.0f}° apart; "
+                    "choose another approach",
+                    c.letter, c.name, tilt > 70.0 * degree ? tilt / degree : std::acos(across) / degree));
+            const reconstruct::Plane plane{s.origin, s.normal};
+            const reconstruct::Section section = reconstruct::section_of(bone_, plane, &s.origin);
+            if (section.points.empty())
+                throw Error(fmt::format("the plane of cut {} ({}) does not meet the bone", c.letter, c.name));
+            for (const Vec3& p : section.points) s.top = std::max(s.top, p.z);
+            // The block must reach beyond the bone along its whole thickness.
+            for (const double out : {0.0, -set_.wall, set_.slot_width() + set_.wall}) {
+                const reconstruct::Plane beside{s.origin + out * s.normal, s.normal};
+                const reconstruct::Section cut = reconstruct::section_of(bone_, beside, &beside.origin);
+                for (const Vec3& p : cut.points) s.low_y = std::min(s.low_y, p.y), s.high_y = std::max(s.high_y, p.y);
+            }
+            for (const Vec3& p : section.points)
+                if (p.y < s.low_y + 1.0 * mm || p.y > s.high_y - 1.0 * mm)
+                    s.bottom = std::min(s.bottom, p.z - 1.0 * mm);
+            s.bottom = std::min(s.bottom, s.top - 3.0 * mm);
+            s.end_y = set_.cover < 1.0 ? s.low_y + set_.cover * (s.high_y - s.low_y)
+                                       : s.high_y + std::max(set_.beyond, set_.offset + set_.min_wall + 0.2 * mm);
+            slots_.push_back(s);
+        }
+    }
+
+    void find_heights() {
+        rail_y_ = infinity, top_ = -infinity;
+        for (const Slot& s : slots_) {
+            rail_y_ = std::min(rail_y_, s.low_y - set_.beyond);
+            top_ = std::max(top_, s.top + set_.depth);
+        }
+        find_rail();
+    }
+
+    // Along x the rail reaches over all blocks, and is as long as its texts.
+    void find_rail() {
+        rail_low_ = top_ - rail_height(set_);
+        double low = infinity, high = -infinity;
+        for (const Slot& s : slots_)
+            for (const double z : {rail_low_, top_})
+                for (const double y : {rail_y_ - set_.rail, rail_y_}) {
+                    const double x = s.x_at(y, z), thick = (set_.wall + set_.slot_width()) / std::abs(s.normal.x);
+                    low = std::min(low, x - thick), high = std::max(high, x + thick);
+                }
+        // A letter lies on the kept side of its cut.
+        for (std::size_t n = 0; n < design_.letters.size(); ++n) {
+            const double x = letter_x(n);
+            low = std::min(low, x - 1.0 * mm), high = std::max(high, x + design_.letters[n].width + 1.0 * mm);
+        }
+        double wanted = 0.0;
+        for (const GuideText& t : design_.text) wanted = std::max(wanted, t.width + 4.0 * mm);
+        if (high - low < wanted) {
+            // Towards the middle of the base.
+            double middle = 0.0;
+            for (const BaseSpan& b : design_.base)
+                middle += to_guide_.apply(b.point + 0.5 * (b.from + b.to) * b.axis).x /
+                          static_cast<double>(design_.base.size());
+            const double more = wanted - (high - low);
+            const double before = std::clamp(0.5 * (low + high) - middle + 0.5 * more, 0.0, more);
+            low -= before, high += more - before;
+        }
+        rail_from_ = low, rail_to_ = high;
+    }
+
+    double letter_x(std::size_t n) const {
+        const Slot& s = slots_[n];
+        const double x = s.x_at(rail_y_ - set_.rail, top_ - 0.5 * rail_height(set_));
+        return s.normal.x > 0.0 ? x - 1.0 * mm - design_.letters[n].width : x + 1.0 * mm;
+    }
+
+    void find_grid() {
+        low_ = Vec3(rail_from_, rail_y_ - set_.rail, rail_low_);
+        high_ = Vec3(rail_to_, rail_y_, top_);
+        const auto add = [&](const Vec3& p) { low_ = glm::min(low_, p), high_ = glm::max(high_, p); };
+        for (const Slot& s : slots_) {
+            const double wide = (set_.wall + set_.slot_width()) / std::abs(s.normal.x);
+            for (const double y : {rail_y_ - set_.rail, s.end_y})
+                for (const double z : {s.bottom, top_})
+                    for (const double sign : {-1.0, 1.0}) add(Vec3(s.x_at(y, z) + sign * wide, y, z));
+        }
+        const double shell = set_.offset + set_.thickness + 0.5 * mm;
+        for (const BaseSpan& b : design_.base) {
+            const Vec3 point = to_guide_.apply(b.point), axis = to_guide_.rotate(b.axis);
+            const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis);
+            for (const Vec3& v : bone_.vertices) {
+                const double t = glm::dot(v - point, axis);
+                const Vec3 r = v - point - t * axis;
+                if (t < b.from - 8.0 * mm || t > b.to + 8.0 * mm || glm::length(r) > 40.0 * mm) continue;
+                const double angle = std::acos(std::clamp(glm::dot(r, up) / std::max(1e-9, glm::length(r)), -1.0, 1.0));
+                if (angle > 0.5 * set_.wrap + 0.2) continue;
+                const Vec3 around = glm::length(r) > 0.0 ? r / glm::length(r) : up;
+                add(v + 1.5 * shell * around);
+                add(v);
+            }
+        }
+        low_ -= 2.0 * set_.voxel, high_ += 2.0 * set_.voxel;
+        const Vec3 size = (high_ - low_) / set_.voxel;
+        if (!(size.x * size.y * size.z < most_samples))
+            throw Error(fmt::format(
+                "the guide would be {:.0f} x {:.0f} x {:.0f} mm, too much for a voxel of {:.2f} mm: make one guide per "
+                "cut, or take a coarser voxel",
+                (high_.x - low_.x) / mm, (high_.y - low_.y) / mm, (high_.z - low_.z) / mm, set_.voxel / mm));
+    }
+
+    // The rail must clear the bone along its whole length; the blocks rise with it.
+    void lift_rail(const SeatedBone& bone) {
+        const double most = bone.top_within(Vec3(rail_from_, rail_y_ - set_.rail, 0.0), Vec3(rail_to_, rail_y_, 0.0));
+        const double lift = most + set_.rail_clearance - rail_low_;
+        if (!(lift > 0.0)) return;
+        if (lift > 15.0 * mm)
+            throw Error(fmt::format(
+                "bone stands {:.0f} mm in the way of the rail that joins the slots: choose another approach, or make "
+                "one guide per cut",
+                lift / mm));
+        made_.notes.push_back(
+            fmt::format("the slots are {:.1f} mm deeper, so that the rail clears the bone", lift / mm));
+        top_ += lift;
+        find_rail();
+        high_.z = std::max(high_.z, top_ + 2.0 * set_.voxel);
+        low_.x = std::min(low_.x, rail_from_ - 2.0 * set_.voxel);
+        high_.x = std::max(high_.x, rail_to_ + 2.0 * set_.voxel);
+    }
+
+    volume::Grid layout() const {
+        volume::Grid grid;
+        grid.origin = low_;
+        grid.spacing = Vec3(set_.voxel);
+        for (int axis = 0; axis < 3; ++axis)
+            grid.size[static_cast<std::size_t>(axis)] =
+                static_cast<int>(std::ceil((high_[axis] - low_[axis]) / set_.voxel)) + 1;
+        return grid;
+    }
+
+    void add_parts(GuideSolid& solid) {
+        const Term above{Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.offset};
+        for (const BaseSpan& b : design_.base) {
+            const Vec3 point = to_guide_.apply(b.point), axis = to_guide_.rotate(b.axis);
+            const Vec3 up = glm::normalize(Vec3(0.0, 0.0, 1.0) - axis.z * axis), aside = glm::cross(axis, up);
+            const double half = 0.5 * set_.wrap;
+            const Vec3 m = std::cos(half) * aside - std::sin(half) * up,
+                       k = -std::cos(half) * aside - std::sin(half) * up;
+            Body body{plane(axis, point + b.to * axis), plane(-axis, point + b.from * axis)};
+            if (half <= 0.5 * pi) {
+                body.push_back(plane(m, point));
+                body.push_back(plane(k, point));
+            } else {
+                body.push_back({Term::Kind::either, m, k, glm::dot(m, point), glm::dot(k, point)});
+            }
+            body.push_back({Term::Kind::below, Vec3(0.0), Vec3(0.0), set_.offset + set_.thickness});
+            body.push_back(above);
+            solid.parts.push_back(std::move(body));
+        }
+        const double width = set_.slot_width();
+        for (const Slot& s : slots_) {
+            const double out = s.sides == Sides::one ? 0.0 : width + set_.wall;
+            solid.parts.push_back({plane(s.normal, s.origin + out * s.normal),
+                                   plane(-s.normal, s.origin - set_.wall * s.normal), side(1, 1.0, s.end_y),
+                                   side(1, -1.0, rail_y_ - set_.rail), side(2, 1.0, top_), side(2, -1.0, s.bottom),
+                                   above});
+        }
+        solid.parts.push_back({side(0, 1.0, rail_to_),
+                               side(0, -1.0, rail_from_),
+                               side(1, 1.0, rail_y_),
+                               side(1, -1.0, rail_y_ - set_.rail),
+                               side(2, 1.0, top_),
+                               side(2, -1.0, rail_low_),
+                               {Term::Kind::above, Vec3(0.0), Vec3(0.0), set_.rail_clearance}});
+    }
+
+    void add_cuts(GuideSolid& solid, const SeatedBone& bone) {
+        const double width = set_.slot_width();
+        drop_strips(solid);
+        for (std::size_t n = 0; n < slots_.size(); ++n) {
+            const Slot& s = slots_[n];
+            const double open = s.sides == Sides::one && !s.faces ? std::max(width, ledge) : width;
+            Body between{plane(s.normal, s.origin + open * s.normal), plane(-s.normal, s.origin)};
+            if (s.faces) between.push_back(beyond_crossing(s, slots_[*s.faces]));
+            Body body = between;
+            body.push_back(side(1, -1.0, rail_y_));
+            solid.cuts.push_back(std::move(body));
+            if (set_.sides != Sides::three) {
+                between.push_back(side(2, 1.0, rail_low_));
+                solid.cuts.push_back(std::move(between));
+            }
+            note_slot(n);
+        }
+        for (const GuideHole& hole : design_.holes) add_hole(solid, bone, hole);
+        add_texts(solid);
+    }
+
+    /// Negative where the plane of `a` has passed that of `b`, at any x: only there the blade of `a` needs room in the
+    /// wall of `b`, whose face is on plan.
+    static Term beyond_crossing(const Slot& a, const Slot& b) {
+        const double ratio = b.normal.x / a.normal.x;
+        Vec3 normal = b.normal - ratio * a.normal;
+        const double size = glm::length(normal),
+                     d = glm::dot(b.normal, b.origin) - ratio * glm::dot(a.normal, a.origin);
+        // Parallel planes cross nowhere.
+        if (size < 1e-6) return {Term::Kind::plane, Vec3(0.0), Vec3(0.0), -1.0};
+        return {Term::Kind::plane, normal / size, Vec3(0.0), d / size + overlap};
+    }
+
+    /// A strip between the slots of two cuts that face each other is left out when it is too thin to print.
+    void drop_strips(GuideSolid& solid) {
+        for (std::size_t n = 0; n + 1 < slots_.size(); ++n) {
+            Slot &a = slots_[n], &b = slots_[n + 1];
+            if (a.out_of(b.origin) <= 0.0 || b.out_of(a.origin) <= 0.0) continue;
+            double least = infinity;
+            for (const double y : {rail_y_, std::max(a.end_y, b.end_y)})
+                for (const double z : {std::min(a.top, b.top), top_}) {
+                    const double sign = b.origin.x > a.origin.x ? 1.0 : -1.0;
+                    least = std::min(least, sign * (b.x_at(y, z) - a.x_at(y, z)));
+                }
+            const double open = set_.sides == Sides::one ? std::max(ledge, set_.slot_width()) : set_.slot_width();
+            const double strip = least - 2.0 * open;
+            if (strip >= set_.min_wall) continue;
+            const char x = design_.cuts[n].letter, y = design_.cuts[n + 1].letter;
+            made_.notes.push_back(fmt::format(
+                "{} the blade is held on the kept side of either only",
+                strip > 0.0
+                    ? fmt::format("the strip between slots {} and {} would be {:.1f} mm thick and is left out;", x, y,
+                                  strip / mm)
+                    : fmt::format("slots {} and {} meet within the guide; there is no strip between them, and", x, y)));
+            a.sides = b.sides = Sides::one;
+            a.faces = n + 1, b.faces = n;
+            // Their blocks are made already: the space between the two planes is free.
+            solid.cuts.push_back({plane(-a.normal, a.origin), plane(-b.normal, b.origin), side(1, -1.0, rail_y_)});
+            // Where the planes have crossed, a wedge stands between them, which begins with an edge.
+            if (Term gap = beyond_crossing(a, b); gap.n != Vec3(0.0)) {
+                const Vec3 across = b.normal - b.normal.x / a.normal.x * a.normal;
+                gap.n = -gap.n, gap.d = -gap.d + set_.min_wall * std::abs(b.normal.x) / glm::length(across);
+                solid.cuts.push_back({plane(a.normal, a.origin + overlap * a.normal),
+                                      plane(b.normal, b.origin + overlap * b.normal), gap, side(1, -1.0, rail_y_)});
+            }
+        }
+    }
+
+    void note_slot(std::size_t n) {
+        const Slot& s = slots_[n];
+        MadeSlot slot;
+        slot.cut = design_.cuts[n];
+        slot.width = set_.slot_width();
+        slot.depth = top_ - s.top;
+        slot.length = s.end_y - rail_y_;
+        slot.sides = s.sides;
+        if (s.sides != Sides::one) slot.play = std::atan((slot.width - set_.blade) / slot.depth);
+        const double y = 0.5 * (rail_y_ + s.end_y), z = s.top + 0.5 * slot.depth;
+        slot.middle = made_.frame.apply(Vec3(s.x_at(y, z), y, z));
+        slot.deep = made_.frame.rotate(glm::normalize(Vec3(0.0, 0.0, 1.0) - s.normal.z * s.normal));
+        slot.wide = glm::cross(made_.frame.rotate(s.normal), slot.deep);
+        made_.slots.push_back(std::move(slot));
+    }
+
+    /// Only where the guide surrounds it.
+    void add_hole(GuideSolid& solid, const SeatedBone& bone, const GuideHole& hole) {
+        const Vec3 at = to_guide_.apply(hole.at), axis = to_guide_.rotate(hole.axis);
+        const double level = set_.offset + 0.5 * set_.thickness;
+        // Out of the bone against the axis, until the middle of the base.
+        double t = -10.0 * mm;
+        while (t < 25.0 * mm && bone.value(at - t * axis) < level) t += 0.1 * mm;
+        const Vec3 middle = at - t * axis;
+        const Vec3 u = glm::normalize(
+                       glm::cross(axis, std::abs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0))),
+                   v = glm::cross(axis, u);
+        bool is_surrounded = t < 25.0 * mm;
+        for (int k = 0; k < 12 && is_surrounded; ++k) {
+            const double a = k * pi / 6.0;
+            const Vec3 p = middle + (hole.radius + 1.0 * mm) * (std::cos(a) * u + std::sin(a) * v);
+            is_surrounded = solid.value(p) < 0.0;
+        }
+        if (!is_surrounded) {
+            made_.notes.push_back(fmt::format("{}: the guide does not surround it, and has no hole for it", hole.name));
+            return;
+        }
+        solid.cuts.push_back({plane(axis, middle + 15.0 * mm * axis),
+                              plane(-axis, middle - 25.0 * mm * axis),
+                              {Term::Kind::cylinder, axis, middle, hole.radius}});
+        made_.holes.push_back(hole);
+    }
+
+    void add_texts(GuideSolid& solid) {
+        const std::array<double, 3> rows = text_rows(set_);
+        const double face = rail_y_ - set_.rail;
+        const auto engrave = [&](const GuideText& text, double x, double row) {
+            if (text.outlines.empty()) return;
+            solid.cuts.push_back(
+                {side(1, 1.0, face + set_.text_depth),
+                 side(0, -1.0, x - 0.4 * mm),
+                 side(0, 1.0, x + text.width + 0.4 * mm),
+                 {Term::Kind::text, Vec3(0.0), Vec3(x, 0.0, top_ - row), 0.0, 0.0, std::make_shared<TextField>(text)}});
+            made_.texts.push_back({Vec3(x, face, top_ - row), text});
+        };
+        for (std::size_t n = 0; n < 2; ++n)
+            engrave(design_.text[n], 0.5 * (rail_from_ + rail_to_ - design_.text[n].width), rows[2 * n]);
+        for (std::size_t n = 0; n < design_.letters.size(); ++n) engrave(design_.letters[n], letter_x(n), rows[1]);
+    }
+
+    const GuideDesign& design_;
+    const GuideSettings& set_;
+    const RunJobs& run_;
+    MadeGuide made_;
+    Pose to_guide_;
+    geometry::TriangleSurface bone_;  // in the frame of the guide, as all below
+    std::vector<Slot> slots_;
+    double rail_y_ = 0.0, rail_low_ = 0.0, rail_from_ = 0.0, rail_to_ = 0.0, top_ = 0.0;
+    Vec3 low_{0.0}, high_{0.0};
+};
+
+}  // namespace
+
+double rail_height(const GuideSettings& s) { return (3.0 + 4.0 * 0.3) * s.text_height; }
+
+std::array<double, 3> text_rows(const GuideSettings& s) {
+    return {1.3 * s.text_height, 2.6 * s.text_height, 3.9 * s.text_height};
+}
+
+MadeGuide make_guide(const GuideDesign& design, const RunJobs& run) { return Maker(design, run).make(); }
+
+}  // namespace tactus::cutting_guide

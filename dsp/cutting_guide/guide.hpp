@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// A printed guide that sits on a bone and holds the blade of a saw in the planes of a plan.
+#pragma once
+
+#include "dsp/core/jobs.hpp"
+#include "dsp/core/types.hpp"
+#include "dsp/geometry/dual_contour.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/reconstruct/section.hpp"
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::cutting_guide {
+
+/// Which walls a slot has.
+enum class Sides {
+    one = 1,   ///< a ledge: the wall on the kept side
+    two = 2,   ///< a wall on either side; the rail joins them above the end of the slot
+    three = 3  ///< the end at the rail is closed as well
+};
+
+/// Sizes in m. BoneReconstructionPlanner's values unless noted.
+struct GuideSettings {
+    double thickness = 4e-3;      ///< of the base
+    double wrap = 2.0943951;      ///< rad: the base reaches half of it to either side of the direction of removal
+    double offset = 0.3e-3;       ///< between base and bone; 0.5e-3 over periosteum
+    double blade = 0.4e-3;        ///< thickness that the blade cuts; a placeholder
+    double clearance = 0.25e-3;   ///< per side of the blade: 0.25e-3 for SLA, 0.4e-3 for FDM
+    Sides sides = Sides::three;
+    double depth = 15e-3;         ///< of a slot above the highest bone in it
+    double wall = 3e-3;           ///< of a slot
+    double beyond = 2e-3;         ///< of a slot, beyond the bone at either end; a placeholder
+    double cover = 1.0;  ///< share of the bone across a slot that its walls cover, from the rail on; 1: and `beyond`
+    double end = 14e-3;  ///< length of base beyond the outermost cuts; a placeholder
+    double screw_radius = 1.5e-3;
+    double rail = 4e-3;  ///< thickness of the bar that joins the slots and bears the text; a placeholder
+    double rail_clearance = 1e-3;  ///< between the rail and the bone (BoneReconstructionPlanner's security margin)
+    double text_height = 4e-3;  ///< of capitals; remembered, not from a seen source
+    double text_depth = 1e-3;
+    double voxel = 0.35e-3;  ///< of the grid from which the mesh is made; edges are sharp at any
+    double min_wall = 2e-3;  ///< a strip between two slots that is thinner is left out; remembered
+
+    double slot_width() const { return blade + 2.0 * clearance; }
+};
+
+struct GuideCut {
+    reconstruct::Plane plane;  ///< normal out of what is kept; the wall of the slot lies on it
+    std::string name;  ///< "segment-1 at plane 2"
+    char letter = 'A';
+};
+
+/// A part of a line round which the base wraps the bone.
+struct BaseSpan {
+    Vec3 point{0.0}, axis{1.0, 0.0, 0.0};  ///< unit
+    double from = 0.0, to = 0.0;  ///< m along the axis
+};
+
+struct GuideHole {
+    Vec3 at{0.0}, axis{0.0, 0.0, 1.0};  ///< unit
+    double radius = 1.5e-3;
+    std::string name;
+    bool is_predictive = false;  ///< of a plate or implant; else the guide is fixed by it
+};
+
+/// A closed polygon of a glyph, m; filled by the non-zero rule.
+using Outline = std::vector<glm::dvec2>;
+
+/// Engraved on the rail. x along the rail, y along the direction of removal.
+struct GuideText {
+    std::vector<Outline> outlines;
+    double width = 0.0;  ///< m
+};
+
+struct GuideDesign {
+    geometry::TriangleSurface bone;
+    Vec3 removal{0.0, 0.0, 1.0};  ///< unit: the guide is taken off along it and put on against it
+    Vec3 along{1.0, 0.0, 0.0};  ///< unit: from slot to slot
+    std::vector<GuideCut> cuts;  ///< at least one
+    std::vector<BaseSpan> base;  ///< at least one
+    std::vector<GuideHole> holes;
+    std::array<GuideText, 2> text;  ///< above and below the letters
+    std::vector<GuideText> letters;  ///< one per cut; empty: none
+    GuideSettings settings;
+};
+
+struct MadeSlot {
+    GuideCut cut;  ///< in the frame of the bone
+    double width = 0.0, depth = 0.0;  ///< m; depth of its walls above the highest bone in it
+    double length = 0.0;  ///< m, across the direction of removal
+    std::optional<double> play;  ///< rad: atan((width - blade) / depth); none: a ledge holds the blade on one side only
+    Sides sides = Sides::three;
+    Vec3 middle{0.0};  ///< on the plane, at half of its depth
+    Vec3 deep{0.0}, wide{0.0};  ///< unit, in the plane: out of the bone, along the slot
+};
+
+/// A text on the rail's face, which looks along -y of the guide's frame.
+struct MadeText {
+    Vec3 at{0.0};  ///< m, in the guide's frame: where the outlines have their origin
+    GuideText text;
+};
+
+struct MadeGuide {
+    geometry::TriangleSurface surface;  ///< m, in the frame of the bone
+    Pose frame;  ///< of x along the slots and z along the removal
+    std::vector<MadeSlot> slots;
+    std::vector<GuideHole> holes;  ///< those that the guide surrounds
+    std::vector<MadeText> texts;
+    std::vector<std::string> notes;  ///< what was left out or changed
+    std::size_t flipped = 0, smoothed = 0;  ///< see geometry::Contour
+};
+
+/// The base follows the bone at `offset`, `thickness` thick, where the approach reaches, over each span. Each cut has a
+/// block with a slot whose wall on the kept side lies on the plane: a blade that is held against it cuts on plan, one at
+/// the other wall leaves bone. A rail beside the bone joins the blocks, and bears the text. All is united and
+/// subtracted as distances, with slots and holes as analytic bodies, and meshed by dual contouring. Throws Error for
+/// planes through which no blade can come along the removal (more than 70° between them), for bone that stands in the
+/// way of the rail, for guides that need more than 150 million samples and numbers that cannot be.
+MadeGuide make_guide(const GuideDesign& design, const RunJobs& run);
+
+/// Base lines of the rows of text on the rail, m from its top: the first text, letters, the second text.
+std::array<double, 3> text_rows(const GuideSettings& settings);
+double rail_height(const GuideSettings& settings);
+
+}  // namespace tactus::cutting_guide

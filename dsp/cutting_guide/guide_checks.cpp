@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/cutting_guide/guide_checks.hpp"
+
+#include "dsp/core/constants.hpp"
+#include "dsp/geometry/symmetric_eigen.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace tactus::cutting_guide {
+
+namespace {
+
+constexpr double opposite = -0.8660254037844386;  // cosine of 150°
+constexpr double path_length = 60.0 * mm, facing = 0.8, farthest_relief = 4.0 * mm, contact_margin = 0.1 * mm;
+constexpr int chunk = 2048;
+constexpr std::size_t supporting = 6;  // facets of a wall; fewer are folds of the mesh at a corner
+
+/// A triangle as its middle, unit normal and area.
+struct Facet {
+    Vec3 middle, normal;
+    double area;
+};
+
+Facet facet(const geometry::TriangleSurface& surface, std::size_t t) {
+    const auto at = [&](std::size_t n) { return surface.vertices[static_cast<std::size_t>(surface.triangles[t][n])]; };
+    const Vec3 a = at(0), b = at(1), c = at(2), n = glm::cross(b - a, c - a);
+    const double length = glm::length(n);
+    return {(a + b + c) / 3.0, length > 0.0 ? n / length : Vec3(0.0), 0.5 * length};
+}
+
+int jobs_of(const geometry::TriangleSurface& surface) {
+    return (static_cast<int>(surface.triangles.size()) + chunk - 1) / chunk;
+}
+
+template <class Each>
+void each_of(const geometry::TriangleSurface& surface, int job, const Each& each) {
+    const std::size_t first = static_cast<std::size_t>(job) * chunk,
+                      last = std::min(surface.triangles.size(), first + chunk);
+    for (std::size_t t = first; t < last; ++t) each(facet(surface, t));
+}
+
+}  // namespace
+
+std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
+                                      double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run) {
+    // Of each job its thinnest places, in order.
+    std::vector<std::vector<ThinWall>> found(static_cast<std::size_t>(jobs_of(surface)));
+    run(jobs_of(surface), [&](int job) {
+        auto& thin = found[static_cast<std::size_t>(job)];
+        each_of(surface, job, [&](const Facet& f) {
+            if (f.normal == Vec3(0.0) || !counts(f.middle)) return;
+            double radius = 0.5 * (thin.size() < supporting ? most : thin.back().thickness);
+            Vec3 centre = f.middle - radius * f.normal;
+            geometry::TriangleTree::Near near;
+            for (int round = 0; round < 40; ++round) {
+                const auto closer = tree.nearest(centre, radius * (1.0 - 1e-6));
+                if (!std::isfinite(closer.distance)) break;
+                near = closer;
+                const Vec3 to = f.middle - near.point;
+                const double along = glm::dot(to, f.normal);
+                if (!(along > 1e-9)) return;  // the triangle itself or one beside it
+                radius = 0.5 * glm::dot(to, to) / along;
+                centre = f.middle - radius * f.normal;
+            }
+            if (!std::isfinite(near.distance) || near.normal == Vec3(0.0)) return;
+            if (glm::dot(near.normal, f.normal) > opposite) return;
+            const ThinWall wall{2.0 * radius, centre};
+            thin.insert(std::ranges::upper_bound(thin, wall.thickness, {}, &ThinWall::thickness), wall);
+            if (thin.size() > supporting) thin.pop_back();
+        });
+    });
+    std::vector<ThinWall> all;
+    for (const auto& each : found) all.insert(all.end(), each.begin(), each.end());
+    if (all.size() < supporting) return {};
+    std::ranges::nth_element(all, all.begin() + (supporting - 1), {}, &ThinWall::thickness);
+    return all[supporting - 1];
+}
+
+Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
+             double offset, double gap, const RunJobs& run) {
+    struct Part {
+        double contact = 0.0, relieved = 0.0, least = infinity;
+        bool is_free = true;
+        Vec3 blocked{0.0};
+        std::vector<Facet> facets;
+    };
+    std::vector<Part> parts(static_cast<std::size_t>(jobs_of(guide)));
+    run(jobs_of(guide), [&](int job) {
+        Part& part = parts[static_cast<std::size_t>(job)];
+        int count = 0;
+        each_of(guide, job, [&](const Facet& f) {
+            const auto near = bone.nearest(f.middle, 20.0 * mm);
+            part.least = std::min(part.least, near.distance);
+            if (near.distance < farthest_relief && glm::dot(f.normal, near.point - f.middle) > facing * near.distance) {
+                if (std::abs(near.distance - offset) <= contact_margin) {
+                    part.contact += f.area;
+                    part.facets.push_back(f);
+                } else {
+                    part.relieved += f.area;
+                }
+            }
+            // Facets are far smaller than what blocks a guide.
+            if (count++ % 4 != 0 || !part.is_free) return;
+            if (bone.sweep(f.middle, path_length * removal, 0.02 * mm) < 1.0)
+                part.is_free = false, part.blocked = f.middle;
+        });
+    });
+    Seat seat;
+    seat.least_distance = infinity;
+    Vec3 middle(0.0);
+    for (const Part& part : parts) {
+        seat.contact_area += part.contact, seat.relieved_area += part.relieved;
+        seat.least_distance = std::min(seat.least_distance, part.least);
+        if (!part.is_free && seat.is_path_free) seat.is_path_free = false, seat.blocked_at = part.blocked;
+        for (const Facet& f : part.facets) middle += f.area * f.middle;
+    }
+    seat.play = most_play, seat.play_angle = most_play_angle;
+    if (!(seat.contact_area > 0.0)) return seat;
+    middle /= seat.contact_area;
+    double spread = 0.0;
+    for (const Part& part : parts)
+        for (const Facet& f : part.facets) spread += f.area * glm::dot(f.middle - middle, f.middle - middle);
+    const double size = std::sqrt(spread / seat.contact_area);
+    if (!(size > 0.0)) return seat;
+    std::array<double, 36> m{};
+    for (const Part& part : parts)
+        for (const Facet& f : part.facets) {
+            const Vec3 turn = glm::cross(f.middle - middle, f.normal) / size;
+            const std::array<double, 6> row{f.normal.x, f.normal.y, f.normal.z, turn.x, turn.y, turn.z};
+            for (std::size_t i = 0; i < 6; ++i)
+                for (std::size_t j = 0; j < 6; ++j) m[6 * i + j] += f.area / seat.contact_area * row[i] * row[j];
+        }
+    const auto stiff = geometry::symmetric_eigen<6>(m);
+    std::array<double, 9> move{}, turn{};
+    for (std::size_t k = 0; k < 6; ++k) {
+        const double inverse = 1.0 / std::max(stiff.value[k], 1e-7);
+        const auto& e = stiff.vector[k];
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j) {
+                move[3 * i + j] += inverse * e[i] * e[j];
+                turn[3 * i + j] += inverse * e[3 + i] * e[3 + j];
+            }
+    }
+    const auto moves = geometry::symmetric_eigen<3>(move), turns = geometry::symmetric_eigen<3>(turn);
+    seat.play = std::min(most_play, gap * std::sqrt(moves.value[2]));
+    seat.play_direction = Vec3(moves.vector[2][0], moves.vector[2][1], moves.vector[2][2]);
+    seat.play_angle = std::min(most_play_angle, gap / size * std::sqrt(turns.value[2]));
+    return seat;
+}
+
+double overhang_share(const geometry::TriangleSurface& surface, const Vec3& up, double angle) {
+    double lowest = infinity, all = 0.0, hanging = 0.0;
+    for (const Vec3& v : surface.vertices) lowest = std::min(lowest, glm::dot(v, up));
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Facet f = facet(surface, t);
+        all += f.area;
+        if (glm::dot(f.middle, up) < lowest + 0.3 * mm) continue;
+        if (glm::dot(f.normal, up) < -std::sin(angle)) hanging += f.area;
+    }
+    return all > 0.0 ? hanging / all : 0.0;
+}
+
+}  // namespace tactus::cutting_guide

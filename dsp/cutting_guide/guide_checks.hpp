@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures of a guide from its mesh alone, independent of how it was made.
+#pragma once
+
+#include "dsp/core/jobs.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace tactus::cutting_guide {
+
+/// The thinnest wall of a closed surface, or none thinner than `most`.
+struct ThinWall {
+    double thickness = 0.0;  ///< m
+    Vec3 at{0.0};            ///< the middle of the wall
+};
+
+/// Twice the radius of the smallest ball within the solid that touches it at two places whose normals differ by at least
+/// 150°: a ball at a corner touches faces that differ less. The balls shrink from `most` / 2 at the middle of each
+/// triangle for which `counts` is true (Ma, Bae, Choi 2012). At least six triangles must be so thin: single ones are folds
+/// of the mesh at its corners. `tree` is of `surface`.
+std::optional<ThinWall> thinnest_wall(const geometry::TriangleSurface& surface, const geometry::TriangleTree& tree,
+                                      double most, const std::function<bool(const Vec3&)>& counts, const RunJobs& run);
+
+/// How a guide lies on its bone.
+struct Seat {
+    double contact_area = 0.0;  ///< m²: of the faces that look at the bone, at `offset` ± 0.1 mm from it
+    double relieved_area = 0.0;  ///< m²: of those that are farther, up to 4 mm: undercuts of the approach
+    double least_distance = 0.0;  ///< m, of any part of the guide from the bone; negative values do not occur
+    bool is_path_free = true;  ///< no part meets bone on 60 mm along the removal, nor on the way back
+    Vec3 blocked_at{0.0};  ///< where it does, on the guide
+    double play = 0.0;  ///< m, of its middle, in the direction in which the bone holds it least
+    Vec3 play_direction{0.0};  ///< unit
+    double play_angle = 0.0;  ///< rad, about the axis about which the bone holds it least
+    double contact_share() const { return contact_area > 0.0 ? contact_area / (contact_area + relieved_area) : 0.0; }
+};
+
+/// Most that `Seat::play` and `Seat::play_angle` are: beyond, linear play means nothing, and the bone does not hold.
+inline constexpr double most_play = 20e-3, most_play_angle = 0.5;  // m, rad
+
+/// Play: all motions for which contact faces move by no more than `gap` along their normals (root of the mean square, so
+/// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives most_play.
+Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
+             double offset, double gap, const RunJobs& run);
+
+/// Share of the area whose normal looks more than `angle` below the horizon when the guide is printed along `up`; the
+/// lowest 0.3 mm lie on the plate and do not count.
+double overhang_share(const geometry::TriangleSurface& surface, const Vec3& up, double angle);
+
+}  // namespace tactus::cutting_guide
