@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adaptive methods against simulated observers, whose thresholds are off the grids.
+#include "dsp/psychophysics/fit.hpp"
+#include "dsp/psychophysics/quest_plus.hpp"
+#include "dsp/psychophysics/staircase.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace tactus;
+using namespace tactus::psychophysics;
+
+namespace {
+
+QuestSettings quest_settings() {
+    QuestSettings settings;
+    for (int i = 0; i <= 80; ++i) settings.thresholds.push_back(-0.8 + 0.02 * i);  // 1.6 decades
+    for (int i = 0; i <= 40; ++i) settings.levels.push_back(-1.0 + 0.05 * i);
+    settings.slopes = {1.5, 2.5, 4.0, 6.0};
+    return settings;
+}
+
+StaircaseRule two_down() {
+    StaircaseRule rule;
+    rule.start = 0.8;
+    rule.min = -1.5;
+    rule.max = 1.5;
+    rule.step_up = rule.step_down = 0.05;
+    rule.reversals = 1000;
+    rule.max_trials = 60;
+    return rule;
+}
+
+struct Observer {
+    Psychometric function;
+    Random random;
+    std::uint64_t next = 0;
+    bool answers(double level) { return random.uniform(next++) < function.at(level); }
+};
+
+}  // namespace
+
+TEST_CASE("the targets of staircase rules are those of their authors") {
+    StaircaseRule rule;
+    CHECK(rule.target() == Approx(std::sqrt(0.5)));  // Levitt: 70.7 %
+    rule.down = 3;
+    CHECK(rule.target() == Approx(0.7937).epsilon(1e-4));
+    rule.kind = StaircaseRule::Kind::weighted;
+    rule.step_up = 0.3;
+    rule.step_down = 0.1;
+    CHECK(rule.target() == Approx(0.75));  // Kaernbach: 75 %
+}
+
+TEST_CASE("a staircase moves as its rule says and keeps its limits") {
+    StaircaseRule rule;
+    rule.start = 0.0;
+    rule.step_up = 0.1;
+    rule.step_down = 0.1;
+    rule.first_factor = 2.0;
+    rule.min = -0.25;
+    rule.max = 0.5;
+    rule.reversals = 4;
+    Staircase stairs(rule);
+    stairs.answer(true);
+    CHECK(stairs.level() == 0.0);
+    stairs.answer(true);
+    CHECK(stairs.level() == Approx(-0.2));
+    stairs.answer(true);
+    stairs.answer(true);
+    CHECK(stairs.level() == Approx(-0.25));  // the limit
+    stairs.answer(false);
+    CHECK(stairs.reversals().size() == 1);
+    CHECK(stairs.level() == Approx(-0.15));  // steps are small from the first reversal on
+    stairs.answer(true);
+    stairs.answer(false);  // two in a row are needed: this is one more rise
+    CHECK(stairs.reversals().size() == 1);
+    for (int i = 0; i < 3; ++i) {
+        stairs.answer(true);
+        stairs.answer(true);
+        stairs.answer(false);
+    }
+    CHECK(stairs.is_done());
+    CHECK(stairs.estimate());
+}
+
+TEST_CASE("a staircase refuses rules that cannot work") {
+    const auto refuses = [](auto change) {
+        StaircaseRule rule;
+        change(rule);
+        CHECK_THROWS_AS(Staircase(rule), Error);
+    };
+    refuses([](StaircaseRule& r) { r.step_up = 0.0; });
+    refuses([](StaircaseRule& r) { r.step_down = std::nan(""); });
+    refuses([](StaircaseRule& r) { r.start = 2.0; });
+    refuses([](StaircaseRule& r) { r.down = 0; });
+    refuses([](StaircaseRule& r) { r.reversals = 1; });
+}
+
+TEST_CASE("the expected entropy of QUEST+ is that of the posteriors themselves") {
+    QuestSettings settings;
+    settings.levels = {-0.4, -0.1, 0.0, 0.2, 0.7};
+    settings.thresholds = {-0.3, 0.0, 0.3};
+    settings.slopes = {2.0, 4.0};
+    QuestPlus quest(settings);
+    // Brute force: the entropy after each answer, weighted by its probability.
+    double least = 1e9, at = 0.0;
+    for (const double level : settings.levels) {
+        QuestPlus right(settings), wrong(settings);
+        right.answer(level, true);
+        wrong.answer(level, false);
+        double p = 0.0;
+        for (const double threshold : settings.thresholds)
+            for (const double slope : settings.slopes)
+                p += Psychometric{Form::weibull, threshold, slope, 0.5, 0.02}.at(level) / 6.0;
+        const double expected = p * right.entropy() + (1.0 - p) * wrong.entropy();
+        if (expected < least - 1e-12) {
+            least = expected;
+            at = level;
+        }
+    }
+    CHECK(quest.level() == at);
+    CHECK(quest.entropy() == Approx(std::log(6.0)));
+}
+
+TEST_CASE("QUEST+ survives answers that contradict each other and levels off its list") {
+    QuestPlus quest(quest_settings());
+    for (int i = 0; i < 300; ++i) {
+        quest.answer(5.0, false);
+        quest.answer(-5.0, true);
+        CHECK(std::isfinite(quest.mean().threshold));
+        CHECK(std::isfinite(quest.entropy()));
+    }
+    CHECK_THROWS_AS(quest.answer(std::nan(""), true), Error);
+    QuestSettings bad = quest_settings();
+    bad.levels.clear();
+    CHECK_THROWS_AS(QuestPlus(bad), Error);
+    bad = quest_settings();
+    bad.thresholds = {1.0, 0.5};
+    CHECK_THROWS_AS(QuestPlus(bad), Error);
+    bad = quest_settings();
+    bad.guess = 0.99;
+    CHECK_THROWS_AS(QuestPlus(bad), Error);
+}
+
+TEST_CASE("staircases and QUEST+ find random thresholds off the grid without bias", "[slow]") {
+    constexpr int subjects = 400;
+    double quest_error = 0.0, stairs_error = 0.0, reversal_error = 0.0;
+    FitSettings settings;
+    settings.lapse = 0.02;
+    for (int subject = 0; subject < subjects; ++subject) {
+        const Random where{static_cast<std::uint64_t>(500 + subject)};
+        const double threshold = -0.5 + where.uniform(0);
+        Observer observer{{Form::weibull, threshold, 3.0, 0.5, 0.02}, Random{static_cast<std::uint64_t>(subject)}};
+        StaircaseRule rule = two_down();
+        const double wanted = observer.function.level_of(rule.target());
+        std::vector<double> levels;
+        std::vector<bool> correct;
+        const auto estimate = [&] {
+            const double level =
+                fit_psychometric(count_levels(levels, correct), settings).function.level_of(rule.target());
+            levels.clear();
+            correct.clear();
+            return level;
+        };
+        QuestPlus quest(quest_settings());
+        for (int trial = 0; trial < 100; ++trial) {
+            levels.push_back(quest.level());
+            correct.push_back(observer.answers(levels.back()));
+            quest.answer(levels.back(), correct.back());
+        }
+        quest_error += estimate() - wanted;
+        rule.max_trials = 150;
+        Staircase stairs(rule);
+        while (!stairs.is_done()) {
+            levels.push_back(stairs.level());
+            correct.push_back(observer.answers(levels.back()));
+            stairs.answer(correct.back());
+        }
+        reversal_error += *stairs.estimate() - wanted;
+        stairs_error += estimate() - wanted;
+    }
+    // 2 % of the threshold is 0.0086 in log10.
+    INFO(reversal_error / subjects);
+    CHECK(std::abs(quest_error / subjects) < 0.0086);
+    CHECK(std::abs(stairs_error / subjects) < 0.0086);
+    // The mean of the reversals lies above the asymptote by less than half a step.
+    CHECK(std::abs(reversal_error / subjects) < 0.025);
+}
