@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library stands beside the command: patches, tasks and display files copied from assets/library, bones and recordings computed.
-foreach(kind patches displays tasks)
+# The library stands beside the command: patches, tasks, experiments and display files copied from assets/library, bones and recordings computed.
+foreach(kind patches displays tasks experiments)
   set(folder ${PROJECT_SOURCE_DIR}/assets/library/${kind})
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml ${folder}/*.targets)
   foreach(file ${files})
     configure_file(${folder}/${file} ${CMAKE_BINARY_DIR}/library/${kind}/${file} COPYONLY)
   endforeach()

@@ -130,6 +130,43 @@ EquivalenceTest equivalence_test(std::span<const double> differences, double mar
     return test;
 }
 
+EquivalenceTest standardised_equivalence(std::span<const double> differences, double margin, double alpha) {
+    if (!(margin > 0.0)) throw Error("the margin of an equivalence test must be positive");
+    const Moments of = varying_moments(differences);
+    const double root = std::sqrt(static_cast<double>(differences.size()));
+    const double freedom = static_cast<double>(differences.size()) - 1.0, t = root * of.mean / of.deviation;
+    const double size = std::abs(t), shift = margin * root;
+    const double below = noncentral_student_cdf(size, freedom, shift);
+    EquivalenceTest test;
+    test.p = below - noncentral_student_cdf(-size, freedom, shift);
+    // Interval of the standardised effect: those shifts that t does not exclude (Steiger and Fouladi 1997).
+    const auto shift_at = [&](double wanted) {
+        double low = t - 20.0, high = t + 20.0;
+        for (int step = 0; step < 60; ++step) {
+            const double middle = 0.5 * (low + high);
+            (noncentral_student_cdf(t, freedom, middle) > wanted ? low : high) = middle;
+        }
+        return 0.5 * (low + high) / root;
+    };
+    test.low = shift_at(1.0 - alpha);
+    test.high = shift_at(alpha);
+    if (test.p < alpha) test.verdict = Equivalence::equivalent;
+    else if (1.0 - below < alpha) test.verdict = Equivalence::different;
+    return test;
+}
+
+double power_of_standardised_equivalence(std::size_t subjects, double margin, double effect, double alpha) {
+    const double root = std::sqrt(static_cast<double>(subjects)), freedom = static_cast<double>(subjects) - 1.0;
+    double low = 0.0, high = margin * root + 20.0;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = 0.5 * (low + high);
+        const double size = noncentral_student_cdf(middle, freedom, margin * root) -
+                            noncentral_student_cdf(-middle, freedom, margin * root);
+        (size < alpha ? low : high) = middle;
+    }
+    return noncentral_student_cdf(low, freedom, effect * root) - noncentral_student_cdf(-low, freedom, effect * root);
+}
+
 CrossOver cross_over(std::span<const double> differences, const std::vector<bool>& b_second, double confidence) {
     check_differences(differences);
     std::array<std::vector<double>, 2> groups;

@@ -54,6 +54,12 @@ struct EquivalenceTest {
 /// for a margin that is not positive.
 EquivalenceTest equivalence_test(std::span<const double> differences, double margin, double alpha = 0.05);
 
+/// The same with a margin in standard deviations of the differences, which are not known beforehand: the t statistic against the
+/// non-central t at the margin (Wellek 2010, section 5.3). The test above with margin times the sample's deviation would not
+/// have the size alpha, because that margin is random. `low` and `high` are the interval of the mean over the deviation.
+/// Throws Error as paired_t, or for a margin that is not positive.
+EquivalenceTest standardised_equivalence(std::span<const double> differences, double margin, double alpha = 0.05);
+
 /// Period effect of a cross-over: each subject did A and B in one of two orders.
 struct CrossOver {
     double effect = 0.0, low = 0.0, high = 0.0, p = 1.0;  ///< B − A, adjusted for the period
@@ -70,7 +76,10 @@ CrossOver cross_over(std::span<const double> differences, const std::vector<bool
 double detectable_effect(std::size_t subjects, double power = 0.8, double alpha = 0.05);
 /// Power of that test for a true standardised effect.
 double power_of_test(std::size_t subjects, double effect, double alpha = 0.05);
-/// Probability that the equivalence test succeeds when the true difference is `effect`; margin and effect are standardised.
+/// Probability that equivalence_test() succeeds when the true difference is `effect`; margin and effect in known standard
+/// deviations.
 double power_of_equivalence(std::size_t subjects, double margin, double effect = 0.0, double alpha = 0.05);
+/// The same of standardised_equivalence().
+double power_of_standardised_equivalence(std::size_t subjects, double margin, double effect = 0.0, double alpha = 0.05);
 
 }  // namespace tactus::statistics

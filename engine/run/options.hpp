@@ -45,7 +45,7 @@ struct EngineOptions {
     io::AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
     bool time_nodes = true;  ///< keep the time of each node, from one call in 64
-    TapMaker tap;  ///< where every value of the outputs goes; used by replay, which compares
+    TapMaker tap;  ///< where every value of the outputs goes, after the take: replay compares, experiments measure
 };
 
 struct LiveOptions {

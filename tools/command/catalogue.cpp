@@ -36,6 +36,7 @@
     X(plan, planning, fractures)          \
     X(session, training, training)        \
     X(score, training, training)          \
+    X(experiment, experiment, research)   \
     X(gripper, grippers, grippers)        \
     X(calibrate, displays, displays)      \
     X(devices, machine, machine)          \
@@ -80,13 +81,19 @@
     X(plan_reach, reconstruct)       \
     X(plan_guide, reconstruct)
 
+#define TACTUS_EXPERIMENT_VERBS(X)    \
+    X(experiment_run, experiment)     \
+    X(experiment_check, experiment)   \
+    X(experiment_analyse, experiment) \
+    X(experiment_withdraw, experiment)
+
 namespace tactus::command {
 
 namespace {
 
 constexpr const char *run_and_patch = "Run and patch", *vibrations = "Vibration", *bones = "Bones",
-                     *fractures = "Fractures and plans", *training = "Training", *grippers = "Grippers",
-                     *displays = "Displays", *machine = "This machine";
+                     *fractures = "Fractures and plans", *training = "Training", *research = "Experiments",
+                     *grippers = "Grippers", *displays = "Displays", *machine = "This machine";
 
 Verb under(const char* job, Verb verb) {
     verb.job = job;
@@ -98,6 +105,7 @@ Verb under(const char* job, Verb verb) {
 #define TACTUS_DECLARE(name, ...) Verb name##_verb();
 TACTUS_VERBS(TACTUS_DECLARE)
 TACTUS_PLAN_VERBS(TACTUS_DECLARE)
+TACTUS_EXPERIMENT_VERBS(TACTUS_DECLARE)
 #undef TACTUS_DECLARE
 
 #define TACTUS_LIST(name, folder, job) under(job, name##_verb()),
@@ -116,6 +124,11 @@ Program tactus_program() {
 
 const Verbs& plan_verbs() {
     static const Verbs all{TACTUS_PLAN_VERBS(TACTUS_LIST)};
+    return all;
+}
+
+const Verbs& experiment_verbs() {
+    static const Verbs all{TACTUS_EXPERIMENT_VERBS(TACTUS_LIST)};
     return all;
 }
 

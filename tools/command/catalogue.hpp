@@ -12,5 +12,7 @@ const Verbs& all_verbs();
 Program tactus_program();
 /// Those of 'plan'.
 const Verbs& plan_verbs();
+/// Those of 'experiment'.
+const Verbs& experiment_verbs();
 
 }  // namespace tactus::command

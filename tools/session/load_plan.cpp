@@ -85,6 +85,12 @@ fs::path find_patch(const std::string& name) { return find_bundled(name, "patch"
 
 fs::path find_task(const std::string& name) { return find_bundled(name, "task", "tasks"); }
 
+fs::path find_experiment(const std::string& name) { return find_bundled(name, "experiment", "experiments"); }
+
+fs::path find_observer_model(const std::string& name) {
+    return find_bundled(name, "model of subjects", "experiments/models");
+}
+
 fs::path find_display(const std::string& name) {
     // The folder was called rigs before: paths into it, and own libraries that have it, still work.
     const fs::path path(name), folder = path.parent_path();

@@ -27,6 +27,12 @@ std::filesystem::path find_display(const std::string& name);
 /// The task file with this path, or with this name in the library. Throws Error listing the names in the library.
 std::filesystem::path find_task(const std::string& name);
 
+/// The experiment file with this path, or with this name in the library. Throws Error listing the names in the library.
+std::filesystem::path find_experiment(const std::string& name);
+
+/// The model of simulated subjects with this path, or with this name in the library. Throws Error like find_experiment().
+std::filesystem::path find_observer_model(const std::string& name);
+
 /// Applies overrides and `seed` to a patch and compiles it; loads assets when `assets` is not null. Adds to `problems`,
 /// which may already contain those of reading; with problems there may be no plan.
 std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,

@@ -21,6 +21,7 @@ RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, con
     compile::Plan plan = load_plan(choice, assets);
     OutputFolder folder({choice.out, choice.overwrite});
     options.folder = folder.path();
+    options.tap = choice.tap;
     std::unique_ptr<take::TakeWriter> take;
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);

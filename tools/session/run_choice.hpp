@@ -2,6 +2,7 @@
 // Options of a live run.
 #pragma once
 
+#include "engine/run/options.hpp"
 #include "tools/session/patch_choice.hpp"
 
 #include <filesystem>
@@ -21,6 +22,7 @@ struct RunChoice : PatchChoice {
     bool keeps_journal = false;  ///< allows recording to start during the run
     bool edits = true;  ///< apply saved edits of the patch file, and accept 'set' and 'trigger'
     bool json = false;  ///< print the summary as JSON and nothing else
+    run::TapMaker tap;  ///< where every value of the outputs goes, besides a take; null: nowhere
 };
 
 }  // namespace tactus::session

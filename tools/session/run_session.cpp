@@ -40,6 +40,7 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
     options.seconds = choice.seconds.value_or(for_ever);
     options.live = true;
     options.observer = observer;
+    options.tap = choice.tap;
     options.audio = {choice.audio, choice.audio_margin * 1e-3};
     if (choice.dilate != 1.0) {
         if (options.audio.is_required())

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus experiment run: a subject's session, with a person or simulated.
+#include "assets/experiment/observer_model.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/experiment/key_reader.hpp"
+#include "tools/command/options.hpp"
+#include "tools/counted.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/run_session.hpp"
+#include "tools/session/stop_signals.hpp"
+#include "tools/study/experiment/run_experiment.hpp"
+#include "tools/terminal.hpp"
+#include "tools/view/view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExperimentRunChoice {
+    std::string experiment, subject, model;
+    fs::path out;
+    std::vector<std::string> settings, assets;
+    std::optional<double> registration;  // mm
+    int simulated = 0;  // number of simulated subjects
+    bool drops_takes = false, has_window = false;
+};
+
+/// Asks a person at the terminal.
+class Person {
+public:
+    explicit Person(bool has_window, const std::atomic<bool>& stop) : has_window_(has_window), stop_(stop) {}
+
+    bool confirm(const std::string& text) {
+        say(stdout, text + "\n");
+        const std::optional<char> key = keys_.read(stop_);
+        return key && *key != 'q';
+    }
+
+    std::optional<study::Answered> ask(const experiment::Protocol& protocol) {
+        const experiment::Response& response = protocol.response;
+        std::string text = protocol.question.empty() ? std::string("Your answer?") : protocol.question;
+        for (std::size_t i = 0; i < response.keys.size(); ++i)
+            text += fmt::format("{} {} = {}", i == 0 ? "  [" : ",", response.keys[i], response.names[i]);
+        say(stdout, text + "; q ends]\n");
+        keys_.forget();
+        const auto begin = std::chrono::steady_clock::now();
+        while (const std::optional<char> key = keys_.read(stop_)) {
+            if (*key == 'q') return std::nullopt;
+            const auto found = std::ranges::find(response.keys, std::string(1, *key));
+            if (found == response.keys.end()) continue;
+            const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+            return study::Answered{static_cast<int>(found - response.keys.begin()), time.count()};
+        }
+        return std::nullopt;
+    }
+
+    study::LiveEnd perform(const session::RunChoice& choice, std::atomic<bool>& over) {
+        study::LiveEnd end;
+        if (has_window_) {
+            view::ViewedRunChoice viewed;
+            static_cast<session::RunChoice&>(viewed) = choice;
+            viewed.view.wanted = true;
+            if (view::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
+            end.summary = file::read_whole_file(choice.out / "summary.json");
+            end.seconds = choice.seconds.value();
+            return end;
+        }
+        session::RunSession run(choice, assets_);
+        LiveLine line;
+        run.run({[&] {
+                     line.show(fmt::format("{:.1f} s of {:.1f} s", run.engine().progress_seconds(), *choice.seconds));
+                     if (stop_) over = true;
+                 },
+                 [](const std::string&) {}},
+                over);
+        line.clear();
+        run.finish();
+        end.summary = run.summary_json();
+        end.seconds = run.engine().progress_seconds();
+        end.losses = run.losses();
+        return end;
+    }
+
+private:
+    bool has_window_;
+    const std::atomic<bool>& stop_;
+    KeyReader keys_;
+    compile::AssetCache assets_;
+};
+
+int run_one(const study::ExperimentChoice& choice, const study::ExperimentHooks& hooks, const std::atomic<bool>& stop,
+            bool is_only) {
+    const study::ExperimentEnd end = study::run_experiment(choice, hooks, stop);
+    for (const std::string& loss : end.losses) say(stderr, fmt::format("tactus: {}\n", loss));
+    say(stdout,
+        fmt::format("{}: {}{}{}; {}\n", choice.subject, counted(static_cast<std::size_t>(end.trials), "trial"),
+                    end.resumed > 0 ? fmt::format(" after {} of an earlier session", end.resumed) : std::string(),
+                    end.marked > 0 ? fmt::format(", {} marked as beyond the limits", end.marked) : std::string(),
+                    end.is_complete ? "complete" : "not complete; the same command resumes it"));
+    if (is_only)
+        say(stdout, fmt::format("protocol {}; data in {}; next: tactus experiment analyse {}\n", end.protocol_hash,
+                                choice.out.string(), choice.out.string()));
+    return end.losses.empty() ? done : output_lost;
+}
+
+int run_experiment_verb(const ExperimentRunChoice& options) {
+    study::ExperimentChoice choice;
+    choice.protocol = experiment::load_protocol(session::find_experiment(options.experiment));
+    choice.out = options.out.empty() ? fs::path(choice.protocol.name + "-data") : options.out;
+    choice.settings = options.settings;
+    choice.assets = options.assets;
+    choice.keeps_takes = !options.drops_takes;
+    if (options.registration) choice.registration = 1e-3 * *options.registration;
+    if (!options.model.empty())
+        choice.model = experiment::load_observer_model(
+            session::find_observer_model(options.model),
+            choice.protocol.stimulus ? choice.protocol.stimulus->level_unit() : std::string());
+    if (options.simulated > 0 && !choice.model) throw Error("--subjects needs --simulate: people come one at a time");
+    if (options.simulated > 0 && !options.subject.empty())
+        throw Error("--subjects names the subjects itself: S01, S02, …; leave --subject out");
+    if (options.simulated == 0 && options.subject.empty()) throw Error("--subject PSEUDONYM is missing");
+    if (options.drops_takes && !choice.model)
+        throw Error("--no-takes is for simulated subjects: a person's trials cannot be had again");
+    const std::atomic<bool>& stop = session::stop_on_signals();
+    compile::AssetCache assets;
+    study::check_levels(choice.protocol, assets, {}, nullptr);
+    study::check_tasks(choice.protocol, assets, choice.settings);
+    Person person(options.has_window, stop);
+    LiveLine line;
+    study::ExperimentHooks hooks;
+    hooks.say = [&](const std::string& text) { say(stdout, text); };
+    hooks.confirm = [&](const std::string& text) { return person.confirm(text); };
+    hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
+    hooks.perform = [&](const session::RunChoice& run, std::atomic<bool>& over) { return person.perform(run, over); };
+    hooks.progress = [&](const study::TrialSpec& spec, int trials, int blocks) {
+        if (choice.model)
+            line.show(fmt::format("{}: trial {}, block {} of {}", choice.subject, trials, spec.block + 1, blocks));
+    };
+    if (options.simulated == 0) {
+        choice.subject = options.subject;
+        const int code = run_one(choice, hooks, stop, true);
+        line.clear();
+        return code;
+    }
+    if (const std::string warning =
+            experiment::balance_warning(choice.protocol, static_cast<std::size_t>(options.simulated));
+        !warning.empty())
+        say(stderr, fmt::format("tactus: {}\n", warning));
+    int worst = done;
+    for (int subject = 1; subject <= options.simulated && !stop; ++subject) {
+        choice.subject = fmt::format("S{:02}", subject);
+        const int code = run_one(choice, hooks, stop, subject == options.simulated);
+        worst = std::max(worst, code);
+        line.clear();
+    }
+    return worst;
+}
+
+Action declare_experiment_run(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExperimentRunChoice>();
+    verb.add("experiment", choice->experiment, "experiment file, or a name in the library").required();
+    verb.add("--subject", choice->subject, "pseudonym: letters and digits; not a name");
+    verb.add("-o,--out", choice->out, "folder of the experiment's data, the same for all subjects; default: NAME-data");
+    verb.add("--simulate", choice->model, "simulate the subject by this model file, or by one of the library");
+    verb.add("--subjects", choice->simulated, "with --simulate: this many subjects, S01, S02, …").range(1, 1000);
+    verb.add("--set", choice->settings, "NODE.PARAM=VALUE for all trials, as hand.device=touch; may be given again")
+        .one_each();
+    verb.add("--asset", choice->assets, "NAME=PATH for all trials; may be given again").one_each();
+    verb.add("--registration", choice->registration,
+             "largest error of the nine points by which the display was checked for this session, mm")
+        .unit("mm")
+        .positive();
+    verb.flag("--no-takes", choice->drops_takes, "with --simulate: keep the numbers of each trial, but not its take");
+    verb.flag("--view", choice->has_window, "show each trial in a window");
+    return [choice] { return run_experiment_verb(*choice); };
+}
+
+}  // namespace
+
+Verb experiment_run_verb() {
+    return {"run", "run a subject's session; a session that was cut off is resumed at the trial",
+            declare_experiment_run};
+}
+
+}  // namespace tactus::command
