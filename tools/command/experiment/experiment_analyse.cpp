@@ -106,13 +106,16 @@ Json analysis_json(const study::ExperimentAnalysis& analysis) {
 }
 
 /// Unit in which a measure or threshold is shown.
-std::string unit_of(const experiment::Protocol& protocol, const study::GroupValue& group) {
+std::string unit_of(const experiment::Protocol& protocol, const std::string& task_name,
+                    const std::string& measure_name) {
     if (protocol.is_psychophysics()) return protocol.stimulus->level_unit();
     for (const experiment::Task& task : protocol.tasks)
         for (const experiment::Measure& measure : task.measures)
-            if (task.name == group.task && measure.name == group.measure) return measure.unit;
+            if (task.name == task_name && measure.name == measure_name) return measure.unit;
     return {};
 }
+
+std::string p_value(double p) { return p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p); }
 
 std::string analysis_text(const study::ExperimentAnalysis& analysis) {
     std::string out = fmt::format("{}{}\n{} of {} in the group\n", analysis.protocol.title,
@@ -129,7 +132,7 @@ std::string analysis_text(const study::ExperimentAnalysis& analysis) {
                                group.condition);
             continue;
         }
-        const std::string unit = unit_of(analysis.protocol, group);
+        const std::string unit = unit_of(analysis.protocol, group.task, group.measure);
         const double factor = parse_unit(unit).factor;
         out += fmt::format(
             "{:<36} {:>9.4g} ({:.4g} to {:.4g}){}, n = {}\n",
@@ -141,13 +144,16 @@ std::string analysis_text(const study::ExperimentAnalysis& analysis) {
             out += fmt::format("{}: not tested: {}\n", one.label, one.problem);
             continue;
         }
+        const std::string unit = unit_of(analysis.protocol, one.of.task, one.of.measure);
+        const double factor = parse_unit(unit).factor;
         const auto back = [&](double value) {
-            return one.is_log ? fmt::format("x{:.3f}", std::exp(value)) : fmt::format("{:.4g}", value);
+            return one.is_log ? fmt::format("x{:.3f}", std::exp(value)) : fmt::format("{:.4g}", value / factor);
         };
-        out += fmt::format("{}: {} ({} to {}), p = {:.4f}, Holm {:.4f}, permutation {:.4f}{}: {}\n", one.label,
-                           back(one.test->of.mean), back(one.test->low), back(one.test->high), one.test->p,
-                           one.adjusted_p, one.permutation->p,
-                           one.equivalence ? fmt::format(", equivalence {:.4f}", one.equivalence->p) : std::string(),
+        out += fmt::format("{}: {} ({} to {}){}, p {}, Holm {}, permutation {}{}: {}\n", one.label,
+                           back(one.test->of.mean), back(one.test->low), back(one.test->high),
+                           one.is_log || unit.empty() ? "" : " " + unit, p_value(one.test->p), p_value(one.adjusted_p),
+                           p_value(one.permutation->p),
+                           one.equivalence ? ", equivalence " + p_value(one.equivalence->p) : std::string(),
                            study::verdict_of(one, analysis.protocol.alpha));
     }
     return out;

@@ -26,6 +26,16 @@ LevelUnit level_unit_of(const Protocol& protocol) {
     return {parse_unit(name).factor, name.empty() ? "fraction of the standard" : name};
 }
 
+/// Unit in which a comparison is shown.
+LevelUnit shown_unit(const Protocol& protocol, const study::AnalysedComparison& comparison) {
+    if (protocol.is_psychophysics()) return level_unit_of(protocol);
+    for (const experiment::Task& task : protocol.tasks)
+        for (const experiment::Measure& measure : task.measures)
+            if (task.name == comparison.of.task && measure.name == comparison.of.measure && !measure.unit.empty())
+                return {parse_unit(measure.unit).factor, measure.unit};
+    return {1.0, ""};
+}
+
 /// One panel for each subject: answers by level, and the fitted function of each condition.
 display::Figure psychometric_panels(const study::ExperimentAnalysis& analysis) {
     const Protocol& protocol = analysis.protocol;
@@ -114,10 +124,10 @@ display::Figure group_panel(const study::ExperimentAnalysis& analysis, const std
     const double n = static_cast<double>(groups.size());
     display::Figure figure(std::max(320.0, 110.0 + 110.0 * n), 260.0);
     const Scale up = is_log ? Scale{low / pad, high * pad, true} : Scale{low - pad, high + pad, false};
-    const Axes axes{figure, 60.0, 30.0, std::max(240.0, 110.0 * n), 190.0, {-0.5, n - 0.5, false, 1000.0}, up};
+    const Axes axes{figure, 60.0, 30.0, std::max(240.0, 110.0 * n), 190.0, {0.5, n + 0.5, false, 1000.0}, up};
     axes.draw(fmt::format("{}{}", task.empty() ? "" : task + ", ", measure), "", unit);
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        const double x = static_cast<double>(g);
+        const double x = static_cast<double>(g) + 1.0;
         figure.text({axes.at(x, up.low).x, axes.y + axes.height + 15.0}, groups[g]->condition, 10.0, axis_ink,
                     display::TextAnchor::middle);
         if (groups[g]->count == 0) continue;
@@ -128,7 +138,7 @@ display::Figure group_panel(const study::ExperimentAnalysis& analysis, const std
         figure.rectangle(mean.x - 3.5, mean.y - 3.5, 7.0, 7.0, colour);
     }
     for (const auto& [g, value] : dots) {
-        const display::FigurePoint at = axes.at(static_cast<double>(g) - 0.08, value);
+        const display::FigurePoint at = axes.at(static_cast<double>(g) + 0.92, value);
         figure.rectangle(at.x - 2.5, at.y - 2.5, 5.0, 5.0, {0x1F, 0x4E, 0x9E, 0.5});
     }
     return figure;
@@ -148,12 +158,12 @@ display::Figure effect_panel(const study::ExperimentAnalysis& analysis) {
     const double high = 26.0 * static_cast<double>(rows.size());
     display::Figure figure(760.0, high + 80.0);
     const double n = static_cast<double>(rows.size());
-    const Axes axes{figure, 330.0, 30.0, 400.0, high, {-reach, reach, false}, {-n, 0.0, false, 1000.0}};
+    const Axes axes{figure, 330.0, 30.0, 400.0, high, {-reach, reach, false}, {0.5, n + 0.5, false, 1000.0}};
     axes.draw("differences, with intervals of 95 %", "standard deviations of the paired difference", "");
-    figure.line({axes.at(0.0, -n), axes.at(0.0, 0.0)}, axis_ink, 1.0);
+    figure.line({axes.at(0.0, 0.5), axes.at(0.0, n + 0.5)}, axis_ink, 1.0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const study::AnalysedComparison& one = *rows[i];
-        const double y = -static_cast<double>(i) - 0.5, sd = one.test->of.deviation;
+        const double y = n - static_cast<double>(i), sd = one.test->of.deviation;
         const display::Colour colour = one.adjusted_p < analysis.protocol.alpha ? curve_colours[1] : curve_colours[0];
         figure.text({322.0, axes.at(0.0, y).y + 4.0}, one.label, 10.5, axis_ink, display::TextAnchor::end);
         if (one.of.margin)
@@ -180,8 +190,10 @@ std::string comparison_rows(const study::ExperimentAnalysis& analysis) {
                                html::escaped(one.label), one.differences.size(), html::escaped(one.problem));
             continue;
         }
+        const LevelUnit unit = shown_unit(analysis.protocol, one);
         const auto back = [&](double value) {
-            return one.is_log ? fmt::format("× {:.3f}", std::exp(value)) : fmt::format("{:.4g}", value);
+            return one.is_log ? fmt::format("× {:.3f}", std::exp(value))
+                              : fmt::format("{:.4g} {}", value / unit.factor, html::escaped(unit.name));
         };
         out += fmt::format(
             "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{} ({} to {})</td><td class=\"n\">{}</td>"
@@ -197,12 +209,14 @@ std::string power_text(const study::ExperimentAnalysis& analysis) {
     std::string out;
     for (const study::AnalysedComparison& one : analysis.comparisons) {
         if (!one.test) continue;
+        const LevelUnit unit = shown_unit(analysis.protocol, one);
         out += fmt::format(
             "<li>{}: with {} subjects the t test finds {:.2f} standard deviations of the difference with 80 % "
             "power{}",
             html::escaped(one.label), one.differences.size(), one.detectable,
             one.is_log ? fmt::format(" (here a factor of {:.3f})", std::exp(one.detectable * one.test->of.deviation))
-                       : fmt::format(" (here {:.3g})", one.detectable * one.test->of.deviation));
+                       : fmt::format(" (here {:.3g} {})", one.detectable * one.test->of.deviation / unit.factor,
+                                     html::escaped(unit.name)));
         if (one.of.margin)
             out += fmt::format(
                 "; equivalence within {:.2g} standard deviations is shown in {:.0f} % of studies without an effect",
