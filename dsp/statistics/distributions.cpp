@@ -91,7 +91,7 @@ double mean_over_deviation(double freedom, const std::function<double(double)>& 
     // Density of s: 2 (ν/2)^(ν/2) / Γ(ν/2) s^(ν−1) exp(−ν s²/2). It is negligible beyond 12 standard deviations 1/√(2ν).
     const double half = 0.5 * freedom, scale = std::numbers::ln2 + half * std::log(half) - std::lgamma(half);
     const double reach = 12.0 / std::sqrt(2.0 * freedom), low = std::max(0.0, 1.0 - reach), high = 1.0 + reach;
-    constexpr int intervals = 2000;
+    constexpr int intervals = 600;
     const double step = (high - low) / intervals;
     double sum = 0.0;
     for (int i = 0; i <= intervals; ++i) {

@@ -43,5 +43,6 @@ Verb peers_verb();
 Verb fundamental_verb();
 Verb identify_verb();
 Verb verdicts_verb();
+Verb experiments_verb();
 
 }  // namespace tactus::bench

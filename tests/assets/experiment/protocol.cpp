@@ -112,7 +112,7 @@ TEST_CASE("errors of a protocol have their line and what to do") {
     };
     fails("trials = 10", "trails = 10", "unknown key 'trails'");
     fails("trials = 10", "trails = 10", "did you mean 'trials'");
-    fails("trials = 10", "trials = 0", ":27:");
+    fails("trials = 10", "trials = 0", ":28:");
     fails("\"quest_plus\"", "\"quest\"", "is none of quest_plus, staircase, constant");
     fails("max = 1", "max = 0.001", "the greatest level must be above the least");
     fails("\"1 N/mm\"", "\"1 mm\"", "N/mm");

@@ -106,11 +106,11 @@ TEST_CASE("equivalence is what the interval of ninety percent shows") {
     CHECK(equivalence_test(std::array{-5.0, 5.1, 4.9, -5.0}, 0.5).verdict == Equivalence::inconclusive);
 }
 
-TEST_CASE("equivalence within standard deviations keeps its size at the margin and its power at zero") {
+TEST_CASE("equivalence within standard deviations keeps its size at the margin and its power at zero", "[slow]") {
     CHECK(power_of_standardised_equivalence(16, 0.9, 0.9) == Approx(0.05).margin(1e-6));
     CHECK(power_of_standardised_equivalence(16, 0.9) >= 0.9);
     int at_margin = 0, at_zero = 0;
-    constexpr int studies = 1000;
+    constexpr int studies = 300;
     for (int study = 0; study < studies; ++study) {
         const std::vector<double> shifted =
             normal_sample(16, 0.9 * 3.0, 3.0, 20'000 + static_cast<std::uint64_t>(study));
@@ -124,8 +124,8 @@ TEST_CASE("equivalence within standard deviations keeps its size at the margin a
         CHECK((near.high > moments(centred).mean / moments(centred).deviation));
     }
     // Three and a half standard errors.
-    CHECK(at_margin / double{studies} == Approx(0.05).margin(0.024));
-    CHECK(at_zero / double{studies} == Approx(power_of_standardised_equivalence(16, 0.9)).margin(0.035));
+    CHECK(at_margin / double{studies} == Approx(0.05).margin(0.044));
+    CHECK(at_zero / double{studies} == Approx(power_of_standardised_equivalence(16, 0.9)).margin(0.06));
     CHECK(standardised_equivalence(std::array{5.0, 5.1, 4.9, 5.0}, 0.9).verdict == Equivalence::different);
     CHECK_THROWS_AS(standardised_equivalence(std::array{5.0, 5.1}, 0.0), Error);
 }
