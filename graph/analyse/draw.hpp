@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of the compiled graph.
+// Draws the compiled graph as an SVG image.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -8,8 +8,8 @@
 
 namespace tactus::analyse {
 
-/// The plan as a self-contained SVG: groups as lanes, nodes from left to right in the order values flow, wires coloured
-/// by type; wires between groups are dashed and carry their mode and latency.
+/// Returns the plan as a self-contained SVG image: groups as lanes, nodes from left to right in the order values flow,
+/// wires coloured by type; wires between groups are dashed and carry their mode and latency.
 std::string draw_svg(const compile::Plan& plan);
 
 }  // namespace tactus::analyse

@@ -13,7 +13,7 @@ namespace tactus::analyse {
 struct PathLatency {
     std::string from, to;          ///< names of nodes
     double latency_ms = 0.0;       ///< largest age at the end of the path of a value from its start
-    std::vector<std::string> via;  ///< the nodes on the way, ends included
+    std::vector<std::string> via;  ///< the nodes on the path, both ends included
 };
 
 /// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
@@ -21,19 +21,19 @@ Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& c
 
 inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
 
-/// For the quickest path from one node to each other node: how old its value is there, or `unreached`, and the node before on
-/// that way (−1: none).
+/// Ages along the quickest path from one node to each other node: the age of the value there (or `unreached`) and the
+/// previous node on that path (−1: none).
 struct Ages {
     std::vector<Flicks> age;
     std::vector<int> before;
 };
 Ages ages_from(const compile::Plan& plan, int source);
 
-/// For the quickest path from each node to `sink`: how much older a value becomes, or `unreached`.
+/// Per node: the age that a value gains on the quickest path from it to `sink`, or `unreached`.
 std::vector<Flicks> ages_to(const compile::Plan& plan, int sink);
 
-/// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in
-/// order of names. Inside a group values are passed on in the same tick and do not age.
+/// Returns the quickest path from every device input to every output of the patch (device_output, audio_output,
+/// record), in order of names. Inside a group values are passed on in the same tick and do not age.
 std::vector<PathLatency> path_latencies(const compile::Plan& plan);
 
 }  // namespace tactus::analyse

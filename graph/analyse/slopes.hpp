@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How stiff the laws of nodes are that shape values: formulas, curves, gains.
+// Slopes of the nodes that shape values (formulas, curves, gains), for the analysis of stiffness.
 #pragma once
 
 #include "graph/compile/units.hpp"
@@ -13,19 +13,19 @@ namespace tactus::analyse {
 
 using DrivenParams = std::unordered_set<const Param*>;
 
-/// What is known of the law of a node that shapes values.
+/// Known properties of the law of a node that shapes values.
 struct KnownLaw {
-    std::optional<double> newton_per_metre;  ///< largest slope of a force over positions, if it gives one
+    std::optional<double> newton_per_metre;  ///< largest slope if the node computes a force from positions
 };
 
-/// Slopes over the inputs of nodes, by what they mean.
+/// Slopes of nodes over their inputs, classified by units.
 class Laws {
 public:
-    /// `plan` and `driven`, its parameters that wires drive, must outlive this.
+    /// `driven` lists the parameters of `plan` that wires drive. Both must outlive this object.
     Laws(const compile::Plan& plan, const DrivenParams& driven);
 
-    /// Nothing when a slope over an input that a hand reaches is not known: there is no bound, a wire drives a
-    /// parameter, the units say nothing, or a value of one unit is made larger.
+    /// Returns nothing if the slope over an input that a hand reaches has no known bound: the node states none, a wire
+    /// drives a parameter, the units are unknown, or the node amplifies a value without changing its unit.
     std::optional<KnownLaw> of(std::size_t node, const std::vector<bool>& reached_by_hands) const;
 
 private:
@@ -36,7 +36,7 @@ private:
     compile::PlanUnits units_;
     std::vector<std::vector<const compile::PlanWire*>> wires_into_, wires_from_;
     std::vector<std::optional<compile::WireUnit>>
-        given_;  ///< unit of each node's output, or that which its readers take
+        given_;  ///< unit of each node's output, stated or required by its readers
 };
 
 }  // namespace tactus::analyse

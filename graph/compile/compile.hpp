@@ -6,20 +6,20 @@
 
 namespace tactus::compile {
 
-/// Makes every node and sets its parameters from the patch.
+/// Creates every node and sets its parameters from the patch.
 void resolve_nodes(Plan& plan, Catalogue catalogue, patch::Problems& problems);
 
-/// Collects nodes of one rate, or of one named group, into groups, and says which groups carry audio.
+/// Collects the nodes of one rate, or of one named group, into groups and marks the groups that carry audio.
 void form_groups(Plan& plan, patch::Problems& problems);
 
-/// Finds both ends of every wire and checks types, modes and that each input is fed once.
+/// Resolves both ends of every wire. Checks types and modes, and that each input has one source.
 void resolve_wires(Plan& plan, patch::Problems& problems);
 
-/// Puts the nodes of each group in topological order, ties by name. A cycle is a problem that prints its path.
+/// Sorts the nodes of each group topologically, ties by name. A cycle is reported as a problem with its path.
 void order_nodes(Plan& plan, patch::Problems& problems);
 
-/// In audio groups with delayed wires: orders nodes so that the source of a delayed wire runs before its target, and
-/// finds the cycles, in which that cannot be. A plan without problems only.
+/// In audio groups with delayed wires, orders nodes so that the source of a delayed wire runs before its target, and
+/// records the cycles in which no such order exists. Requires a plan without problems.
 void order_feedback(Plan& plan);
 
 }  // namespace tactus::compile

@@ -5,9 +5,9 @@
 
 namespace tactus::compile {
 
-/// Gives the `AnyOut` outputs of each node, and its `AnyIn` inputs, the type that reaches one of the inputs by a wire.
-/// A cycle that no type comes into carries numbers; what has no wire stays `value::undecided`. Wires that lead nowhere
-/// are left for others to complain about.
+/// Sets the type of the `AnyOut` outputs and `AnyIn` inputs of each node to the type that a wire brings to one of its
+/// inputs. A cycle that receives no type from outside carries numbers. Ports without a wire stay `value::undecided`.
+/// Dangling wires are not reported here; resolve_wires reports them.
 void decide_types(Plan& plan);
 
 }  // namespace tactus::compile

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the values of outputs lie: one block of memory for all of them. The last pass of the compiler.
+// Memory layout of the values of outputs: one block for all of them. The last pass of the compiler.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -11,14 +11,14 @@
 namespace tactus::compile {
 
 struct ValueLayout {
-    std::vector<std::vector<std::size_t>> offsets;  ///< of each node's outputs, bytes
+    std::vector<std::vector<std::size_t>> offsets;  ///< byte offsets of each node's outputs
     std::size_t bytes = 0;
 };
 
-/// Places every output; `frames[group]` values of it when the group has audio, else one. A signal that is read only
-/// within its group and call gives its place to a later one once its last reader has run, so that a long chain stays
-/// in the nearest cache: its values are there from its own step to that of its last reader, and no longer. Everything
-/// else keeps its place, and its last value, for good.
+/// Assigns memory to every output: `frames[group]` values if the group has audio, otherwise one. The memory of a signal
+/// that is read only within its group and call is reused after its last reader has run, so that a long chain stays in
+/// the nearest cache. Such a signal is valid only from its own step to that of its last reader. All other outputs keep
+/// their memory and their last value.
 ValueLayout lay_out_values(const Plan& plan, std::span<const int> frames);
 
 /// Alignment of the block.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loading the files that a patch names.
+// Loads the files that a patch names.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -13,19 +13,20 @@
 
 namespace tactus::compile {
 
-/// Assets loaded so far: two nodes, or two plans, that name one file share it.
+/// Assets loaded so far. Nodes and plans that name the same file share one copy.
 class AssetCache {
 public:
-    /// Loads the file behind every asset parameter of the plan. A file that cannot be loaded is a problem where the
-    /// patch names it, said once.
+    /// Loads the file of every asset parameter of the plan. A file that cannot be loaded is reported once, at its
+    /// location in the patch.
     void load(Plan& plan, patch::Problems& problems);
 
-    /// Before a new run: forgets what was loaded from files that were written since. Plans that have it keep it.
+    /// Before a new run: removes assets whose files have changed since they were loaded. Plans that use them keep their
+    /// copy.
     void forget_changed();
 
 private:
     using Loader = std::shared_ptr<const void> (*)(const std::string& path);
-    /// Of a file; all zero where there is none.
+    /// Version of a file; all zero if the file does not exist.
     struct Stamp {
         std::filesystem::file_time_type written{};
         std::uintmax_t size = 0;

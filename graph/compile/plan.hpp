@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a patch compiles to: nodes in groups, in the order they run, and how every wire delivers its values.
+// The compiled form of a patch: nodes in groups, their execution order, and the delivery of every wire.
 #pragma once
 
 #include "graph/node/node.hpp"
@@ -43,10 +43,10 @@ struct PlanNode {
     bool takes_blocks = false;  ///< processes several activations in one call
 };
 
-/// How a wire delivers: to an input or to a parameter of a node.
+/// A resolved wire to an input or a parameter of a node.
 struct PlanWire {
     int from_node = -1, from_output = -1;  ///< from_node −1: the asset named `asset`
-    int to_node = -1, to_input = -1;       ///< to_input −1: it drives `param`
+    int to_node = -1, to_input = -1;       ///< to_input −1: the wire drives `param`
     Param* param = nullptr;
     std::string asset;
     patch::WireMode mode = patch::WireMode::hold;
@@ -54,26 +54,26 @@ struct PlanWire {
     SourceLocation where;
 };
 
-/// Nodes of an audio group that feed each other through delayed wires. They stand next to each other in the order.
+/// Nodes of an audio group that feed each other through delayed wires. They are adjacent in the execution order.
 struct PlanCycle {
     int first = 0, count = 0;  ///< positions in the order of the group
-    int longest = 1;           ///< most activations at a time: the shortest delay within
+    int longest = 1;           ///< largest number of activations per call: the shortest delay within the cycle
 };
 
-/// How a force depends on a node.
+/// How a force depends on a node's values.
 enum class Dependence : std::uint8_t {
     none,   ///< not at all
-    world,  ///< it stays passive when the node's values are old
-    force,  ///< the node's values must be fresh
+    world,  ///< the force stays passive when the values are old
+    force,  ///< the values must be fresh
 };
 
-/// What a group is there for; the smaller, the higher its priority in a live run. A hand comes before sound: a tick that
-/// is left out can be heard in one and throws the other.
+/// Purpose of a group; smaller values have higher priority in a live run. Hand forces come before sound: a skipped
+/// audio tick is audible, but a skipped force tick can throw the hand.
 enum class Criticality : std::uint8_t {
     force_output,  ///< it sends a force to a device
-    force_value,   ///< a force depends on fresh values of it
+    force_value,   ///< a force depends on its fresh values
     sound,
-    world_value,   ///< a force depends on values of it that may be old
+    world_value,   ///< a force depends on its values, which may be old
     other,
 };
 
@@ -92,7 +92,7 @@ struct Plan {
     patch::Patch patch;
     std::vector<PlanNode> nodes;
     std::vector<PlanWire> wires;
-    std::vector<PlanGroup> groups;  ///< fastest first, ties by name
+    std::vector<PlanGroup> groups;  ///< shortest period first, ties by name
 };
 
 /// Time between two calls of a group in a live run: an audio group is called once per quantum.
@@ -103,8 +103,8 @@ constexpr Flicks call_period(const Plan& plan, const PlanGroup& group) {
 /// The node types a patch may use.
 using Catalogue = std::span<const NodeType* const>;
 
-/// Compiles a patch: names to nodes and ports, groups, order. Nodes are made and their parameters set, none is prepared.
-/// Returns nothing when there are problems.
+/// Compiles a patch: resolves nodes and ports, forms groups and orders them. Nodes are created and their parameters
+/// set, but none is prepared. Returns nothing if there are problems.
 std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Problems& problems);
 
 /// Index of the producer's value that consumer activation `j` reads: floor((j·Pc − L)/Pp); negative: the initial value.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The channels of sound cards that a plan plays on.
+// The channels of sound cards that the nodes of a plan use.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -10,21 +10,23 @@
 namespace tactus::compile {
 
 struct SoundTarget {
-    std::string card;  ///< part of its name; "": the card of the run
+    std::string card;  ///< substring of its name; "": the card of the run
     int channel = 1;   ///< from 1
 };
 
-/// The channel that a node plays on; none when it has a stream of its own, or plays nothing.
+/// The channel on which a node plays; nothing if the node plays no sound or has a stream of its own.
 std::optional<SoundTarget> sound_target(const PlanNode& node);
 
-/// The channel that a node hears; none when it hears nothing. Such a node has the text parameters `sensor` and `card`.
+/// The channel from which a node records; nothing if it records none. Such a node has the text parameters `sensor` and
+/// `card`.
 std::optional<SoundTarget> sound_source(const PlanNode& node);
 
-/// A node without a channel plays on channel 1 of a card that a node of its group hears, when no other node does: many cards
-/// cannot be opened twice.
+/// Assigns a node without a channel to channel 1 of a card from which a node of its group records, if no other node
+/// uses that channel. Many cards cannot be opened twice.
 void join_heard_cards(Plan& plan);
 
-/// An output channel of a card has one node, and all nodes with channels of one card are in one group.
+/// Checks that each output channel of a card has one node, and that all nodes with channels of one card are in one
+/// group.
 void check_sounds(const Plan& plan, patch::Problems& problems);
 
 }  // namespace tactus::compile

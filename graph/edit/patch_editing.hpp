@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An edit of a patch's text on its way: what the text looks like by now, and where its parts stand. Behind
-// graph/edit/patch_edit.hpp.
+// A patch's text during an edit, with the positions of its parts. Implementation of graph/edit/patch_edit.hpp.
 #pragma once
 
 #include "graph/edit/patch_edit.hpp"
@@ -12,7 +11,7 @@
 
 namespace tactus::edit {
 
-/// Members throw Error when what they name is not there.
+/// Members throw Error if the named item does not exist.
 class Editing {
 public:
     using Path = std::vector<std::string>;
@@ -25,9 +24,9 @@ public:
 
     void reset(const Path& owner, std::string_view name);
 
-    /// Sets an entry to a value as TOML writes it. A table that is not there is added at the end.
+    /// Sets an entry to a value in TOML syntax. Adds the table at the end if it does not exist.
     void put(const Path& owner, std::string_view name, std::string_view value);
-    /// Removes an entry or a table, wherever it is written. False: it is not there.
+    /// Removes an entry or a table, in whichever notation it is written. Returns false if it does not exist.
     bool drop(const Path& path);
 
     void add_table(const NewNode& node);
@@ -36,7 +35,7 @@ public:
 
     void rename(std::string_view from, std::string_view to);
 
-    /// Gives a node another group or rate, where the one that it has is written.
+    /// Replaces the group or rate of a node in its line.
     void move_to_lane(std::string_view node, std::string_view lane, bool is_group);
 
     std::string_view text() const { return text_; }
@@ -47,15 +46,15 @@ public:
 private:
     bool has(const Path& path) const;
 
-    /// End of the last thing that belongs to a header.
+    /// Returns the end of the last item that belongs to a header.
     std::size_t last_of(std::size_t header) const;
 
-    /// A new entry, as a line behind `at`.
+    /// Inserts a new entry as a line after `at`.
     void insert_line(std::size_t at, const std::string& entry);
 
     void insert(const Path& owner, std::string_view name, const std::string& value);
 
-    /// With its line, or with a comma when it stands between braces.
+    /// Removes an entry with its line or, in an inline table, with a comma.
     void remove(const TomlEntry& entry);
 
     bool remove_one(const Path& path);

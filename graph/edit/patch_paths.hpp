@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves a patch's text to another folder: its relative paths are changed so that they name the same files.
+// Moves a patch's text to another folder: relative paths are rewritten so that they name the same files.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +8,15 @@
 
 namespace tactus::edit {
 
-/// The text for another folder, both absolute: what lies below `to` is named from there, all else by absolute paths.
-/// In the same folder nothing changes. All other bytes stay.
+/// Returns the text for another folder; both folders are absolute. Files below `to` get relative paths, all others
+/// absolute ones. Within the same folder nothing changes. All other bytes stay unchanged.
 std::string with_paths_moved(std::string_view text, const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// A file as a patch in `folder` names it: by a relative path when it lies below, else by its absolute one.
+/// The path of a file for a patch in `folder`: relative if the file lies below the folder, otherwise absolute.
 std::string path_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// The text with the relative paths of [assets] and of `type = "patch:..."` made absolute, as seen from `folder`, which
-/// is absolute. All other bytes stay.
+/// is absolute. All other bytes stay unchanged.
 std::string with_absolute_paths(std::string_view text, const std::filesystem::path& folder);
 
 }  // namespace tactus::edit

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte ranges of the parts of a TOML text, for edits that leave the rest of the text as it is.
+// The byte ranges of the parts of a TOML text, for edits that leave the rest of the text unchanged.
 #pragma once
 
 #include <cstddef>
@@ -26,13 +26,13 @@ struct TomlHeader {
 
 /// "rate = "1 kHz"", in a table or between the braces of an inline one.
 struct TomlEntry {
-    std::vector<std::string> path;  ///< from the root, dotted keys taken apart
-    std::vector<TextSpan> keys;     ///< of the last parts of the path: those that are written here
-    TextSpan span, value;           ///< from the key to the end of the value; the value
-    int header = -1;                ///< the one above it, −1: none
-    int parent = -1;                ///< the entry whose inline table it stands in, −1: none
+    std::vector<std::string> path;  ///< from the root; dotted keys are split
+    std::vector<TextSpan> keys;     ///< the last parts of the path, which are written in this entry
+    TextSpan span, value;           ///< `span`: from the key to the end of the value
+    int header = -1;                ///< the header above it, −1: none
+    int parent = -1;                ///< the entry whose inline table contains it, −1: none
 
-    /// Where part `i` of the path is written; null: not in this header.
+    /// The range of part `i` of the path; null if this header does not contain it.
     const TextSpan* key(std::size_t i) const {
         const std::size_t above = path.size() - keys.size();
         return i < above || i >= path.size() ? nullptr : &keys[i - above];
@@ -46,10 +46,10 @@ struct TomlSpans {
     const TomlEntry* find(const std::vector<std::string>& path) const;
 };
 
-/// For a text that a parser accepts; for any other text, the parts that can be recognised.
+/// Finds the parts of a text. In a text that a TOML parser would reject, it returns the parts that it recognises.
 TomlSpans toml_spans(std::string_view text);
 
-/// One element of an array: its value, and the comma behind it (empty: none).
+/// One element of an array: its value and the comma after it (empty: none).
 struct TomlElement {
     TextSpan value, comma;
 };

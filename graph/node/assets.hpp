@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types of asset that a node may name in a patch, and their loaders. They throw Error.
+// The types of asset that a node may name in a patch, and their loaders. The loaders throw Error.
 #pragma once
 
 #include "assets/bone/bone.hpp"

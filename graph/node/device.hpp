@@ -17,13 +17,13 @@ namespace tactus {
 inline constexpr std::uint32_t button_trigger = 1u;  ///< the tool runs while this button is held
 
 /// Bits of `FingerSample::state`.
-inline constexpr std::uint64_t motor_slips = 1u;    ///< the load moves the finger although the motor holds it
-inline constexpr std::uint64_t motor_limited = 2u;  ///< the motor was told to run faster than it may
+inline constexpr std::uint64_t motor_slips = 1u;    ///< the load moves the finger against the motor
+inline constexpr std::uint64_t motor_limited = 2u;  ///< the commanded speed exceeds the motor's maximum
 
-/// One finger of a gripper. A motor moves it and a sensor measures the force of the hand (an admittance device).
+/// One finger of a gripper. A motor moves it and a sensor measures the force of the hand (an admittance-type device).
 struct FingerSample {
     double position = 0.0;  ///< m along the path of the finger, positive towards closed
-    double force = 0.0;     ///< N of the hand on it, positive towards closed
+    double force = 0.0;     ///< N exerted by the hand, positive towards closed
     std::uint64_t state = 0;  ///< bits, see above
 };
 
@@ -38,7 +38,7 @@ struct DeviceSample {
     bool valid = false;  ///< false: ignore the other members
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; ramp it in again
     bool sound_lost = false;  ///< set by the engine once when a sound card is lost: fade the force and ramp it in again
-    bool late = false;  ///< set by a driver that was not told in time where the hand is: as after a late tick
+    bool late = false;  ///< set by a driver that received no pose of the hand in time; handled like a late tick
     std::array<FingerSample, most_fingers> fingers{};  ///< of a gripper
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
@@ -47,8 +47,8 @@ static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel th
 inline bool is_good(const Pose& pose, const Twist& twist) noexcept {
     return is_valid(pose) && is_finite(twist.linear) && is_finite(twist.angular);
 }
-/// The same for a sample that the driver calls valid. Drivers, the engine and all nodes use this predicate and no other:
-/// with two that differ, device_input would freeze the pose while device_output sees no fault.
+/// The same for a sample that the driver marks as valid. Drivers, the engine and all nodes use this predicate and no
+/// other: with two that differ, device_input would freeze the pose while device_output sees no fault.
 inline bool is_good(const DeviceSample& sample) noexcept { return sample.valid && is_good(sample.pose, sample.twist); }
 
 /// Properties of a device. Zero means none or unknown.
@@ -57,25 +57,25 @@ struct DeviceInfo {
     double max_force = 0.0;  ///< N
     double max_torque = 0.0;  ///< N·m
     double damping = 0.0;  ///< N·s/m, of the mechanism with a hand on it; it limits the stable stiffness
-    double max_stiffness = 0.0;  ///< N/m, as the manufacturer states it
+    double max_stiffness = 0.0;  ///< N/m, as stated by the manufacturer
     double resolution = 0.0;  ///< m, step of the reported position
     double angular_resolution = 0.0;  ///< rad, step of the reported orientation
-    double delay = 0.0;  ///< s, from a motion of the hand to the force that answers it
+    double delay = 0.0;  ///< s, from a motion of the hand to the resulting force
     bool actuates_torque = false;
     bool senses_rotation = false;
-    /// Nobody feels its forces, which only push the simulated hand of a mouse or a gamepad, or nothing at all. `max_force`
-    /// is then the strength of that hand.
+    /// True if no person feels the forces: they push only the simulated hand of a mouse or a gamepad, or nothing.
+    /// `max_force` is then the strength of that hand.
     bool without_motors = false;
-    int fingers = 0;  ///< fingers with a motor each; 0: no gripper
+    int fingers = 0;  ///< number of motorised fingers; 0: not a gripper
     double max_speed = 0.0;  ///< m/s of a finger
-    double least_speed = 0.0;  ///< m/s; the motor moves at least this fast, or not at all
+    double least_speed = 0.0;  ///< m/s; slowest speed of the motor other than standstill
 };
 
 /// Commands for the motors of a gripper, and for the servo of a test rig that holds it, for the next period.
 struct MotorDrive {
     std::array<double, most_fingers> speed{};  ///< m/s, positive towards closed
     double cord = 0.0;  ///< m, position of the rig's cord at the end of the period
-    bool free = false;  ///< true: low-friction mode, if the motor has one: the hand moves the finger
+    bool free = false;  ///< true: low-friction mode, if the motor has one, in which the hand moves the finger
 };
 
 /// A haptic device. In each tick of its group one thread calls `acquire`, runs the nodes, and calls `commit`. A driver
@@ -93,9 +93,8 @@ public:
     /// more after skipped ticks, 0 at the first call.
     virtual DeviceSample acquire(double elapsed_s) noexcept = 0;
 
-    /// Sets the force on the hand until the next call: N, N·m, device frame, about the origin of the pose. When the
-    /// thread of the tick hangs, even inside `acquire`, another thread calls this to fade the force. Two calls never
-    /// overlap.
+    /// Sets the force on the hand until the next call: N, N·m, device frame, about the origin of the pose. If the tick
+    /// thread hangs, even inside `acquire`, another thread calls this to fade the force. Calls never overlap.
     virtual void commit(const Wrench& on_hand) noexcept = 0;
 
     /// Sets the speeds of a gripper's motors until the next call. Only the thread of the tick calls it, after `commit`.
@@ -112,14 +111,14 @@ struct AudioStatistics {
     std::uint64_t frames_left_out = 0;  ///< accepted, then skipped because the buffer held too much
 };
 
-/// State of the card's clock: by `steady_ns` of std::chrono::steady_clock the card had asked for `frames` frames in
-/// all. Both are 0 until it asks for the first time.
+/// State of the card's clock: at `steady_ns` of std::chrono::steady_clock the card had requested `frames` frames in
+/// total. Both are 0 until its first request.
 struct AudioProgress {
     std::int64_t frames = 0;
     std::int64_t steady_ns = 0;
     std::int64_t taken = 0;  ///< frames that left the buffer, played or skipped
-    std::int64_t largest = 0;  ///< most frames asked for at once
-    bool waits = false;  ///< the card now waits for the engine (JACK in freewheel), so its clock does not count
+    std::int64_t largest = 0;  ///< largest number of frames in one request
+    bool waits = false;  ///< the card waits for the engine (JACK in freewheel), so its clock is not valid
 };
 
 /// An audio output.
@@ -129,11 +128,11 @@ public:
 
     virtual const std::string& name() const = 0;
 
-    /// Opens the output with `rate` Hz and one channel per name, in this order. Programs that connect sound show the names
-    /// that are not empty. May allocate and take seconds. Throws Error with the reason.
+    /// Opens the output with `rate` Hz and one channel per name, in this order. Patch bays show the names that are not
+    /// empty. May allocate and take seconds. Throws Error with the reason.
     virtual void prepare(double rate, const std::vector<std::string>& channels) = 0;
 
-    /// Adds interleaved frames to the buffer, full scale ±1. Returns how many fitted. Never waits for the card.
+    /// Adds interleaved frames to the buffer, full scale ±1. Returns the number accepted. Never waits for the card.
     virtual std::size_t write(const float* interleaved, std::size_t frames) noexcept = 0;
 
     /// Frames that `write` would accept now.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events: things that happen at one time, such as the begin of a contact. A wire carries those of each activation.
+// Events: occurrences at one time, such as the start of a contact. A wire carries the events of each activation.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -17,16 +17,16 @@ namespace tactus {
 
 enum class EventKind : std::uint8_t {
     instant,  ///< happens once: an onset
-    begin,  ///< of something that lasts: a contact, a press
+    begin,  ///< start of a state that lasts: a contact, a press
     end,
 };
 
-/// One event. Its numbers are in SI units; what they mean says the node that gives it.
+/// One event. Its numbers are in SI units; the node that emits it documents their meaning.
 struct Event {
     static constexpr std::size_t most_values = 4;
 
-    Flicks time = 0;           ///< of the activation that gave it
-    std::uint32_t source = 0;  ///< `event_source` of the node that gave it first
+    Flicks time = 0;           ///< of the activation that emitted it
+    std::uint32_t source = 0;  ///< `event_source` of the node that first emitted it
     EventKind kind = EventKind::instant;
     std::uint8_t count = 0;  ///< of `values`
     std::uint16_t unused = 0;
@@ -36,10 +36,11 @@ struct Event {
 };
 static_assert(sizeof(Event) == 16 + 32, "there are no bytes that a hash would have to leave out");
 
-/// The name of a node as `Event::source`.
+/// Identifier of a node, from its name, for Event::source.
 std::uint32_t event_source(std::string_view node);
 
-/// An event with at most four numbers. Every NaN becomes the same one: its bits may depend on how it came about.
+/// An event with at most four numbers. Every NaN is replaced by one bit pattern, because the bits of a NaN can depend
+/// on the instructions that produced it.
 inline Event make_event(Flicks time, std::uint32_t source, EventKind kind, std::initializer_list<double> values) {
     Event event{time, source, kind, 0, 0, {}};
     for (const double v : values)
@@ -48,10 +49,10 @@ inline Event make_event(Flicks time, std::uint32_t source, EventKind kind, std::
     return event;
 }
 
-/// What is known of a list of events without knowing how many it has room for. The events lie behind it.
+/// Header of a list of events, independent of its capacity. The events follow it in memory.
 struct EventList {
     std::int32_t count = 0;
-    std::int32_t lost = 0;  ///< for which there was no room
+    std::int32_t lost = 0;  ///< number of events dropped for lack of room
 
     const Event* events() const noexcept { return reinterpret_cast<const Event*>(this + 1); }
     bool is_empty() const noexcept { return count == 0 && lost == 0; }
@@ -60,7 +61,8 @@ struct EventList {
     }
 };
 
-/// Up to `most` events, in order. When there is no room, ends survive: what waits for one would wait for ever.
+/// Up to `most` events, in order. When the list is full, `end` events are kept: a node that waits for one would
+/// otherwise wait for ever.
 template <int most>
 struct EventBuffer : EventList {
     static constexpr int room = most;
@@ -69,7 +71,8 @@ struct EventBuffer : EventList {
     void clear() noexcept { count = lost = 0; }
     std::span<const Event> all() const noexcept { return {list.data(), static_cast<std::size_t>(count)}; }
 
-    /// Adds an event. Without room, one that is no end is lost; an end takes the place of the newest that is none.
+    /// Adds an event. When the list is full, an `end` event replaces the newest event of another kind; any other event
+    /// is dropped.
     void add(const Event& event) noexcept {
         if (count < most) {
             list[static_cast<std::size_t>(count++)] = event;
@@ -83,7 +86,7 @@ struct EventBuffer : EventList {
         std::copy(list.begin() + at + 1, list.end(), list.begin() + at);
         list.back() = event;
     }
-    /// Adds the events of another list, and what that has lost.
+    /// Adds the events of another list, and its count of dropped events.
     void add_all(const EventList& other) noexcept {
         lose(other.lost);
         for (int i = 0; i < other.count; ++i) add(other.events()[i]);
@@ -94,7 +97,7 @@ struct EventBuffer : EventList {
 struct Events : EventBuffer<16> {};
 static_assert(sizeof(Events) == sizeof(EventList) + 16 * sizeof(Event), "the events lie right behind the head");
 
-/// Copies a list and its events only.
+/// Copies the header and the used events only.
 inline void copy_events(const Events& from, Events& to) noexcept {
     to.count = from.count;
     to.lost = from.lost;

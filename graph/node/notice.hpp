@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node tells the user while it runs, as why a press of a button does nothing. The tick only counts; a thread that
-// may wait makes a line of it.
+// Messages of a node to the user during a run, such as the reason why a button press has no effect. The tick only
+// increments a counter; a thread that may block formats the message.
 #pragma once
 
 #include <atomic>
@@ -16,15 +16,15 @@ struct Setup;
 /// A member of a node, with its text. It need not be listed in TACTUS_NODE.
 class Notice {
 public:
-    /// `text`: a literal.
+    /// `text` must be a string literal.
     explicit Notice(const char* text);
     ~Notice();
     Notice(const Notice&) = delete;
     Notice& operator=(const Notice&) = delete;
 
-    /// In `prepare`: from now on the notices of this node reach the run.
+    /// Call in `prepare`. Connects the node's notices to the run.
     void attach(const Setup& setup);
-    /// In a tick. Wait-free.
+    /// Call in a tick. Wait-free.
     void tell() noexcept { told_.fetch_add(1, std::memory_order_relaxed); }
 
 private:
@@ -37,8 +37,8 @@ private:
     std::uint64_t taken_ = 0;
 };
 
-/// "NODE: text" of each notice of a run's nodes that was told since the last call; once, however often it was told. For
-/// one thread of the run, which does not tick.
+/// Returns "NODE: text" for each notice of a run's nodes that was raised since the last call, once however often it was
+/// raised. For one thread of the run other than the tick thread.
 std::vector<std::string> take_notices(const Host& host);
 
 }  // namespace tactus

@@ -26,25 +26,25 @@ public:
     /// `owner` is the name in messages: "device 'hand'".
     explicit Options(std::string owner, std::vector<OptionText> given = {}, SourceLocation where = {});
 
-    /// Value in SI of `name`, or of `standard` when it is not given. `standard`, `min` and `max` have units of one
-    /// dimension; an empty limit means none. Throws Error for text of another dimension or a value out of range.
+    /// Returns the SI value of `name`, or of `standard` if it is not given. `standard`, `min` and `max` have units of
+    /// one dimension; an empty limit means none. Throws Error for text of another dimension or a value out of range.
     double quantity(std::string_view name, std::string_view standard, std::string_view min = {},
                     std::string_view max = {});
 
-    /// Text of `name`, or `standard` when it is not given.
+    /// Returns the text of `name`, or `standard` if it is not given.
     std::string text(std::string_view name, std::string_view standard);
 
-    /// "true" or "false". Throws Error on other text.
+    /// Accepts "true" or "false". Throws Error for other text.
     bool flag(std::string_view name, bool standard);
 
-    /// Index of the given word in `choices`. `standard` must be one of them. Throws Error that lists them for another
-    /// word.
+    /// Returns the index of the given word in `choices`. `standard` must be one of them. For another word throws Error
+    /// with the list of choices.
     std::size_t choice(std::string_view name, std::span<const std::string> choices, std::string_view standard);
 
     /// True when the patch gives `name`. This does not count as reading it.
     bool has(std::string_view name) const;
 
-    /// Place of `name` in the file, or of the owner when it is not given. For errors that are found later.
+    /// Location of `name` in the file, or of the owner if it is not given. For errors that are found later.
     const SourceLocation& where(std::string_view name) const;
     const SourceLocation& where() const { return where_; }
 

@@ -17,32 +17,33 @@ namespace tactus {
 struct Optional {};
 inline constexpr Optional optional{};
 
-/// Marks an input that describes the world: a bone, a target, a frame. A force that is computed from an old value of it
-/// stays passive, as against a bone that stands still. All other inputs are of force: an old value of them would hold the
-/// force while the hand moves on. Snapshots are of the world by their type.
+/// Marks an input that describes the world: a bone, a target, a frame. A force computed from an old world value stays
+/// passive, like a force from a static bone. All other inputs are force inputs: from an old value they would hold the
+/// force while the hand moves on. Snapshots are world inputs by their type.
 struct OfWorld {};
 inline constexpr OfWorld of_world{};
 
-/// Marks a parameter that decides memory or wiring. It cannot change while the patch runs.
+/// Marks a parameter that determines memory or wiring. It cannot change while the patch runs.
 struct Structural {};
 inline constexpr Structural structural{};
 
-/// Marks a stiffness that the hand feels only through a coupling, so the device's stability limit does not apply to it.
+/// Marks a stiffness that reaches the hand only through a coupling, so the device's stability limit does not apply to
+/// it.
 struct Internal {};
 inline constexpr Internal internal{};
 
-/// Marks a count or a choice by number. It changes in one step, while forces that depend on it are held off; other
-/// parameters ramp.
+/// Marks a count or an index. It changes in one step, while forces that depend on it are suspended; other parameters
+/// ramp.
 struct Discrete {};
 inline constexpr Discrete discrete{};
 
-/// Marks a discrete parameter that is a request of the user, such as a press of a button. It is passed on at once, as a
-/// button of a device is; forces are not held off.
+/// Marks a discrete parameter that is a request of the user, such as a button press. It is passed on immediately, like
+/// a button of a device, and forces are not suspended.
 struct AsTrigger {};
 inline constexpr AsTrigger as_trigger{};
 
 /// A quantity with unit and range. The unit of the default is the unit of the parameter. A number wire may drive it
-/// unless it is structural. The constructors throw Error for text that is no quantity.
+/// unless it is structural. The constructors throw Error for text that is not a quantity.
 struct Param {
     Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_ = "");
     Param(Structural, std::string_view default_text, std::string_view min_text, std::string_view max_text,
@@ -69,10 +70,10 @@ struct Param {
     Param& operator=(const Param&) = delete;
 
     operator double() const { return value; }
-    /// SI value of text such as "0.8 N/mm". Throws Error, without a location, for another dimension or a value out of
-    /// range.
+    /// Returns the SI value of text such as "0.8 N/mm". Throws Error, without a location, for another dimension or a
+    /// value out of range.
     double parse(std::string_view text) const;
-    /// Throws Error like `parse`; the value then stays.
+    /// Throws Error like `parse`; the value then stays unchanged.
     void set(std::string_view text) { value = parse(text); }
     /// Sets the value from a wire, in SI. A value out of range is clamped; NaN keeps the last value.
     void drive(double v) noexcept {
@@ -80,7 +81,7 @@ struct Param {
     }
 
     double value, min, max;  ///< SI
-    std::string unit;  ///< as in the default, "N/mm"
+    std::string unit;  ///< that of the default: "N/mm"
     const char* about;
     bool is_structural = false;
     bool is_internal = false;
@@ -88,14 +89,14 @@ struct Param {
     bool is_trigger = false;  ///< see AsTrigger
 };
 
-/// One of several words. The first is the default.
+/// A choice of one word from a list. The first is the default.
 struct Choice {
     // Not string_view: two words in braces would be taken as begin and end of one string_view.
     Choice(std::initializer_list<const char*> words, std::string_view about_ = {})
         : options(words.begin(), words.end()), about(about_) {}
 
     bool is(std::string_view word) const { return options[static_cast<std::size_t>(index)] == word; }
-    /// Throws Error for a word that is no option.
+    /// Throws Error if `word` is not in the list.
     void set(std::string_view word);
 
     std::vector<std::string> options;
@@ -131,13 +132,13 @@ struct Vector {
     void set(std::string_view text);
 
     Vec3 value{0.0, 0.0, 0.0};  ///< SI
-    std::string unit;  ///< as in the default, "mm"
+    std::string unit;  ///< that of the default: "mm"
     std::string_view about;
 };
 
 /// The name of an entry of the patch's [assets]. The engine loads it before `prepare`.
 struct AssetParam {
-    std::string name;  ///< as the patch gives it, empty when not set
+    std::string name;  ///< as given in the patch; empty if not set
     SourceLocation where;
     std::string_view about, type_name;
     bool is_optional = false;

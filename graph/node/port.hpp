@@ -16,14 +16,14 @@ enum class InputKind : std::uint8_t {
     value,   ///< one value, constant within a call
     stream,  ///< one value per activation: signals and ramps
     batch,   ///< every value since the last call
-    events,  ///< the events since the last activation; of any number of wires
+    events,  ///< the events since the last activation; any number of wires
     any,     ///< any type, decided by the wire
 };
 
 // The members that every call uses are last in an input and first in an output and a parameter. In a node with one
 // input, one output and one parameter they fit one cache line (graph/node/node_memory.hpp).
 
-/// An input as the engine sees it, without its C++ type.
+/// The part of an input that the engine uses, independent of its C++ type.
 struct Input {
     const ValueType* type = nullptr;
     const char *about = "", *unit = "";
@@ -31,16 +31,16 @@ struct Input {
     bool is_optional : 1 = false;
     bool is_of_world : 1 = false;  ///< see OfWorld
     bool connected = false;
-    ValueKinds takes = kinds::every;  ///< of an input of several types
-    int count = 0;                    ///< of a batch: values at `data`
-    const Flicks* times = nullptr;    ///< of a batch: logical time of each value
+    ValueKinds takes = kinds::every;  ///< accepted types of an input of several types
+    int count = 0;                    ///< for a batch: number of values at `data`
+    const Flicks* times = nullptr;    ///< for a batch: logical time of each value
     Flicks period = 0;  ///< logical time between two values of the producer
 
     const std::byte* data = nullptr;  ///< first value of this call
     std::ptrdiff_t stride = 0;  ///< bytes from one activation to the next, 0 when constant
 };
 
-/// An output as the engine sees it, without its C++ type.
+/// The part of an output that the engine uses, independent of its C++ type.
 struct Output {
     std::byte* data = nullptr;  ///< first value of this call
     std::ptrdiff_t stride = 0;  ///< bytes from one activation to the next
@@ -57,7 +57,7 @@ struct SnapshotOutput : Output {
 };
 
 /// An input of one value per call, or of one per activation for Signal and Ramp. The engine splits a call of several
-/// activations where a value that is no stream changes.
+/// activations where a value that is not a stream changes.
 template <class T>
 struct In : Input {
     In(const char* about_ = "", const char* unit_ = "") {
@@ -77,14 +77,14 @@ struct In : Input {
     const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
     operator const Element<T>&() const { return get(); }
     const Element<T>* operator->() const { return &get(); }
-    /// Of events: those that became visible at this activation, merged by time, then by the name of their output.
+    /// For events: those that became visible at this activation, ordered by time, then by the name of their output.
     std::span<const Event> events() const
         requires std::is_same_v<T, Event>
     {
         const auto& list = *reinterpret_cast<const EventList*>(data);
         return {list.events(), static_cast<std::size_t>(list.count)};
     }
-    /// Of events: how many more there were.
+    /// For events: the number of further events, which were dropped.
     int lost() const
         requires std::is_same_v<T, Event>
     {
@@ -114,7 +114,7 @@ struct Batch : Input {
     std::span<const Flicks> sample_times() const { return {times, static_cast<std::size_t>(count)}; }
 };
 
-/// An input of several types. The wire sets `type`. In a node with an `AnyOut` all of them have one type.
+/// An input of several types; its wire sets `type`. In a node with an `AnyOut`, all of these inputs have one type.
 struct AnyIn : Input {
     AnyIn(const char* about_ = "", ValueKinds takes_ = kinds::every) {
         takes = takes_;
@@ -125,15 +125,15 @@ struct AnyIn : Input {
         is_optional = true;
     }
 
-    /// The value of this call, of `type`; the samples of a signal are adjacent.
+    /// Returns the value of this call, of `type`; the samples of a signal are adjacent.
     template <class T>
     const T* as() const {
         return reinterpret_cast<const T*>(data);
     }
 };
 
-/// An output. It keeps its value until the node writes another one. A signal does not: write `out[i]` for every
-/// activation of the call. Nor does one of events: the engine empties it before each call, and the node adds to `out[i]`.
+/// An output. It keeps its value until the node writes another one, with two exceptions. For a signal, write `out[i]`
+/// for every activation of the call. An output of events is emptied before each call, and the node adds to `out[i]`.
 template <class T>
 struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
     Out(const char* about_ = "", const char* unit_ = "") {
@@ -149,7 +149,7 @@ struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
     }
 };
 
-/// An output of the type that the wires give to the node's `AnyIn` inputs; `type` is known in `prepare`.
+/// An output of the type of the node's `AnyIn` inputs; `type` is set before `prepare`.
 struct AnyOut : Output {
     AnyOut(const char* about_ = "") {
         type = &value::undecided;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node is given: `Setup` in `prepare`, `Tick` in `process`, `Report` after the run.
+// Arguments that the engine passes to a node: `Setup` to `prepare`, `Tick` to `process`, `Report` after the run.
 #pragma once
 
 #include "dsp/control/force_limiter.hpp"
@@ -36,47 +36,47 @@ struct Tick {
 };
 
 /// A device, shared by the nodes of one group. The engine fills `sample` before the nodes run and sends `wrench` and
-/// `motors` to the driver after them. It outlives its nodes; `prepare` writes nothing here, as it may run beside the ticks
-/// of the node that it replaces.
+/// `motors` to the driver after them. It outlives its nodes. `prepare` must not write here, because it may run in
+/// parallel with the ticks of the node that is being replaced.
 struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
     Wrench wrench;  ///< on the hand, in the device frame about the origin of the pose: N, N·m
     MotorDrive motors;
-    control::Fault fault = control::Fault::none;  ///< why the node that writes `wrench` sends no force
+    control::Fault fault = control::Fault::none;  ///< reason why the node that writes `wrench` sends no force
     control::ForceState state = control::ForceState::unknown;  ///< of the node that writes `wrench`
-    /// True before the plan changes: fade the force to zero. Ramp it in when this is false again.
+    /// True before the plan changes: fade the force to zero, and ramp it in when this is false again.
     bool hold_off = false;
-    /// Fault::late_value, old_world or unusable_value while a value on which the force depends is overdue or not finite: fade
-    /// the force to zero.
+    /// Fault::late_value, old_world or unusable_value while a value on which the force depends is overdue or not
+    /// finite: fade the force to zero.
     control::Fault overdue = control::Fault::none;
-    /// How often forces came back after late ticks: an edit that replaces the node does not forget it.
+    /// Number of recoveries after late ticks. Kept here so that it survives an edit that replaces the node.
     control::LateReturn late;
 };
 
 enum class DeviceUse : std::uint8_t {
     read,  ///< the node reads the sample
-    drive,  ///< the node writes the port's wrench; one node per device may
+    drive,  ///< the node writes the wrench; at most one node per device
 };
 
 /// A queue of values from a node to a file or a sound card. Another thread empties it.
 class RecordStream {
 public:
     virtual ~RecordStream() = default;
-    /// Adds `count` values of the stream's type, `stride` bytes apart: those of activations first, first + 1, … Returns
-    /// false when there is no room; the values are then lost. Wait-free.
+    /// Adds `count` values of the stream's type, `stride` bytes apart, for the activations first, first + 1, … Returns
+    /// false if the queue is full; the values are then lost. Wait-free.
     virtual bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept = 0;
 };
 
-/// Writes a stream to a file in a format of its own. One thread calls it, never in a tick; it may wait for the disk.
+/// Writes a stream to a file in its own format. One thread calls it, never in a tick; it may wait for the disk.
 class StreamKeeper {
 public:
     virtual ~StreamKeeper() = default;
     /// Opens the stream's file, before the run. Throws Error.
     virtual void open(const std::string& path) = 0;
-    /// Adds `count` values of the stream's type, adjacent: those of activations first, first + 1, …
+    /// Adds `count` adjacent values of the stream's type for the activations first, first + 1, …
     virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
-    /// Writes all values taken so far to the file. Throws Error; the caller then tries again later.
+    /// Writes all values received so far to the file. Throws Error; the caller then tries again later.
     virtual void save() = 0;
     /// Closes the file, after the run. Throws Error.
     virtual void finish() = 0;
@@ -88,37 +88,38 @@ struct StreamFormat {
     std::string unit;  ///< of one full value, "m/s^2"
     const ValueType* type = nullptr;
     Flicks period = 0;
-    std::shared_ptr<StreamKeeper> keeper{};  ///< writes the file; null: the engine does
+    std::shared_ptr<StreamKeeper> keeper{};  ///< writes the file; null: the engine writes it
 };
 
-/// Where a sound goes in a live run.
+/// Destination of a sound in a live run.
 struct SoundPlace {
-    std::string card;  ///< part of a card's name; "": the one that the run chooses
-    /// From 1: that channel of a stream that all nodes with a channel of the card share, sample by sample. 0: a stream of
-    /// its own with one channel.
+    std::string card;  ///< substring of a card's name; "": the card that the run chooses
+    /// From 1: a channel of the stream that is common to all nodes on that card, synchronous to the sample. 0: a
+    /// separate stream with one channel.
     int channel = 0;
-    std::string name;  ///< of the channel, for programs that show it
+    std::string name;  ///< of the channel, shown by other programs
     int max_frames = 1;  ///< most samples per write
     SourceLocation where;
 };
 
-/// Gives `prepare` what lies outside the patch: devices, recordings, sound. `where` is the place of the node in the
-/// patch, for errors.
+/// Access to resources outside the patch during `prepare`: devices, recordings, sound. `where` is the location of the
+/// node in the patch, for errors.
 class Host {
 public:
     virtual ~Host() = default;
-    /// The haptic device of that name ("": the only one). Opens it on first use. Throws Error.
+    /// The haptic device with that name ("": the only one). Opens it on first use. Throws Error.
     virtual DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) = 0;
     /// A file in the run's folder. Throws Error.
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
-    /// Sound for a listener or an actuator: to the sound card in a live run with a card, otherwise to the format's
-    /// file. Throws Error.
+    /// An output for a listener or an actuator: the sound card in a live run with a card, otherwise the format's file.
+    /// Throws Error.
     virtual RecordStream& audio(const StreamFormat& format, const SoundPlace& place) = 0;
-    /// Values for another program, which the format's keeper sends, in a live run; otherwise they go nowhere. Throws Error.
+    /// A stream to another program in a live run, sent by the format's keeper; in other runs the values are discarded.
+    /// Throws Error.
     virtual RecordStream& send(const StreamFormat& format, const SourceLocation& where) = 0;
 };
 
-/// What `prepare` is given.
+/// Arguments of `prepare`.
 struct Setup {
     std::string name;  ///< of the node, as in the patch
     SourceLocation where;  ///< of the node in the patch
@@ -128,7 +129,7 @@ struct Setup {
     Host* host = nullptr;
 
     double rate() const { return rate_of(period); }
-    /// Throws Error at the node's place in the patch.
+    /// Throws Error with the node's location in the patch.
     [[noreturn]] void fail(const std::string& message) const { throw Error(where, message); }
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types of value that a wire can carry. The compiler and the engine know a value only by its run-time descriptor.
+// The types of value that a wire can carry. The compiler and the engine access values only through run-time
+// descriptors.
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -24,21 +25,21 @@ struct Signal {};
 /// Tag of a number that an audio node reads once per sample. A slower wire is interpolated to that rate.
 struct Ramp {};
 
-/// A small handle to an immutable version of something large. `version` rises with each change.
+/// A small handle to an immutable version of a large value. `version` increases with each change.
 template <class T>
 concept SnapshotHandle = std::is_trivially_copyable_v<T> && requires(const T& t) {
     { t.version } -> std::convertible_to<std::int64_t>;
     { t.content_hash } -> std::convertible_to<std::uint64_t>;
 };
 
-/// Specialise it with a `load` for each `T` that a patch may wire from an asset. `load` puts the value in `out` and
+/// Specialise this with a `load` for each `T` that a patch may wire from an asset. `load` puts the value in `out` and
 /// returns its owner. Throws Error.
 template <class T>
 struct SnapshotFile {
     static constexpr std::shared_ptr<const void> (*load)(const std::string& path, void* out) = nullptr;
 };
 
-/// A bone file, as a bone that is never carved.
+/// Loads a bone file as a bone that is never carved.
 template <>
 struct SnapshotFile<volume::BoneSnapshot> {
     static std::shared_ptr<const void> load(const std::string& path, void* out);
@@ -51,13 +52,13 @@ struct ValueType {
     std::size_t size = 0;  ///< bytes of one value
     std::span<const std::string_view> columns;  ///< names of its doubles in a trace; empty: not traced
     void (*hash)(Hash&, const void*) = nullptr;
-    /// Between `a` (t = 0) and `b` (t = 1); null: cannot be interpolated.
+    /// Interpolates between `a` (t = 0) and `b` (t = 1); null if the type cannot be interpolated.
     void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;
     void (*to_columns)(const void*, double* out) = nullptr;
-    void (*make_default)(void* out) = nullptr;  ///< zero, identity, nothing
+    void (*make_default)(void* out) = nullptr;  ///< writes the default: zero, identity or empty
     std::int64_t (*version)(const void*) = nullptr;  ///< non-null for snapshots
-    /// Loads a snapshot from a file: puts the handle in `out` and returns its owner. Throws Error. Null: no file holds
-    /// one.
+    /// Loads a snapshot from a file: puts the handle in `out` and returns its owner. Throws Error. Null if the type
+    /// cannot be loaded from a file.
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
     std::uint64_t layout = 0;  ///< of a snapshot: `layout_of` its type in C++
 };
@@ -88,25 +89,25 @@ using ValueKinds = std::uint8_t;
 namespace kinds {
 inline constexpr ValueKinds number = 1, boolean = 2, signal = 4, vector = 8, pose = 16, twist = 32, wrench = 64;
 inline constexpr ValueKinds snapshot = 128;
-/// A sum of two has a meaning.
+/// Types whose values can be added.
 inline constexpr ValueKinds addable = number | signal | vector | twist | wrench;
-/// All but large things.
+/// All types but snapshots and events.
 inline constexpr ValueKinds plain = addable | boolean | pose;
 inline constexpr ValueKinds every = plain | snapshot;
 }  // namespace kinds
 
-/// The one bit of `kinds` that a type has; 0 for events, which no input of several types takes.
+/// Returns the bit of a type in `kinds`; 0 for events, which no input of several types accepts.
 ValueKinds kind_of(const ValueType& type);
-/// "number, vector or wrench".
+/// Returns a list such as "number, vector or wrench".
 std::string type_names(ValueKinds kinds);
 
 namespace value {
 extern const ValueType pose, twist, wrench, vector, number, boolean, signal;
 /// The events of one activation, `Events`. They are never held and never interpolated.
 extern const ValueType event;
-/// Of an output whose type the wires of its node decide, until they have.
+/// Placeholder type of an output whose type is not decided by wires yet.
 extern const ValueType undecided;
-/// "a number", "an event".
+/// Returns "a number", "an event".
 std::string with_article(const ValueType& type);
 /// All plain types: those without snapshots, and no events.
 std::span<const ValueType* const> plain_types();

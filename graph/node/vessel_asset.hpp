@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The course of a vessel as an asset, for the few nodes that name one; see graph/node/assets.hpp.
+// The centreline of a vessel as an asset, for the few nodes that name one; see graph/node/assets.hpp.
 #pragma once
 
 #include "assets/vessel/course_file.hpp"

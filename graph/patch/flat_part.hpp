@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Indexes for flattening sub-patches, so that its time grows linearly with the number of nodes. For sub_patch.cpp only.
+// Indexes for flattening sub-patches in linear time of the number of nodes. For sub_patch.cpp only.
 #pragma once
 
 #include "graph/patch/sub_patch.hpp"
@@ -46,7 +46,7 @@ struct FlatPart {
     std::unordered_map<std::string_view, std::size_t> nodes;
 };
 
-/// The wires of a patch while its sub-patches are replaced: for each original wire, the wires that stand for it now.
+/// The wires of a patch while its sub-patches are replaced: for each original wire, its current replacements.
 class OuterWires {
 public:
     OuterWires(std::vector<PatchWire> wires, const std::vector<PatchNode>& nodes) : pieces_(wires.size()) {
@@ -59,13 +59,13 @@ public:
         }
     }
 
-    /// Calls `replace` with the wires that stand for each wire at `node`, in the order of the file.
+    /// Calls `replace` with the current replacements of each wire at `node`, in the order of the file.
     template <class Replace>
     void at(const std::string& node, Replace&& replace) {
         for (const std::size_t w : touching_.at(node)) replace(pieces_[w]);
     }
 
-    /// All wires, in the order of the file. Moves them out.
+    /// Returns all wires in the order of the file. Moves them out.
     std::vector<PatchWire> joined() {
         std::vector<PatchWire> wires;
         for (auto& pieces : pieces_) std::ranges::move(pieces, std::back_inserter(wires));

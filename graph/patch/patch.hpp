@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch as written: names and texts with their places in the file. Nothing is resolved or checked against node types.
+// A patch as written: names and texts with their locations in the file. Nothing is resolved or checked against node
+// types.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -13,7 +14,7 @@
 
 namespace tactus::patch {
 
-/// How a wire between two rates carries values: the last one, interpolated, all since the last call, or delayed.
+/// Delivery of values by a wire between two rates: the last one, interpolated, all since the last call, or delayed.
 enum class WireMode : std::uint8_t { hold, linear, batch, delay };
 
 /// A wire, such as "blade.load -> saw.load as linear". For an asset on the left side `from_node` is its name and
@@ -29,7 +30,7 @@ struct PatchWire {
 /// An entry [nodes.NAME].
 struct PatchNode {
     std::string name, type;
-    /// "1 kHz"; empty when `group` is given; "outer" in a sub-patch: the rate of the node that it is.
+    /// "1 kHz"; empty if `group` is given; "outer" in a sub-patch: the rate of the sub-patch's node.
     std::string rate;
     std::string group;  ///< name of an entry of [groups], empty when `rate` is given
     SourceLocation where, type_where, rate_where;
@@ -58,14 +59,14 @@ struct PatchDevice {
     std::vector<OptionText> settings;
 };
 
-/// An entry [actuators.NAME]: settings of the nodes that name it.
+/// An entry [actuators.NAME]: common settings of the nodes that name it.
 struct PatchActuator {
     std::string name;
     SourceLocation where;
     std::vector<OptionText> settings;
 };
 
-/// A port or parameter that a sub-patch offers: its name outside, and the node and port inside. An input or a parameter
+/// A port or parameter that a sub-patch exposes: its outer name, and the inner node and port. An input or a parameter
 /// has one entry for each port that it sets.
 struct PatchEnd {
     std::string name, node, port;
@@ -94,24 +95,25 @@ struct Patch {
     std::vector<PatchNode> nodes;  ///< in the order of the file
     std::vector<PatchEnd> inputs, outputs, parameters;
     std::vector<PatchPart> parts;
-    /// After flatten(): ends that the sub-patches offered, by names such as "voice.level".
+    /// After flatten(): the ports and parameters that the sub-patches exposed, by names such as "voice.level".
     std::vector<PatchEnd> offered;
     std::string text;  ///< the file as read, without [[parts]]
 };
 
-/// Changes of a patch from the command line, as given: `node.param=value` and `asset=path`.
+/// Changes of a patch given on the command line: `node.param=value` and `asset=path`.
 struct PatchOverrides {
     std::vector<std::string> settings;  ///< "blade.stiffness=0.8 N/mm", "devices.hand.mass=0.2 kg"
     std::vector<std::string> assets;  ///< "bone=mine.vdb"
 };
 
-/// All errors of a patch, in the order of the file. Reading and compiling go on after the first where they can.
+/// All errors of a patch, in the order of the file. Reading and compiling continue after an error where possible.
 struct Problems {
     std::vector<Error> list;
 
     void add(const SourceLocation& where, const std::string& message) { list.emplace_back(where, message); }
     bool empty() const { return list.empty(); }
-    /// False after 100 problems: a hint compares a name with all others, which is slow, and nobody reads that many.
+    /// False after 100 problems. A hint compares a name with all others, which is slow, and more than 100 would not be
+    /// read.
     bool wants_hint() const { return list.size() < 100; }
 };
 
@@ -125,8 +127,8 @@ Patch load_patch(const std::filesystem::path& file, Problems& problems);
 /// Applies changes from the command line. A name that does not exist is a problem at the location "--set" or "--asset".
 void apply_overrides(Patch& patch, const PatchOverrides& overrides, Problems& problems);
 
-/// Period in flicks of a rate such as "1 kHz". Throws Error with the nearest exact rates when it is no whole number of
-/// flicks.
+/// Returns the period in flicks of a rate such as "1 kHz". If it is not a whole number of flicks, throws Error with the
+/// nearest exact rates.
 Flicks parse_rate(std::string_view text);
 
 }  // namespace tactus::patch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds signals of a patch by name and cuts a patch down to some of its nodes, for verbs that run only a part.
+// Finds signals of a patch by name, and reduces a patch to some of its nodes, for verbs that run only a part.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -17,12 +17,12 @@ struct SignalEnd {
     bool is_input = false;
 };
 
-/// The port that text such as "actuator.signal" names. `option` is the command line's option, for messages. Throws
-/// Error when there is no such port or it carries no signal.
+/// Returns the port named by text such as "actuator.signal". `option` is the command-line option, for messages. Throws
+/// Error if the port does not exist or carries no signal.
 SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
                       compile::Catalogue catalogue);
 
-/// Removes all nodes but those of `names` and the nodes upstream of them. The order stays.
+/// Removes all nodes except those of `names` and the nodes upstream of them. Keeps the order.
 void keep_what_leads_to(std::vector<std::string> names, Patch& patch);
 
 }  // namespace tactus::patch

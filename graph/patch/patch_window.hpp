@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a window shows a patch, kept in the patch itself; nothing that runs reads it:
+// The window layout of a patch, stored in the patch itself. It has no effect on a run:
 //
 //     [window]
 //     layout = "plan"                    # patch, plan or train
@@ -29,7 +29,7 @@ class node;
 
 namespace tactus::patch {
 
-/// In units of the picture: pixels at zoom 1.
+/// A position in canvas units: pixels at zoom 1.
 struct PatchPlace {
     double x = 0.0, y = 0.0;
 };
@@ -40,20 +40,20 @@ struct PatchComment {
 };
 
 struct PatchWindow {
-    std::string layout;  ///< empty: not said
+    std::string layout;  ///< empty: not given
     std::vector<std::string> open;
-    std::map<std::string, PatchPlace> places;  ///< by node; some may not be there
+    std::map<std::string, PatchPlace> places;  ///< by node; some nodes may not exist
     std::map<std::string, std::string> colours;
     std::vector<PatchComment> comments;
 };
 
-/// The names of colours, in the order of a menu.
+/// The names of colours, in the order of the menu.
 const std::vector<std::string>& colour_names();
 
-/// Reads the value of `window`. Adds what is wrong to `problems`. `file` names the patch in messages.
+/// Reads the value of `window`. Adds errors to `problems`. `file` is the name of the patch in messages.
 PatchWindow read_window(const toml::node& value, const std::string& file, Problems& problems);
 
-/// The window of a patch's text; empty for a text that is no patch.
+/// Returns the [window] part of a patch's text; empty if the text is not a patch.
 PatchWindow window_of(std::string_view text);
 
 }  // namespace tactus::patch

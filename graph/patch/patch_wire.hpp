@@ -8,11 +8,11 @@
 
 namespace tactus::patch {
 
-/// `where` is the place of the first character. Throws Error at the wrong word when the file holds the text
-/// `as_written`, otherwise (escapes, several lines) at `where`.
+/// `where` is the location of the first character. Errors are thrown at the wrong word if the file contains the text
+/// verbatim (`as_written`), otherwise (escapes, several lines) at `where`.
 PatchWire parse_wire(std::string_view text, const SourceLocation& where, bool as_written = true);
 
-/// True for a name of letters, digits, '_' and '-' that is not empty.
+/// Returns true for a non-empty name of letters, digits, '_' and '-'.
 bool is_name(std::string_view text);
 
 }  // namespace tactus::patch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sub-patches: a patch as a node of another. The file lists the ports and parameters that it offers:
+// Sub-patches: a patch used as a node of another. The file lists the ports and parameters that it exposes:
 //
 //     [inputs]
 //     load = "saw.load"                              # a port of a node, or a list of ports
@@ -33,35 +33,37 @@ inline constexpr std::string_view sub_patch_prefix = "patch:";
 inline constexpr char within_node = ':';        ///< as in "voice:saw"
 inline constexpr std::string_view outer_rate = "outer";
 
-/// True when the node's type names a patch file.
+/// Returns true if the node's type names a patch file.
 bool is_sub_patch(const PatchNode& node);
 
-/// Path of the sub-patch that `type` names in the sub-patch at `from` (empty: the outermost patch), as in PatchPart.
+/// Returns the path, as in PatchPart, of the sub-patch `type` used in the sub-patch at `from` (empty: the outermost
+/// patch).
 std::string part_path(const std::string& from, const std::string& type);
 
-/// The file of a path of PatchPart.
+/// Returns the file for a path of PatchPart.
 std::filesystem::path file_of_part(const Patch& patch, const std::string& path);
 
-/// Reads the files of all sub-patches, to any depth, that `patch.parts` does not hold yet. Leaves out a file that
-/// cannot be read; flatten() reports it.
+/// Reads the files of all sub-patches, to any depth, that `patch.parts` does not contain yet. Skips a file that cannot
+/// be read; flatten() reports it.
 void read_parts(Patch& patch);
 
-/// Files of `patch.parts`, for a watcher of files.
+/// Returns the files of `patch.parts`, for a file watcher.
 std::vector<std::filesystem::path> part_files(const Patch& patch);
 
 /// Replaces each sub-patch by its nodes and wires. Adds errors to `problems`. Reads no file; a patch without
 /// sub-patches does not change.
 void flatten(Patch& patch, Problems& problems);
 
-/// One text of the patch with all its sub-patches as entries [[parts]] at the end.
+/// Returns one text with the patch and all its sub-patches as entries [[parts]] at the end.
 std::string bundle_text(const Patch& patch);
 
 /// A node and its port or parameter.
 struct NamedEnd {
     std::string node, name;
 };
-/// All ends that `node`.`name` means in a flattened patch, at any depth, in the order of the files: an input or a parameter of
-/// a sub-patch may set several. A name that no sub-patch offered is returned as it is. Never empty.
+/// Returns all inner ports or parameters of `node`.`name` in a flattened patch, at any depth, in the order of the
+/// files: an input or a parameter of a sub-patch may set several. A name that no sub-patch exposed is returned
+/// unchanged. Never empty.
 std::vector<NamedEnd> ends_within(const Patch& patch, std::string_view node, std::string_view name);
 
 }  // namespace tactus::patch
