@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wire within a group whose values arrive some activations later.
+// A delayed wire within a group: its values arrive a number of activations later.
 #pragma once
 
 #include "graph/node/param.hpp"
@@ -14,7 +14,7 @@
 
 namespace tactus::build {
 
-/// The value `count` activations ago. Group's thread; wait-free.
+/// Returns the value of `count` activations ago. Group's thread; wait-free.
 struct DelayLine {
     const ValueType* type = nullptr;
     const Output* source = nullptr;
@@ -25,21 +25,21 @@ struct DelayLine {
     std::int64_t count = 1;
     std::vector<std::byte> history;  ///< `count` values, activation index modulo count
     std::vector<std::byte> delayed;  ///< the values of this call
-    DelayLine* before = nullptr;     ///< the same wire in the program before, whose history goes on
+    DelayLine* before = nullptr;     ///< the same wire in the previous program, whose history continues
 
-    /// Lays out what `activations` of a call see, the first of which is its activation `from`, with index `tick`. More
-    /// than `count` only when the source has run for them.
+    /// Fills `delayed` for `activations` activations of a call, starting with its activation `from`, which has index
+    /// `tick`. May exceed `count` only if the source has already run for them.
     void recall(std::int64_t tick, int from, int activations) noexcept {
         for (int i = 0; i < activations; ++i)
             std::memcpy(delayed.data() + static_cast<std::size_t>(from + i) * type->size,
                         i < count ? place(tick + i) : values + (from + i - count) * stride, type->size);
     }
-    /// Keeps what those activations made, as far as later ones ask for it.
+    /// Stores the values of those activations that later ones will read.
     void remember(std::int64_t tick, int from, int activations) noexcept {
         for (auto i = static_cast<int>(std::max<std::int64_t>(0, activations - count)); i < activations; ++i)
             std::memcpy(place(tick + i), values + (from + i) * stride, type->size);
     }
-    /// Of snapshots: the smallest version that waits here.
+    /// For snapshots: the smallest version in the history.
     std::int64_t oldest_version() const noexcept {
         std::int64_t oldest = std::numeric_limits<std::int64_t>::max();
         for (std::size_t at = 0; at < history.size(); at += type->size)

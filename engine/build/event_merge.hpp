@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of all wires into one input, brought together.
+// Merges the events of all wires into one input.
 #pragma once
 
 #include "engine/run/link.hpp"
@@ -12,18 +12,18 @@
 
 namespace tactus::build {
 
-/// Where events come from: an output of the same group, with its delay, or a link.
+/// A source of events: an output of the same group, with its delay, or a link.
 struct EventFeed {
     std::string name;  ///< of the output, "node.port"
     int delay = 0;     ///< activations of the producer
-    const std::byte* values = nullptr;  ///< of the same group: those of the first activation of a call
+    const std::byte* values = nullptr;  ///< of a source in the same group: values of the first activation of a call
     std::ptrdiff_t stride = 0;
     const run::LinkWire* link = nullptr;
 
-    // What has not been taken yet of this activation:
+    // The events of this activation that have not been delivered yet:
     const Events* list = nullptr;
     int lists = 0, at = 0;
-    int used = 0;  ///< of the link's lists in this call
+    int used = 0;  ///< number of the link's lists used in this call
 
     const Event* head() const noexcept { return lists > 0 ? list->list.data() + at : nullptr; }
     void skip_finished() noexcept {
@@ -38,7 +38,7 @@ struct EventFeed {
 /// Group's thread; wait-free.
 class EventMerge {
 public:
-    /// Between two activations of a slow group a fast one may give many.
+    /// Large, because a fast group may emit many events between two activations of a slow group.
     static constexpr int most = 1024;
 
     explicit EventMerge(Input& target_) : target(&target_) {}
@@ -46,10 +46,11 @@ public:
     Input* target;
     std::vector<EventFeed> feeds;
 
-    /// Those of two wires at one time come in the order of these names, whatever the text's order.
+    /// Sorts the sources by name, so that simultaneous events have an order that does not depend on the text of the
+    /// patch.
     void sort_feeds();
-    /// Hands the input what becomes visible at an activation of the call. Once for each, in order. Returns how many
-    /// events found no room.
+    /// Delivers the events that become visible at an activation of the call. Call it once per activation, in order.
+    /// Returns the number of events dropped for lack of room.
     int gather(int activation) noexcept;
 
 private:

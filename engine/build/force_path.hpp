@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a force on a hand depends on, whether it is overdue, and whether an edit touches it.
+// Dependence of the force on a hand on nodes and groups, for deadlines and for edits.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -10,37 +10,39 @@
 
 namespace tactus::build {
 
-/// How the force on a device depends on each node, in the order of generation.nodes.
+/// Returns how the force on a device depends on each node, in the order of generation.nodes.
 std::vector<compile::Dependence> dependence_of(const Generation& generation, const DeviceSlot& slot);
 
-/// The other groups on whose values the force on a device depends, those of force first. A value of force may be late by
-/// 3 ms, or by one period of its group if that is longer; one of the world by 1 s. Then the wires between groups that lead
-/// to the force, one source for each link, which checks them from then on: they may bring no value that is not finite.
+/// Returns the sources of a device's force: first the other groups on whose values it depends, force values before
+/// world values, then the wires between groups that lead to the force, one entry per link. A force value may be late by
+/// 3 ms or by one period of its group, whichever is longer; a world value by 1 s. From this call on the links check
+/// their values, which must be finite.
 std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSlot& slot);
 
-/// From the first activation of all groups until what they computed has reached the force on a device. Before, wires from
-/// other groups and delayed wires bring values that no node has computed: a wrench of zero from a group in which the hand is
-/// deep inside of a body. Snapshots do not count: `prepare` has set them.
+/// Returns the time from the first activation of all groups until computed values reach the force on a device. Before
+/// that, wires from other groups and delayed wires deliver values that no node has computed, such as a zero wrench
+/// while the hand is deep inside a body. Snapshots do not count, because `prepare` sets them.
 Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot);
 
-/// Nodes from which values reach a force on a hand, in any group, in the order of generation.nodes. Motors of grippers do
-/// not count: their controllers limit how fast an object changes.
+/// Returns, in the order of generation.nodes, which nodes influence a force on a hand, in any group. Motors of grippers
+/// do not count: their controllers limit the rate of change.
 std::vector<bool> nodes_of_forces(const Generation& generation);
 
-/// A hash of all on which the force on a device depends but parameters that ramp and requests of the user: nodes with
+/// Hashes everything on which the force on a device depends, except ramped parameters and user requests: nodes with
 /// their structure and discrete parameters, groups with their periods and latencies, wires, and the content of files.
 std::uint64_t hash_of_force_path(const Generation& generation, const DeviceSlot& slot);
 
-/// The devices whose force may jump when `now` takes over: the hash of its path differs, a node of it was prepared anew
-/// although it is described as before, or no node drives the device any more. `survived` and `force_paths` must be known.
+/// Returns the devices whose force may jump when `now` takes over: the hash of the force path differs, a node on it
+/// with an unchanged description was prepared again, or no node drives the device any more. Requires `survived` and
+/// `force_paths`.
 std::vector<const DeviceSlot*> changed_forces(const Generation& before, const Generation& now);
 
-/// When a change of a node has reached the forces that depend on it.
+/// Times after which a change of a node has reached the forces that depend on it.
 struct Reach {
     Flicks device_period = 0;  ///< of the slowest device
     Flicks latency = 0;  ///< of all groups in between
 };
-/// Nothing when no force depends on the node.
+/// Returns nothing if no force depends on the node.
 std::optional<Reach> reach_of(const Generation& generation, std::size_t node);
 
 }  // namespace tactus::build

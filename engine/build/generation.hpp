@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan that can run: prepared nodes, connected wires, one program per rate group. When it follows another plan, nodes
-// and links that the edit did not touch are kept.
+// An executable plan: prepared nodes, connected wires, one program per rate group. When it replaces another plan, nodes
+// and links that the edit does not change are kept.
 #pragma once
 
 #include "engine/build/group_program.hpp"
@@ -22,22 +22,22 @@
 
 namespace tactus::build {
 
-/// A running node. It lives until the last plan that keeps it is gone.
+/// A running node. It is destroyed with the last plan that uses it.
 struct LiveNode {
     std::string name;
     const NodeType* type = nullptr;
     compile::NodeInstance instance{nullptr, nullptr};
     run::GroupRuntime* group = nullptr;
-    std::string structure;  ///< what must be equal for a node to survive an edit
+    std::string structure;  ///< description; a node survives an edit if it is equal
     observe::NodeTelemetry time;
     std::vector<Input*> inputs;
     std::vector<Output*> outputs;
     std::map<std::string, Param*> params;
-    io::HostUses uses;  ///< what its prepare asked for
-    std::vector<std::shared_ptr<observe::ObservedPort>> seen;  ///< as outputs, when there is an observer
+    io::HostUses uses;  ///< resources that its prepare opened
+    std::vector<std::shared_ptr<observe::ObservedPort>> seen;  ///< its outputs as seen by the observer, if there is one
 };
 
-/// What the generations of one run share. Used by one builder at a time.
+/// State common to the generations of one run. Used by one builder at a time.
 struct BuildContext {
     io::EngineHost& host;
     int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
@@ -46,15 +46,16 @@ struct BuildContext {
     struct Constant {
         std::shared_ptr<const void> owner;
         std::vector<std::byte> handle;
-        std::uint64_t content = 0;  ///< hash of the file, from when it was loaded
+        std::uint64_t content = 0;  ///< hash of the file's content when it was loaded
     };
     std::map<std::pair<const ValueType*, std::string>, Constant> constants;
-    /// Returns where the outputs of a group are recorded, as frames of that layout, or null. Empty: there is no take.
+    /// Returns the stream that records the outputs of a group, as frames of that layout, or null. Empty if there is no
+    /// take.
     std::function<RecordStream*(const io::FrameLayout&, const run::GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
-    int group_before = 0, link_before = 0;  ///< the same before the plan that is being built
-    observe::Observer* observer = nullptr;  ///< who looks on, or null
-    bool only_checked = false;  ///< a plan that is too stiff for the devices that it declares is built as it is
+    int group_before = 0, link_before = 0;  ///< the same, before the plan that is being built
+    observe::Observer* observer = nullptr;  ///< the observer of the run, or null
+    bool only_checked = false;  ///< build a plan although it is too stiff for the devices that it declares
 };
 
 struct Generation {
@@ -68,25 +69,25 @@ struct Generation {
     std::vector<std::unique_ptr<GroupProgram>> programs;  ///< as plan.groups
     std::vector<std::shared_ptr<run::Link>> links;
     std::vector<std::unique_ptr<std::vector<std::byte>>> memory;  ///< values of outputs and unconnected inputs
-    /// Of each live parameter on which a force depends.
+    /// For each live parameter on which a force depends.
     std::unordered_map<const Param*, std::shared_ptr<run::ParamRamp>> ramps;
-    std::unique_ptr<SwitchGate> gate;  ///< live, when it reaches a hand
-    std::unordered_map<const Input*, std::uint64_t> constants;  ///< content of what a file gives an input of plan.nodes
-    /// Of each driven device: a hash of all that its force depends on, but for parameters that ramp.
+    std::unique_ptr<SwitchGate> gate;  ///< in a live run, if the plan reaches a hand
+    std::unordered_map<const Input*, std::uint64_t> constants;  ///< content hash of each input of plan.nodes that a file sets
+    /// For each driven device: a hash of everything that its force depends on, except ramped parameters.
     std::map<const DeviceSlot*, std::uint64_t> force_paths;
 
-    /// Of a parameter, or null: it changes at once.
+    /// Returns the ramp of a parameter, or null if it changes immediately.
     run::ParamRamp* ramp_of(const Param* param) const;
 
-    /// Index of a node, −1: none of that name.
+    /// Returns the index of a node, −1 if there is none of that name.
     int find(std::string_view node) const;
     bool keeps(const run::GroupRuntime* group) const;
-    /// Nothing reads from links of the generation before any more. Any thread.
+    /// True when nothing reads from links of the previous generation any more. Any thread.
     bool settled() const;
 };
 
-/// Builds what follows `before` (null: nothing). What runs is not touched. Throws Error, also for an asset that is not
-/// loaded.
+/// Builds the generation that follows `before` (null: the first). Does not modify the running one. Throws Error, also
+/// for an asset that is not loaded.
 std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context);
 
 }  // namespace tactus::build

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan is made runnable, step by step. Only generation*.cpp and fit_to_devices.cpp include it.
+// Builds an executable plan, step by step. Only generation*.cpp and fit_to_devices.cpp include it.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -17,8 +17,8 @@
 
 namespace tactus::build {
 
-/// Builds on the compiled nodes, then points everything at the nodes that run. When a node of the plan before survives,
-/// its compiled copy is never prepared: it only shows how the inputs of the running node are to be wired.
+/// Builds on the compiled nodes, then redirects all pointers to the live nodes. If a node of the previous plan
+/// survives, its compiled copy is never prepared: it only provides the new wiring of the live node's inputs.
 class GenerationBuilder {
 public:
     GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context);
@@ -60,17 +60,18 @@ private:
     void connect_constant(const compile::PlanWire& wire);
     void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
     void connect_events(const compile::PlanWire& wire, const Output& source, Input& target);
-    /// What brings the events of an input of a node that lives.
+    /// Returns the merger of the events of an input of a live node.
     EventMerge& merge_into(Input* target, int group);
     run::Link& link_for(const compile::PlanWire& wire);
-    /// Values of the producer come so often that each of them would cut a call of the consumer, an audio group.
+    /// Returns true if the producer's values change so often that they would split each call of the consumer, an audio
+    /// group.
     bool changes_within_calls(int producer, int consumer) const;
     bool is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const;
-    /// Wires of a link that go on: all, and those whose source goes on, too.
+    /// Number of wires of a link that continue: all, and those whose source continues too.
     struct WireMatch {
         std::size_t continued = 0, same = 0;
     };
-    /// Notes for each wire of `link` the same one of `old`.
+    /// Matches each wire of `link` with the same wire of `old`.
     WireMatch match_wires(run::Link& link, run::Link* old) const;
     int live_frames(const run::GroupRuntime& group);
     void finish_links();
@@ -81,7 +82,7 @@ private:
     void add_step(GroupProgram& program, std::size_t index, bool varies);
     void make_stretches(std::size_t group);
     void record(std::size_t group);
-    /// Where an observer finds the output of a node. A node that survives keeps its place.
+    /// Returns the port by which an observer reads the output of a node. A node that survives keeps its port.
     observe::ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
     void make_programs();
     void finish_program(std::size_t g);
@@ -90,10 +91,10 @@ private:
     void find_outputs_before(GroupProgram& program, const GroupProgram& old) const;
     void assign_devices(std::size_t index);
     void make_ramps();
-    /// What has to be set on a node that goes on.
+    /// Determines the settings that a surviving node needs.
     void rewire(std::size_t index);
 
-    /// Groups that a link joins, and its latency.
+    /// The groups that a link connects, and its latency.
     using LinkEnds = std::tuple<const run::GroupRuntime*, const run::GroupRuntime*, Flicks>;
     static LinkEnds ends_of(const run::Link& link) { return {link.producer, link.consumer, link.latency}; }
     void index_before();
@@ -104,14 +105,14 @@ private:
     // Indices by node, wire and group, so that a plan of n nodes is built in O(n).
     std::unordered_map<std::string_view, std::size_t> nodes_before_;  // by name, in `before_`
     std::unordered_map<const run::GroupRuntime*, std::size_t> groups_before_;  // in `before_`
-    std::unordered_set<const Param*> driven_before_, driven_;  // parameters at the end of a wire
+    std::unordered_set<const Param*> driven_before_, driven_;  // parameters driven by a wire
     std::unordered_map<const run::GroupRuntime*, int> group_index_;  // in `made_`
     std::unordered_map<std::string_view, const patch::PatchAsset*> assets_;
     std::map<LinkEnds, std::shared_ptr<run::Link>> links_before_, links_made_;
     std::unordered_set<const run::Link*> links_going_on_;  // of `before_`
-    std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
+    std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes → those of the live nodes
     std::vector<std::vector<Drive>> drives_;
-    std::unordered_map<const Input*, const run::LinkWire*> batches_;  // those that change within calls
+    std::unordered_map<const Input*, const run::LinkWire*> batches_;  // wires that change within calls
     std::unordered_map<const Input*, EventMerge*> merges_;
     std::unordered_set<const run::Link*> new_links_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which nodes go on unchanged when a plan takes over from another.
+// Decides which nodes survive unchanged when a plan replaces another.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -9,8 +9,9 @@
 
 namespace tactus::build {
 
-/// For each node everything that its `prepare` may depend on, as text: type, structural parameters, choices, texts, flags,
-/// vectors, assets, where inputs of any type come from, seed. Equal text means that the node need not be prepared again.
+/// Returns for each node everything that its `prepare` may depend on, as text: type, structural parameters, choices,
+/// texts, flags, vectors, assets, sources of inputs of any type, seed. If the text is equal, the node need not be
+/// prepared again.
 std::vector<std::string> structures_of(const compile::Plan& plan);
 
 }  // namespace tactus::build

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream that is kept on a thread of its own: what waits for a disk holds nobody else up.
+// A stream that is saved by its own thread, so that a slow disk delays no other stream.
 #pragma once
 
 #include "engine/io/streams.hpp"
@@ -14,11 +14,11 @@
 
 namespace tactus::io {
 
-/// Values go to the keeper as they come and are saved at once, those that came meanwhile together. What cannot be saved
-/// is tried again every second, and at last by `finish`; the run goes on.
+/// Passes values to the keeper as they arrive and saves them immediately; values that arrive during a save are saved
+/// together. A failed save is repeated every second, and finally by `finish`; the run continues.
 class AsyncSink : public Sink {
 public:
-    /// `size` in bytes of a value; the keeper is open.
+    /// `size`: bytes per value. The keeper must be open.
     AsyncSink(std::shared_ptr<StreamKeeper> keeper, std::size_t size);
     ~AsyncSink() override;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a card with several channels, each of which another node writes.
+// Interleaves the channels of a card, each of which is written by a different node.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,16 @@
 namespace tactus::io {
 
 /// Gathers one block of samples per channel into interleaved frames. All calls come from the thread of one group, which
-/// calls its nodes one after the other with the same activations. Nothing allocates but `resize`.
+/// calls its nodes in sequence with the same activations. Only `resize` allocates.
 ///
-/// A block is complete when every channel wrote that wrote the block before; at first, when all did. A channel that
-/// misses its block (its node was taken away by an edit) is silent and is not waited for in the next one; a channel
-/// that comes too late (a new node) is silent once and waited for from then on.
+/// A block is complete when every channel has written that wrote the previous block; the first block requires all
+/// expected channels. A channel that misses its block (an edit removed its node) is silent and is not required for the
+/// next one. A channel that comes too late (a new node) is silent for one block and required from then on.
 class ChannelGather {
 public:
     static constexpr int most_channels = 64;
 
-    /// Before the first sample, or after `take`.
+    /// Call before the first sample, or after `take`.
     void resize(int channels, int max_frames) {
         channels_ = static_cast<std::size_t>(channels);
         max_frames_ = static_cast<std::size_t>(std::max(max_frames, 1));
@@ -29,16 +29,16 @@ public:
     }
     int channels() const noexcept { return static_cast<int>(channels_); }
     std::size_t max_frames() const noexcept { return max_frames_; }
-    /// Waits for this channel from the first block on. Before the first sample.
+    /// Requires this channel from the first block on. Call before the first sample.
     void expect(int channel) noexcept { expected_ |= bit(channel); }
 
-    /// True when a block is in the way of `count` samples of that channel: `take` it first.
+    /// Returns true if the current block must be removed by `take` before `count` samples of that channel fit.
     bool is_blocked(int channel, std::int64_t first, std::size_t count) const noexcept {
         return count_ > 0 && (first != first_ || count != count_ || (written_ & bit(channel)) != 0);
     }
 
-    /// Samples of activations first, first + 1, …, `stride` bytes apart; at most `max_frames`. True when the block is
-    /// complete.
+    /// Adds samples of the activations first, first + 1, …, `stride` bytes apart; at most `max_frames`. Returns true
+    /// when the block is complete.
     bool put(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
         if (first < next_) {  // the block went without this channel
             expected_ |= bit(channel);
@@ -56,7 +56,7 @@ public:
         return (written_ & expected_) == expected_;
     }
 
-    /// The block's frames, valid until the next `put`; `first`: the activation of the first one.
+    /// Returns the block's frames, valid until the next `put`; `first`: the activation of the first one.
     std::span<const float> take(std::int64_t& first) noexcept {
         first = first_;
         const std::span<const float> block(frames_.data(), count_ * channels_);

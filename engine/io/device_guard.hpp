@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last word before a driver: every force of a live run passes here, from the thread of the tick or, when that one
-// comes no more, from the watchdog's.
+// The last stage before a driver: every force of a live run passes it, from the tick thread or, if that one hangs, from
+// the watchdog's thread.
 #pragma once
 
 #include "devices/hosted/seqlock.hpp"
@@ -19,78 +19,79 @@
 
 namespace tactus::io {
 
-/// A fault of a device, for people.
+/// A fault of a device, for messages.
 struct DeviceFault {
     control::Fault reason = control::Fault::none;
     std::int64_t tick = 0;  ///< of the device's group
-    double force_N = 0.0;   ///< that was on the hand the tick before
-    std::int64_t over = -1;  ///< tick at which it was over, or another fault took its place; -1: it is not over
-    std::int64_t number = 0;  ///< of the device's faults in this run, from 0 on
-    std::array<char, 96> source{};  ///< whose values were late, cut to this length; "": the fault has no other source
+    double force_N = 0.0;   ///< on the hand in the previous tick
+    std::int64_t over = -1;  ///< tick at which it ended or another fault replaced it; -1: still active
+    std::int64_t number = 0;  ///< of the device's faults in this run, counted from 0
+    std::array<char, 96> source{};  ///< the source whose values were late, cut to this length; "": none
 
-    /// What happened, as a clause: "a value that the force depends on came too late (node 'ball' of the group '1 kHz')".
+    /// Describes the fault as a clause: "a value that the force depends on came too late (node 'ball' of the group '1
+    /// kHz')".
     std::string text() const;
 };
 
-/// Whether the hand feels forces, and since when.
+/// Whether the hand receives forces, and since when.
 struct DeviceState {
     control::ForceState state = control::ForceState::unknown;
     std::int64_t since = 0;  ///< tick of the device's group
 };
 
-/// What is finite and within what the device states it can bear; anything else becomes no force at all, so that not even
-/// a node that writes to a device by itself gets round the limits.
+/// Limits a wrench to the maximum that the device states. A wrench that is not finite becomes zero. Even a node that
+/// writes to a device directly cannot exceed the limits.
 Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept;
 
 class DeviceGuard {
 public:
-    /// Before the run: an age of the last commit that means the tick's thread is gone.
+    /// Before the run: sets the age of the last commit from which the tick thread counts as hanging.
     void set_limit(std::int64_t ns) noexcept { guard_.limit_ns = ns; }
 
     // Thread of the tick.
-    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver. When the driver takes
-    /// longer than the limit, the watchdog gets the device as soon as it comes back.
+    /// Sends a force to the device, unless the watchdog controls it. The driver may make system calls. If the driver
+    /// takes longer than the limit, the watchdog takes control as soon as the driver returns.
     void commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept;
-    /// Before the steps: the watchdog had the device since the last call, so that forces must come in anew.
+    /// Before the steps: true if the watchdog has had the device since the last call, so that forces must ramp in
+    /// again.
     bool was_taken() noexcept;
-    /// No tick comes any more, on purpose: the watchdog may fade what is left.
+    /// No further ticks will come, on purpose: the watchdog may fade the remaining force.
     void retire() noexcept { retired_.store(true, std::memory_order_release); }
-    /// Keeps a fault to tell of, when the reason is new, and what the hand may expect.
-    /// `source` as in DeviceFault.
+    /// Records a fault if its reason is new, and the state of the force. `source` as in DeviceFault.
     void note(control::Fault reason, control::ForceState state, std::int64_t tick, double force_N,
               std::string_view source = {}) noexcept;
 
     // Thread of the watchdog.
-    /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the
-    /// tick's thread asks for it again.
+    /// Takes control when the tick thread is late, fades the force, and returns control once the force is zero and the
+    /// tick thread requests it again.
     void poll(HapticDevice& device, std::int64_t now_ns) noexcept;
-    /// The force fades at once, on purpose, and stays away until `take_up`. Whoever asks sees to it that forces come in
-    /// anew. Any thread; wait-free.
+    /// Fades the force immediately, on purpose, and keeps it at zero until `take_up`. The caller must ensure that
+    /// forces ramp in again. Any thread; wait-free.
     void let_go() noexcept { lets_go_.store(true, std::memory_order_release); }
     void take_up() noexcept { lets_go_.store(false, std::memory_order_release); }
-    /// The same while no node gives the device a force, as after an edit.
+    /// The same while no node drives the device, as after an edit.
     void set_driven(bool is_driven) noexcept { is_left_.store(!is_driven, std::memory_order_release); }
-    /// The force is to fade and come in anew, for a reason outside of the device. Any thread; wait-free.
+    /// Requests that the force fades and ramps in again, for a reason outside of the device. Any thread; wait-free.
     void ask_fade() noexcept { fade_asked_.store(true, std::memory_order_relaxed); }
     /// True once after `ask_fade`. Thread of the tick; wait-free.
     bool is_asked_to_fade() noexcept {
         return fade_asked_.load(std::memory_order_relaxed) && fade_asked_.exchange(false, std::memory_order_relaxed);
     }
-    /// Retired, and no force is left.
+    /// True when retired and without force.
     bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
 
     static constexpr std::size_t most_faults = 64;
-    /// The newest of them, oldest first. Any thread, never in a tick.
+    /// The newest faults, oldest first. Any thread, never in a tick.
     std::vector<DeviceFault> faults() const;
     /// Any thread.
     DeviceState state() const noexcept;
 
 private:
     control::CommitGuard guard_;
-    std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
+    std::atomic<std::int64_t> asked_ns_{0};  // time of the last rejected commit
     std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false}, lets_go_{false}, is_left_{false};
     std::atomic<bool> is_let_go_{false};  // the watchdog has taken it on purpose
-    std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
+    std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog must take the device
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
     DeviceFault newest_;  // thread of the tick

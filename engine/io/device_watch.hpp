@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second watchdog of one device: a thread of its own, above every group, that looks after it once a millisecond. A
-// driver that blocks it holds up nobody else. While the kernel stops all threads of real-time priority, another thread
-// stands in for it.
+// The watchdog of one device: its own thread, with a priority above every group, that checks the device once a
+// millisecond. A driver that blocks this thread delays nothing else. While the kernel throttles all real-time threads,
+// a thread of normal priority takes over.
 #pragma once
 
 #include "engine/build/group_program.hpp"
@@ -18,25 +18,25 @@ class DeviceWatch {
 public:
     /// Throws std::system_error when the system refuses the thread.
     explicit DeviceWatch(build::DeviceSlot& slot);
-    /// Joins, unless the thread was left behind.
+    /// Joins the thread, unless it was abandoned.
     ~DeviceWatch();
     DeviceWatch(const DeviceWatch&) = delete;
     DeviceWatch& operator=(const DeviceWatch&) = delete;
 
     build::DeviceSlot& slot() const { return slot_; }
-    /// The thread ends as soon as the device, which is retired, is without force, at the latest after 0.1 s; `at_once`:
-    /// whatever there is.
+    /// Ends the thread as soon as the retired device is without force, at the latest after 0.1 s; with `at_once`
+    /// immediately.
     void end(bool at_once = false) noexcept;
     bool is_over() const noexcept { return is_over_.load(std::memory_order_acquire); }
-    /// Leaves the thread behind if it is in the driver. This must not be destroyed then, nor the device.
+    /// Abandons the thread if it is in the driver. Then neither this object nor the device may be destroyed.
     bool forsake();
-    /// Another thread, without real-time priority: looks after the device if its own thread has not done so for 3 ms. False
-    /// when the caller was left behind in the driver; it must touch nothing any more.
+    /// For another thread, without real-time priority: checks the device if its own thread has not done so for 3 ms.
+    /// Returns false if the caller was abandoned in the driver; it must not access anything any more.
     bool stand_in() noexcept;
 
 private:
     void run() noexcept;
-    /// One look, by one of the two threads at a time. False as for `stand_in`.
+    /// One check, by one of the two threads at a time. Returns false as `stand_in` does.
     bool look(std::int64_t now_ns) noexcept;
 
     build::DeviceSlot& slot_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between a thread that calls a driver and the one that ends the run: a thread that does not come back from a driver is
-// left behind, and touches nothing when it comes back after all.
+// Synchronises a thread that calls a driver with the thread that ends the run: a thread that does not return from a
+// driver is abandoned, and accesses nothing if it returns later.
 #pragma once
 
 #include <atomic>
@@ -13,12 +13,12 @@ class DriverGate {
 
 public:
     // Thread that calls the driver; wait-free.
-    /// False: the run is over for this thread.
+    /// Returns false if the run has ended for this thread.
     bool enter() noexcept { return move(outside, inside); }
-    /// False: the run is over for this thread; it must touch nothing any more.
+    /// Returns false if the run has ended for this thread; it must not access anything any more.
     bool leave() noexcept { return move(inside, outside); }
 
-    /// Any thread: if the other one is inside, it is left behind.
+    /// Any thread: abandons the other thread if it is inside the driver.
     bool forsake() noexcept { return move(inside, forsaken); }
     /// Any thread.
     bool is_forsaken() const noexcept { return place_.load(std::memory_order_acquire) == forsaken; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outputs of a rate group side by side: a frame holds one value of each, those of one activation.
+// Frames of the outputs of a rate group: a frame holds the values of all outputs at one activation.
 #pragma once
 
 #include "graph/node/value.hpp"
@@ -21,8 +21,8 @@ struct FrameColumn {
 
 struct FrameLayout {
     std::vector<FrameColumn> columns;
-    std::size_t bytes = 0;  ///< from one frame to the next
-    std::size_t used = 0;   ///< of them
+    std::size_t bytes = 0;  ///< distance from one frame to the next
+    std::size_t used = 0;   ///< of `bytes`, without padding
 
     /// Adds an output at the end and returns its offset.
     std::size_t add(const std::string& port, const ValueType& type) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's side of graph/node/setup.hpp: opens what the nodes ask for and owns it.
+// The engine's implementation of graph/node/setup.hpp: opens and owns the resources that nodes request.
 #pragma once
 
 #include "engine/build/group_program.hpp"
@@ -21,14 +21,14 @@
 
 namespace tactus::io {
 
-/// A device of a run that is over, as a take remembers it.
+/// A device of a finished run, as recorded in a take.
 struct RecordedDevice {
     std::string name;
     DeviceInfo info;
-    DeviceSample first;  ///< what nodes saw when they were prepared
+    DeviceSample first;  ///< sample that nodes received when they were prepared
 };
 
-/// What a node asked for.
+/// The resources that a node requested.
 struct HostUses {
     std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
     std::vector<SoundChannel*> sounds;
@@ -36,18 +36,18 @@ struct HostUses {
     std::vector<const RecordStream*> streams;
 };
 
-/// Where sound goes in a live run.
+/// Destination of sound in a live run.
 struct AudioChoice {
     std::string
         device;  ///< "": the default card, a file when there is none; "file"; "none"; "default" or part of a name
-    double margin_s = 0.01;  ///< sound that waits for the card in case a thread is late, s
+    double margin_s = 0.01;  ///< buffered sound in case a thread is late, s
 
     bool is_required() const { return !device.empty() && device != "file" && device != "none"; }
 };
 
 class EngineHost : public Host, public SoundInputs {
 public:
-    /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
+    /// Without a folder nothing is recorded. `live` allows real devices and sound cards.
     EngineHost(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
 
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
@@ -57,44 +57,46 @@ public:
     const SoundInPort& listen(const SoundPlace& place, Flicks period,
                               std::optional<std::vector<float>> instead) override;
 
-    /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
+    /// Starts a plan: requests of nodes prepared from now on belong to it. Their resources are opened separately while
+    /// the run goes on.
     void begin(const patch::Patch& patch);
-    /// The channels that nodes of the plan will ask for: a card is opened with all of its own.
+    /// Announces the channels that nodes of the plan will request, so that a card is opened with all of its channels.
     void expect_sounds(const compile::Plan& plan);
-    /// Channels of nodes that go on; the others are given to nodes that are prepared anew.
+    /// Reserves the channels of surviving nodes; the others are available to newly prepared nodes.
     void keep_sounds(std::vector<SoundChannel*> in_use) { sounds_in_use_ = std::move(in_use); }
-    /// Which group the node being prepared belongs to, where it is in the patch, and where to note what it asks for.
+    /// Sets the context of the node that is prepared next: its group, its location in the patch, and the record of its
+    /// requests.
     void prepare_for(int group, Flicks period, const SourceLocation& where, HostUses& uses) {
         group_ = group;
         period_ = period;
         node_where_ = where;
         uses_ = &uses;
     }
-    /// Puts what was opened since `begin` to use; control thread.
+    /// Activates the resources opened since `begin`; control thread.
     void keep();
     /// Closes what was opened since `begin`.
     void discard();
     /// Devices opened since `begin`.
     const std::vector<std::unique_ptr<build::DeviceSlot>>& opened_devices() const { return opened_.devices; }
-    /// Any thread: if a driver is being opened, whoever does it is left behind, and gets an error when it comes back.
+    /// Any thread: abandons the thread that is opening a driver, if any. That thread gets an error when it returns.
     bool forsake_driver() noexcept { return driver_.forsake(); }
-    /// Looks after devices that have a process of their own. True when one is lost: then no force reaches its hand, and
+    /// Services devices that have their own process. Returns true if one is lost: then no force reaches its hand, and
     /// the run may end. Control thread of a live run, many times a second.
     bool service_devices();
 
-    /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
+    /// Replaces devices by stand-ins for those of a finished run, whose samples are in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
-    /// What was heard is in the log that is replayed.
+    /// Sound input comes from the log that is replayed.
     void hear_from_log() { hears_from_log_ = true; }
-    /// Instead of opening hardware, stand-ins that state what the patch says of it; a notice says so.
+    /// Replaces hardware by stand-ins with the properties that the patch declares, and adds a notice of it.
     void describe_hardware() { describes_hardware_ = true; }
 
-    // Of the run; control thread.
+    // State of the run; control thread.
     std::vector<std::unique_ptr<build::DeviceSlot>> devices;
     std::vector<std::unique_ptr<Stream>> streams;
     std::vector<std::unique_ptr<SoundCard>> cards;
     std::vector<std::unique_ptr<SoundHeard>> heard;
-    std::vector<std::string> notices;  ///< what the user should know once: "no sound card: …"
+    std::vector<std::string> notices;  ///< messages for the user, each reported once: "no sound card: …"
 
 private:
     std::string device_name(const std::string& wanted, const SourceLocation& where) const;
@@ -104,7 +106,7 @@ private:
     std::unique_ptr<SoundCard> make_card(Flicks period, const SoundPlace& place) const;
     SoundCard& open_card(std::unique_ptr<SoundCard> card, const std::vector<std::string>& names);
     SoundChannel& own_channel(const StreamFormat& format, const SoundPlace& place);
-    /// The card of which nodes share channels; opens it on first use.
+    /// Returns the card whose channels nodes have in common; opens it on first use.
     SoundCard& shared_card(Flicks period, const SoundPlace& place);
     SoundChannel& shared_channel(const StreamFormat& format, const SoundPlace& place);
     void choose_source(SoundHeard& made, const SoundPlace& place, Flicks period,
@@ -123,13 +125,13 @@ private:
     std::optional<std::vector<RecordedDevice>> recorded_;
     bool describes_hardware_ = false, hears_from_log_ = false;
     Opened opened_;
-    std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
+    std::unordered_set<std::string> files_opened_, files_before_;  ///< opened since `begin`, and before
     HostUses* uses_ = nullptr;
     std::vector<SoundChannel*> sounds_in_use_;
     struct CardNames {
         std::vector<std::string> outputs, inputs;
     };
-    std::map<std::string, CardNames> channel_names_;  ///< by the text that names a card
+    std::map<std::string, CardNames> channel_names_;  ///< by the text that selects a card
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that are lost while a run lasts.
+// Detection of devices that are lost during a run.
 #pragma once
 
 #include "engine/build/group_program.hpp"
@@ -8,10 +8,11 @@
 
 namespace tactus::io {
 
-/// Looks after the process of a device that has one. Why the device is lost, or "". Control thread of a live run.
+/// Services a device that has its own process. Returns the reason if the device is lost, otherwise "". Control thread
+/// of a live run.
 std::string service_device(build::DeviceSlot& slot);
 
-/// What `service_device` said last.
+/// Returns the last result of `service_device`.
 std::string loss_of(const build::DeviceSlot& slot);
 
 }  // namespace tactus::io

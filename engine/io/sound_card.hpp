@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sound cards of a live run: signals go straight to their rings, the run's clock follows the first of them, and one that
-// asks for nothing any more is noticed.
+// Sound cards of a live run. Signals are written directly to their rings, the run's clock follows the first card, and a
+// card that stops requesting frames is detected.
 #pragma once
 
 #include "dsp/control/card_follower.hpp"
@@ -34,42 +34,41 @@ private:
     int index_;
 };
 
-/// How a card is used.
+/// Configuration of a card.
 struct CardUse {
     Flicks period = 0;
-    double margin_s = 0.0;  ///< sound that waits in the ring
-    int group = 0;  ///< only its thread writes
+    double margin_s = 0.0;  ///< buffered sound in the ring
+    int group = 0;  ///< the only group whose thread writes
     std::string wanted = {};  ///< the text by which the card was chosen
-    bool is_shared = false;  ///< nodes share it, each with a channel of its own
+    bool is_shared = false;  ///< several nodes write to it, each to its own channel
     int max_frames = 256;  ///< most samples per write
-    bool is_played = true;  ///< false: at first, nodes only hear it
+    bool is_played = true;  ///< false: initially, nodes only record from it
 };
 
 class SoundCard {
 public:
-    /// `inputs`: what the card's callback fills, or null.
+    /// `inputs`: ring that the card's callback fills, or null.
     SoundCard(std::unique_ptr<AudioSink> sink, CardUse use, std::shared_ptr<audio::InputRing> inputs = {});
 
-    /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
+    /// Thread of the group. Activations that never ran become silence; samples that do not fit are dropped and counted.
     bool write(int channel, std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept;
 
-    /// Thread of the group. What channel `channel` hears for activations first … first + count − 1, which were due at
+    /// Thread of the group. Reads channel `channel` for activations first … first + count − 1, which were due at
     /// `due_ns`; wait-free. While no node writes, silence is played, so that the clock follows the card.
     void hear(int channel, std::int64_t first, float* into, std::size_t count, std::int64_t due_ns) noexcept;
 
     // Control thread.
     int inputs() const { return input_ ? input_->channels() : 0; }
     const CardInput* input() const { return input_ ? &*input_ : nullptr; }
-    /// Opens the card with one channel per name. Programs that connect sound show the names that are not empty. Throws
-    /// Error.
+    /// Opens the card with one channel per name. Patch bays show the names that are not empty. Throws Error.
     void open(const std::vector<std::string>& names);
     int channels() const { return gather_.channels(); }
     /// `index`: from 0, below `channels()`.
     SoundChannel& channel(int index);
-    /// The first frame waits for these channels. Before the first sample.
+    /// The first frame requires these channels. Call before the first sample.
     void expect(int index) { gather_.expect(index); }
-    /// Looks at what the card did. Trims `clock`, when given one, where it is at `now_ns`. `reached`: logical time. True at the moment when the card turns out to be lost:
-    /// no callback came for `longest_silence_ns`.
+    /// Checks the state of the card. Trims `clock`, if given, by its value at `now_ns`. `reached`: logical time.
+    /// Returns true once when the card is found to be lost: no callback came for `longest_silence_ns`.
     bool service(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock);
     void close() { sink_->close(); }
 
@@ -96,11 +95,11 @@ private:
     std::vector<std::unique_ptr<SoundChannel>> listed_;
     std::optional<CardInput> input_;
     // Thread of the group:
-    bool is_played_;  ///< a node wrote since the call before was heard
-    std::int64_t heard_ = -1;  ///< first activation of the call that is heard
+    bool is_played_;  ///< a node has written since the previous call was read
+    std::int64_t heard_ = -1;  ///< first activation of the call that is read
     ChannelGather gather_;  // thread of the group
     control::CardFollower follower_;
-    std::atomic<std::int64_t> shift_{0};  // index of the activation that is frame 0 of the ring
+    std::atomic<std::int64_t> shift_{0};  // activation of frame 0 of the ring
     std::int64_t expected_ = -1;  // thread of the group
     // Control thread.
     std::uint64_t written_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A channel that a node hears, and where its samples come from.
+// A sound input of a node, and the source of its samples.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -19,8 +19,8 @@ struct SoundHeard {
     int channel = 0;  ///< from 0
     std::vector<float> file;  ///< from activation 0 on
 
-    /// Fills the port with activations first … first + count − 1, which were due at steady time `due_ns`. Group's thread;
-    /// wait-free.
+    /// Fills the port for activations first … first + count − 1, which were due at steady time `due_ns`. Group's
+    /// thread; wait-free.
     void fill(std::int64_t first, int count, std::int64_t due_ns) noexcept;
 };
 

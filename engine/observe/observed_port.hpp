@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run's side of an observer: where the group's thread leaves copies of what one output gives. It never waits, never
-// allocates and keeps no references; a reader that is too slow loses values.
+// The run's side of an observer: the buffer into which the group's thread copies the values of one output. The writer
+// never waits, never allocates and keeps no references; a reader that is too slow loses values.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -17,11 +17,11 @@
 
 namespace tactus::observe {
 
-/// How closely an output is looked at.
+/// Level of detail at which an output is observed.
 enum class Watch : std::uint8_t {
     nothing,
-    latest,  ///< the newest value; for a bone, whatever changed
-    every,  ///< every value as well, as long as somebody fetches them in time
+    latest,  ///< the newest value; for a bone, all changes
+    every,  ///< every value as well, if they are fetched in time
 };
 
 /// The newest value of an output: one writer, any number of readers; nobody waits. Wait-free for the
@@ -35,11 +35,11 @@ public:
     void write(const std::uint64_t* words) noexcept {
         const std::uint64_t before = sequence_.load(std::memory_order_relaxed);
         sequence_.store(before + 1, std::memory_order_relaxed);
-        // Each word is released: who reads a new one also sees that the sequence had become odd.
+        // Each word is released: a reader that sees a new word also sees the odd sequence number.
         for (std::size_t i = 0; i < words_.size(); ++i) words_[i].store(words[i], std::memory_order_release);
         sequence_.store(before + 2, std::memory_order_release);
     }
-    /// False when nothing was ever written, or when the writer was always in the way.
+    /// Returns false if nothing was ever written, or if the writer interfered in every attempt.
     bool read(std::uint64_t* words) const noexcept;
 
 private:
@@ -47,16 +47,16 @@ private:
     std::vector<std::atomic<std::uint64_t>> words_;
 };
 
-/// Finds the bricks of a bone that changed and sends them through a ring. What does not fit goes later.
+/// Detects the changed bricks of a bone and sends them through a ring. Bricks that do not fit are sent later.
 class BoneFeed {
 public:
     explicit BoneFeed(const volume::BoneSnapshot& initial);
 
-    /// The writer's, once per activation. Wait-free. Returns false when the ring was full.
+    /// For the writer, once per activation. Wait-free. Returns false if the ring was full.
     bool see(std::int64_t index, const volume::BoneSnapshot& now, bool was_watched, Ring<std::byte>& ring) noexcept;
 
-    /// What stands in the ring: a brick (`brick` ≥ 0) with its samples behind it, or, at −1, that all bricks of this
-    /// version have been sent.
+    /// An entry of the ring: a brick (`brick` ≥ 0), followed by its samples, or −1: all bricks of this version have
+    /// been sent.
     struct Piece {
         std::int64_t index = 0, version = 0, brick = -1;
     };
@@ -69,10 +69,10 @@ public:
 private:
     void mark(std::uint32_t brick) noexcept;
 
-    // Resending everything takes so many bricks per activation at most, on top of those that just changed.
+    // Largest number of bricks per activation for resending everything, in addition to those that just changed.
     static constexpr std::size_t catching_up = 64;
 
-    std::vector<const float*> sent_;  // compared, never followed
+    std::vector<const float*> sent_;  // compared, never dereferenced
     std::vector<std::uint8_t> is_waiting_;
     std::vector<std::uint32_t> waiting_;
     std::size_t first_waiting_ = 0;
@@ -80,7 +80,7 @@ private:
     bool is_complete_ = false;
 };
 
-/// One output of one node of a run. Lives as long as the node; observers only borrow it.
+/// One output of one node of a run. Lives as long as the node; observers only hold a reference.
 class ObservedPort {
 public:
     struct Identity {
@@ -89,31 +89,32 @@ public:
         int max_frames = 1;
     };
 
-    /// `initial`: the value that prepare set. `lossless`: nothing is lost as long as somebody drains when asked to by
-    /// `pressing`.
+    /// `initial`: the value that prepare set. `lossless`: nothing is lost if the reader drains whenever `pressing` is
+    /// set.
     ObservedPort(Identity identity, const ValueType& type, const std::byte* initial, bool lossless,
                  std::atomic<bool>* pressing);
 
     const Identity identity;
     const ValueType& type;
 
-    /// The group's thread: the values of activations first, first + 1, …, `stride` bytes apart. Wait-free.
+    /// For the group's thread: adds the values of activations first, first + 1, …, `stride` bytes apart. Wait-free.
     void see(std::int64_t first, const std::byte* values, std::size_t count, std::ptrdiff_t stride) noexcept;
 
-    // Anyone else:
-    /// Some activation of its node was seen.
+    // For any other thread:
+    /// True after the first activation of its node.
     bool has_run() const noexcept { return has_run_.load(std::memory_order_acquire); }
     std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
-    /// Bytes of a value as it is kept: see `encode`. 0: not kept as a value.
+    /// Bytes of a stored value, see `encode`; 0 if it is not stored as a value.
     std::size_t value_size() const { return value_size_; }
-    /// The newest value into `value` (value_size bytes), and its activation. False: none yet.
+    /// Copies the newest value into `value` (value_size bytes) and its activation into `index`. Returns false if there
+    /// is none yet.
     bool latest(std::byte* value, std::int64_t& index) const noexcept;
 
     // One at a time, guarded by the observer:
     void watch(Watch how);
     Watch watched() const { return static_cast<Watch>(watch_.load(std::memory_order_relaxed)); }
 
-    /// What the reader has taken out of the ring.
+    /// An entry that the reader has taken out of the ring.
     struct Piece {
         std::int64_t index = 0;  ///< of the first value
         std::size_t count = 1;
@@ -121,7 +122,7 @@ public:
         std::int64_t version = 0, brick = -1;  ///< of a bone
         std::unique_ptr<float[]> samples;  ///< of a brick
     };
-    /// Appends what waits in the ring.
+    /// Appends the entries that are in the ring.
     template <class Queue>
     void drain(Queue& into) {
         Piece piece;
@@ -129,7 +130,7 @@ public:
     }
 
     std::unique_ptr<SeenBone> initial_bone;  ///< until an observer takes it
-    /// The shape of a body; of a scene, those of the bodies that it has from the beginning, such as a plan's fragments.
+    /// The shape of a body; for a scene, the shapes of its initial bodies, such as a plan's fragments.
     std::vector<std::shared_ptr<const SeenBody>> bodies;
     std::vector<std::byte> initial_value;  ///< encoded
 
@@ -152,7 +153,7 @@ private:
     std::atomic<std::uint64_t> lost_{0};
     std::unique_ptr<LatestValue> latest_;
     std::unique_ptr<BoneFeed> feed_;
-    bool was_watched_ = true;  // group's thread: every version up to here was compared
+    bool was_watched_ = true;  // group's thread: every version so far was compared
     std::unique_ptr<Ring<std::byte>> owned_ring_;
     std::atomic<Ring<std::byte>*> ring_{nullptr};
     std::vector<std::byte> packed_;

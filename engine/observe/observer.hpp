@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an outsider, such as a viewer, sees a run: copies of what chosen outputs give. A run with an observer computes the
-// same bits at the same times as one without; an observer that is slow, or never looks at all, only misses values.
+// Observation of a run from outside, as by a viewer: copies of the values of chosen outputs. A run with an observer
+// computes the same bits at the same times as one without; an observer that is slow or never reads only misses values.
 #pragma once
 
 #include "engine/observe/observed_port.hpp"
@@ -22,43 +22,44 @@
 
 namespace tactus::observe {
 
-/// What a value looks like from outside.
+/// The type by which an observer receives a value.
 template <class T>
 concept Observable = std::same_as<T, Pose> || std::same_as<T, Twist> || std::same_as<T, Wrench> ||
                      std::same_as<T, Vec3> || std::same_as<T, double> || std::same_as<T, bool> ||
                      std::same_as<T, float> || std::same_as<T, SeenScene> || std::same_as<T, rope::RopeShape>;
 
-/// Follows outputs by name through every edit of a run. Give it to EngineOptions::observer; it must outlive the engine's
-/// run, and may look on before, while and after. All members may be called from any thread.
+/// Follows outputs by name through every edit of a run. Give it to EngineOptions::observer. It must outlive the
+/// engine's run, and may be used before, during and after it. All members may be called from any thread.
 class Observer {
 public:
     enum class Pace : std::uint8_t {
-        live,  ///< what comes is seen when it is looked at; what is not fetched in time is lost
-        lossless,  ///< offline runs: nothing is lost, and `advance` says up to when things are seen
-        kept,  ///< the same, and all is kept: `advance` goes back, too. What was seen last is not fetched
+        live,  ///< new values are visible on the next read; values not fetched in time are lost
+        lossless,  ///< offline runs: nothing is lost, and `advance` sets the time up to which values are visible
+        kept,  ///< as lossless, and the history is kept, so that `advance` can go back; without `fetch`
     };
     explicit Observer(Pace pace = Pace::live) : pace_(pace) {}
 
-    /// An output that there is to see.
+    /// An output that can be observed.
     struct Port {
         std::string name;  ///< "node.port"
         const ValueType* type = nullptr;
         Flicks period = 0;
     };
-    /// In the order in which nodes were made; with an edit on its way, the new nodes' too.
+    /// Returns the ports in the order in which nodes were created, including the new nodes of an edit in progress.
     std::vector<Port> ports() const;
-    /// Rises when `ports` gives others: a patch can have tens of thousands.
+    /// Increases when the result of `ports` changes; copying the list is slow, as a patch can have tens of thousands of
+    /// ports.
     std::int64_t ports_version() const { return ports_version_.load(std::memory_order_relaxed); }
 
-    /// Says how closely `who` looks at an output from now on, also at one that an edit is yet to bring. Of several who
-    /// look, the closest counts. Lossless observers say so before the run.
+    /// Sets the level at which `who` observes an output from now on, also an output that a later edit will add. The
+    /// highest level of all observers applies. Lossless observers call this before the run.
     void watch(const std::string& port, Watch how, const void* who = nullptr);
 
-    /// Once per picture, before looking: takes in what has come, of logical times up to `until` when lossless.
+    /// Call once per frame, before reading: receives new values, in lossless mode those of logical times up to `until`.
     void advance(Flicks until = std::numeric_limits<Flicks>::max());
 
-    /// The newest value of a watched output; before its node has run, what it began with. None: no such output, or
-    /// one of another type. A signal is seen as the last sample (float), a scene as SeenScene.
+    /// Returns the newest value of a watched output, or its initial value before its node has run. Empty if there is no
+    /// such output or it has another type. A signal is returned as its last sample (float), a scene as SeenScene.
     template <Observable T>
     std::optional<Seen<T>> latest(const std::string& port) const {
         alignas(T) std::byte value[sizeof(T)];
@@ -68,22 +69,23 @@ public:
         std::memcpy(&seen.value, value, sizeof(T));
         return seen;
     }
-    /// Values that came since the last call, of an output watched with Watch::every. Appends; false: none came.
+    /// Appends the values since the last call, for an output watched with Watch::every. Returns false if there are
+    /// none.
     bool fetch(const std::string& port, SeenValues& into);
 
-    /// The bone of an output as of the last `advance`, or null. The object stays the same until an edit makes another
-    /// bone; its content changes in `advance` only.
+    /// Returns the bone of an output as of the last `advance`, or null. The object stays the same until an edit
+    /// replaces the bone; its content changes in `advance` only.
     std::shared_ptr<const SeenBone> bone(const std::string& port) const;
     /// The shapes of the bodies of all nodes, also of nodes that an edit adds.
     std::vector<std::shared_ptr<const SeenBody>> bodies() const;
 
     /// Memory of the kept history, bytes.
     std::size_t kept_bytes() const;
-    /// Values of an output that were lost.
+    /// Number of values of an output that were lost.
     std::uint64_t lost(const std::string& port) const;
 
-    // The engine's:
-    /// Begins to look at an output of a node that was just prepared.
+    // For the engine:
+    /// Registers an output of a node that was just prepared.
     std::shared_ptr<ObservedPort> open(ObservedPort::Identity identity, const ValueType& type,
                                        const std::byte* initial);
     /// Lossless: the rings are filling up; a thread outside of a tick should call `drain`.
@@ -91,26 +93,26 @@ public:
     void drain();
 
 private:
-    /// One port as far as it was read.
+    /// The state of reading one port.
     struct Reading {
         std::weak_ptr<ObservedPort> port;
-        std::vector<ObservedPort::Piece> waiting;  // taken out of the ring; the first `used` are done
+        std::vector<ObservedPort::Piece> waiting;  // taken out of the ring; the first `used` are processed
         std::size_t used = 0;
-        std::size_t used_of_first = 0;  // values of the first piece that are done
-        std::vector<std::byte> value;  // lossless: as of `advance`
+        std::size_t used_of_first = 0;  // processed values of the first piece
+        std::vector<std::byte> value;  // in lossless mode: as of `advance`
         Flicks when = 0;
         bool was_watched = false;  // values may wait in the ring
-        bool has_begun = false;  // something was applied
+        bool has_begun = false;  // some value was applied
         SeenValues gathered;
         std::shared_ptr<SeenBone> bone;
         std::vector<ObservedPort::Piece> unfinished;  // bricks whose version is not complete
-        std::unique_ptr<PastValues> past_values;  // if kept, either of them
+        std::unique_ptr<PastValues> past_values;  // in kept mode, one of the two
         std::shared_ptr<PastBone> past_bone;
     };
     struct Named {
         std::map<const void*, Watch> wishes;
-        Watch watch = Watch::nothing;  // the closest of them
-        std::vector<Reading> readings;  // an edit can make a node anew: the newest last
+        Watch watch = Watch::nothing;  // the highest level of all observers
+        std::vector<Reading> readings;  // an edit can create a node again: the newest last
     };
 
     template <class T>
@@ -130,8 +132,8 @@ private:
 
     const Pace pace_;
     mutable std::mutex lock_;  // never taken in a tick
-    std::map<std::string, Named> named_;  // for ever
-    std::vector<std::map<std::string, Named>::iterator> order_;  // those that are there
+    std::map<std::string, Named> named_;  // entries are never removed
+    std::vector<std::map<std::string, Named>::iterator> order_;  // those that exist now
     std::atomic<std::int64_t> ports_version_{0};
     std::atomic<bool> pressing_{false};
 };

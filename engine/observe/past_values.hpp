@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All values of an output in a run, by logical time. An observer can look at any instant, in any order.
+// History of an output's values in a run, by logical time. An observer can read any instant, in any order.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -14,14 +14,14 @@
 
 namespace tactus::observe {
 
-/// Values of one size. Only changes are stored. When they would take too much memory, every second one is dropped.
+/// Values of one size. Only changes are stored. When they would exceed the memory limit, every second value is dropped.
 class PastValues {
 public:
     explicit PastValues(std::size_t value_size) : size_(value_size) {}
 
-    /// Later than all before.
+    /// `when` must be later than all previous times.
     void add(Flicks when, const std::byte* value);
-    /// The last at or before a time: its time, and the value into `value`. None: there was none yet.
+    /// Copies the last value at or before a time into `value` and returns its time. Empty if there is none.
     std::optional<Flicks> at(Flicks until, std::byte* value) const;
     std::size_t bytes() const { return values_.size() + when_.size() * sizeof(Flicks); }
 
@@ -31,19 +31,20 @@ private:
     void thin_out();
 
     std::size_t size_;
-    Flicks spacing_ = 0;  ///< values closer to the one before are left out
+    Flicks spacing_ = 0;  ///< values closer than this to the previous one are dropped
     std::vector<Flicks> when_;
     std::vector<std::byte> values_;
 };
 
-/// The versions of a bone's bricks. They own their samples; a bone that shows them refers to these.
+/// The versions of a bone's bricks. It owns their samples; a bone set by `show` refers to them.
 class PastBone {
 public:
-    /// Adds the bricks of a publication, and at its end marks it as complete.
+    /// Adds the bricks of a publication, and marks the publication as complete at its end.
     void add(Flicks when, ObservedPort::Piece& piece);
-    /// Makes `bone` what it was at a time; what changes by that counts as one update. Its own bricks are the first.
+    /// Sets `bone` to its state at a time; all resulting changes count as one update. The bone's own bricks are the
+    /// initial state.
     void show(Flicks until, SeenBone& bone) const;
-    /// Something was published at or before.
+    /// True if something was published at or before `until`.
     bool has_begun(Flicks until) const { return !published_.empty() && published_.front().when <= until; }
     std::size_t bytes() const { return bytes_; }
 
@@ -59,7 +60,7 @@ private:
 
     std::vector<Publication> published_;
     std::vector<std::vector<Version>> bricks_;  ///< by brick, in order of time
-    std::vector<std::uint32_t> changing_;  ///< those that have versions
+    std::vector<std::uint32_t> changing_;  ///< those that have more than the initial version
     std::vector<ObservedPort::Piece> unfinished_;
     std::size_t bytes_ = 0;
 };

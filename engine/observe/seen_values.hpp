@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an observer gets from a run: copies that belong to the observer. Nothing is shared with the run.
+// The values that an observer receives from a run. They are copies; no memory is common with the run.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -18,17 +18,17 @@
 
 namespace tactus::observe {
 
-/// A value and the logical time of the activation that made it.
+/// A value and the logical time of the activation that computed it.
 template <class T>
 struct Seen {
     T value;
     Flicks when = 0;
 };
 
-/// Values of a port one after another, as numbers. Activations that were lost are missing.
+/// Consecutive values of a port, as numbers. Activations that were lost are missing.
 struct SeenValues {
     std::vector<Flicks> when;     ///< of each value
-    std::vector<double> columns;  ///< those of ValueType::to_columns, value after value
+    std::vector<double> columns;  ///< as from ValueType::to_columns, value after value
     std::size_t per_value = 1;    ///< numbers of one value
 };
 
@@ -38,7 +38,7 @@ struct SeenScene {
         std::uint64_t body = 0;  ///< content_hash of the Body
         Pose pose;
         int unit = -1;  ///< objects of one unit move together; -1: none
-        int hangs_on = -1;  ///< the object that it was fitted to; -1: none
+        int hangs_on = -1;  ///< the object to which it was fitted; -1: none
         std::int64_t stands = 0;  ///< 1: placed: locked, or fitted to another
     };
     std::uint64_t count = 0;
@@ -47,10 +47,10 @@ struct SeenScene {
 
 /// The shape of a body, in its own frame, m.
 struct SeenBody {
-    std::string port;  ///< "node.port" that gives it
+    std::string port;  ///< "node.port" that outputs it
     std::uint64_t content_hash = 0;
     Pose home;
-    volume::Grid distance;  ///< empty when it has no distance field
+    volume::Grid distance;  ///< empty if it has no distance field
     std::vector<Vec3> points;
     std::vector<std::uint8_t> labels;  ///< per point, see surface_label
 };
@@ -61,12 +61,12 @@ struct SeenBone {
     volume::BoneRoot root;  ///< its bricks, and `layout`
     std::int64_t version = 0, first_version = 0;
     Flicks when = 0;
-    std::uint64_t update = 1;  ///< rises whenever bricks change
-    std::vector<std::uint64_t> changed_at;  ///< per brick: the update that changed it last; 1: as it began
-    std::vector<std::unique_ptr<float[]>> distance, density;  ///< own copies, null where none is stored
-    std::shared_ptr<const void> borrowed;  ///< keeps bricks of `root` that are not its own
+    std::uint64_t update = 1;  ///< increases whenever bricks change
+    std::vector<std::uint64_t> changed_at;  ///< per brick: the update that last changed it; 1: initial
+    std::vector<std::unique_ptr<float[]>> distance, density;  ///< own copies; null if none is stored
+    std::shared_ptr<const void> borrowed;  ///< owner of the bricks of `root` that are not copies
 
-    /// Copies everything. Throws std::bad_alloc at most.
+    /// Copies everything. Throws only std::bad_alloc.
     explicit SeenBone(const volume::BoneSnapshot& from);
     SeenBone(const SeenBone&) = delete;
     SeenBone& operator=(const SeenBone&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each group tells about its own running. Written by the group's thread, read by others at any time.
+// Timing statistics of each group. Written by the group's thread, read by others at any time.
 #pragma once
 
 #include <array>
@@ -22,13 +22,13 @@ public:
         if (value > max_.load(std::memory_order_relaxed)) max_.store(value, std::memory_order_relaxed);
     }
     std::uint64_t max_ns() const noexcept { return max_.load(std::memory_order_relaxed); }
-    /// Adds the counts of another one; nobody writes to either meanwhile.
+    /// Adds the counts of another histogram; neither may be written meanwhile.
     void merge(const DurationHistogram& other) noexcept {
         for (std::size_t i = 0; i < bin_count; ++i) bins_[i] += other.bins_[i].load(std::memory_order_relaxed);
         if (other.max_ns() > max_ns()) max_.store(other.max_ns(), std::memory_order_relaxed);
     }
 
-    /// Upper edge of the bin that holds the quantile, in ns; 0 when nothing was counted.
+    /// Returns the upper edge of the bin that contains the quantile, in ns; 0 if nothing was counted.
     double quantile_ns(double q) const noexcept {
         std::uint64_t total = 0;
         for (const auto& bin : bins_) total += bin.load(std::memory_order_relaxed);
@@ -64,13 +64,13 @@ private:
 /// Why a group was late.
 enum class LateCause : std::uint8_t {
     woken_late,  ///< the system woke its thread after the time asked for
-    preempted,   ///< its thread was woken in time and then kept from running
+    preempted,   ///< its thread was woken in time and then did not get the processor
     ran_long,    ///< its nodes needed the time
 };
 inline constexpr std::size_t late_causes = 3;
 
-/// What made a call late: the largest of its late start (for which `started` is to blame), the time it stood still and
-/// the time it computed. All in ns.
+/// Returns the main cause of a late call: the largest of its late start (whose cause is `started`), the time it was
+/// preempted and the time it computed. All in ns.
 constexpr LateCause blame(std::int64_t late, LateCause started, std::int64_t wall, std::int64_t computed) noexcept {
     const std::int64_t stood = wall - computed;
     if (computed >= stood && computed >= late) return LateCause::ran_long;
@@ -109,14 +109,14 @@ struct NodeTelemetry {
 
 struct GroupTelemetry {
     std::atomic<std::int64_t> ticks{0};    ///< activations that ran
-    std::atomic<std::int64_t> misses{0};   ///< activations that read an older value than the schedule says
+    std::atomic<std::int64_t> misses{0};   ///< activations that read an older value than scheduled
     std::atomic<std::int64_t> skipped{0};
-    std::atomic<std::int64_t> dropped{0};  ///< publications that found no room
-    std::atomic<std::int64_t> lost_events{0};  ///< that found no room, here or on their way to others
+    std::atomic<std::int64_t> dropped{0};  ///< publications dropped for lack of room
+    std::atomic<std::int64_t> lost_events{0};  ///< events dropped for lack of room, here or on the way to other groups
     LateCounts skip_causes;   ///< of `skipped`, live only
-    LateCounts withheld;      ///< values of this group that others went without, by why it was late; live only
-    mutable std::atomic<std::int64_t> awaited{0};  ///< those not yet explained; written by the groups that miss them
-    std::atomic<double> force_N{0.0};      ///< on the hand, of the last tick; of several the largest
+    LateCounts withheld;      ///< values of this group that others missed, by the cause of the delay; live only
+    mutable std::atomic<std::int64_t> awaited{0};  ///< missed values not yet explained; written by their consumers
+    std::atomic<double> force_N{0.0};      ///< on the hand, in the last tick; with several devices the largest
     mutable std::atomic<double> most_force_N{0.0};  ///< since the last `take_most_force`
     DurationHistogram execution;           ///< ns per call
     DurationHistogram lateness;            ///< ns from release to start, live only
@@ -124,11 +124,11 @@ struct GroupTelemetry {
     /// Thread of the group; wait-free.
     void note_force(double newtons) noexcept {
         force_N.store(newtons, std::memory_order_relaxed);
-        // Whoever takes the largest meanwhile is told of it now or the next time, never not at all.
+        // A concurrent `take_most_force` returns this value now or at its next call.
         if (newtons > most_force_N.load(std::memory_order_relaxed))
             most_force_N.store(newtons, std::memory_order_relaxed);
     }
-    /// Adds the counts of another group; both have ended.
+    /// Adds the counts of another group; both must have ended.
     void merge(const GroupTelemetry& other) noexcept {
         ticks += other.ticks;
         misses += other.misses;
@@ -140,7 +140,7 @@ struct GroupTelemetry {
         execution.merge(other.execution);
         lateness.merge(other.lateness);
     }
-    /// The largest force since the call before; one thread.
+    /// Returns the largest force since the previous call; one thread.
     double take_most_force() const noexcept { return most_force_N.exchange(0.0, std::memory_order_relaxed); }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decisions by the clock: on a virtual one, where nothing is ever late, and in real time, where they go to the log.
+// Decisions by the clock: on a virtual clock, where nothing is late, or in real time, where they are logged.
 #pragma once
 
 #include "engine/run/decisions.hpp"
@@ -7,7 +7,7 @@
 
 namespace tactus::run {
 
-/// Changes take effect at the logical time that they were given.
+/// Changes take effect at their given logical time.
 class ClockDecisions : public Decisions {
 public:
     /// `changes` is filled by the control thread, in the order of time. `period` of the group, flicks.
@@ -34,7 +34,7 @@ private:
 /// The virtual clock: groups wait for each other.
 class OfflineDecisions final : public ClockDecisions {
 public:
-    /// `pause`: when forces are held off, because a parameter is set that cannot ramp; null: never.
+    /// `pause`: the times at which forces are suspended because a parameter is set that cannot ramp; null: never.
     OfflineDecisions(DecisionLog& log, Flicks period, ChangeQueue& changes, const PauseWindow* pause = nullptr)
         : ClockDecisions(log, period, changes), pause_(pause) {}
 
@@ -46,7 +46,7 @@ private:
     const PauseWindow* pause_;
 };
 
-/// Real time: nobody waits. A value that is not there is missed, one that finds no room is dropped.
+/// Real time: no group waits. A value that is not available is missed; a value that does not fit is dropped.
 class LiveDecisions final : public ClockDecisions {
 public:
     LiveDecisions(DecisionLog& log, Flicks period, ChangeQueue& changes, const PauseWindow& pause)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects what timing decided in each group and writes it to a take, to a log file, or to both.
+// Collects the timing decisions of each group and writes them to a take, to a log file, or to both.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -14,27 +14,27 @@
 
 namespace tactus::run {
 
-/// One thread at a time.
+/// For one thread at a time.
 class Journal {
 public:
     explicit Journal(take::TakeWriter* take) : take_(take) {}
 
-    /// Writes a log file from now on, beside the take. Throws Error.
+    /// Starts a log file in addition to the take. Throws Error.
     void open(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds);
-    /// Logs the decisions of a group, if anything is written. Before its thread starts.
+    /// Logs the decisions of a group, if a take or a log file is written. Before its thread starts.
     void attach(GroupRuntime& group);
-    /// The group is over: its ring is given back.
+    /// Frees the ring of a group that has ended.
     void detach(GroupRuntime& group);
-    /// Writes what the groups have decided by now.
+    /// Writes the decisions that the groups have made so far.
     void drain(const std::vector<std::shared_ptr<GroupRuntime>>& groups);
     /// Completes the log file.
     void close();
-    /// The log file stays as a part; its end is missing.
+    /// Keeps the log file as incomplete, without its end.
     void abandon() { file_.reset(); }
-    /// Nothing more goes to the take.
+    /// Stops writing to the take.
     void forget_take() { take_ = nullptr; }
     bool is_used() const { return !rings_.empty(); }
-    /// Why the log file is not complete; empty: it is.
+    /// Reason why the log file is incomplete; empty if it is complete.
     const std::string& loss() const { return loss_; }
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wires from one group to another: rings of plain slots, guarded by the progress words of both groups. When a plan
-// takes over from another, a link may continue one of the old plan: values published before the switch are still read
+// The wires from one group to another: rings of slots, guarded by the progress counters of both groups. When a plan
+// replaces another, a link may continue one of the previous plan: values published before the switch are still read
 // from there.
 #pragma once
 
@@ -19,30 +19,30 @@ namespace tactus::run {
 
 class GroupRuntime;
 
-/// One wire between two groups. Both groups use its ring; the rest belongs to the consumer.
+/// One wire between two groups. Both groups use its ring; all other members belong to the consumer.
 struct LinkWire {
     const ValueType* type = nullptr;
     const Output* source = nullptr;
-    Input* target = nullptr;   ///< or null, and then:
+    Input* target = nullptr;   ///< or null; then:
     Param* param = nullptr;
     patch::WireMode mode = patch::WireMode::hold;
     LinkWire* before = nullptr;                ///< the same wire in the link that this one continues
-    bool starts_from_output = true;            ///< index −1 is what prepare set; else the type's default
+    bool starts_from_output = true;            ///< index −1 is the value from prepare; otherwise the type's default
     std::vector<std::byte> ring;               ///< depth values
     std::vector<std::byte> current, previous;  ///< values of the used index and of the one before it
-    std::vector<std::byte> glide;  ///< one value per activation of a call; when it may change within a call
-    std::vector<std::byte> batch;  ///< `batch`: the values of a call, and when they were made
+    std::vector<std::byte> glide;  ///< one value per activation of a call, if it may change within a call
+    std::vector<std::byte> batch;  ///< for `batch`: the values of a call and their times
     std::vector<Flicks> batch_times;
     int batch_count = 0;           ///< in `batch`
-    std::vector<int> batch_counts;  ///< per activation of a call; when they may come within a call, and of events
-    std::string name;  ///< of events: that of the output
-    int delay = 0;     ///< of events: activations of the producer
-    /// Of events: ends that were dropped with what had no room, and how many others were. They go with the next that
-    /// has room. The producer's.
+    std::vector<int> batch_counts;  ///< per activation of a call; for values that come within a call, and for events
+    std::string name;  ///< for events: name of the output
+    int delay = 0;     ///< for events: activations of the producer
+    /// For events: `end` events of publications that did not fit, and the number of other events dropped with them.
+    /// They are sent with the next publication that fits. Used by the producer.
     std::unique_ptr<Events> carried;
 
     bool brings_events() const noexcept { return carried != nullptr; }
-    /// Points an input at the values.
+    /// Points an input to the values.
     void point(Input& input, Flicks producer_period) const;
 
     std::byte* slot(std::int64_t index, std::int64_t depth) {
@@ -50,17 +50,18 @@ struct LinkWire {
     }
 };
 
-/// All wires of one latency from one group to another. They are published and read together.
+/// All wires of equal latency from one group to another. They are published and read together.
 class Link {
 public:
     const GroupRuntime *producer = nullptr, *consumer = nullptr;
     int id = 0;
     Flicks producer_period = 0, consumer_period = 0, latency = 0;
-    /// Values come so often that one call of the consumer, an audio group, reads several. Else calls are cut where
-    /// another value is due.
+    /// True if values change so often that one call of the consumer, an audio group, reads several. Otherwise calls are
+    /// split where a new value is due.
     bool changes_within_calls = false;
     std::vector<LinkWire> wires;
-    /// The link of the plan before that this one continues. It must live until `settled` and one call of the producer.
+    /// The link of the previous plan that this one continues. It must live until `settled` and one call of the
+    /// producer.
     Link* continued = nullptr;
 
     /// The longest calls of both groups, in activations.
@@ -75,26 +76,27 @@ public:
     /// a repetition in longer calls has room wherever the live run had, also after publications that were dropped.
     void prepare(Flicks slack, CallLengths live, CallLengths here, std::int64_t first = 0);
 
-    /// Index that consumer activation `j` reads when all is in time.
+    /// Index that consumer activation `j` reads when nothing is late.
     std::int64_t wanted(std::int64_t j) const {
         return compile::source_index(j, consumer_period, latency, producer_period);
     }
-    /// First activation after `j` that wants another index.
+    /// First activation after `j` that reads another index.
     std::int64_t window_end(std::int64_t j) const { return first_after(wanted(j)); }
-    /// First activation that wants an index after `index`.
+    /// First activation that reads an index after `index`.
     std::int64_t first_after(std::int64_t index) const {
         return ceil_div((index + 1) * producer_period + latency, consumer_period);
     }
-    /// Live, the most activations of a call of the consumer, so that the producer has time for what the last one reads.
+    /// In live runs: largest number of activations per call of the consumer, so that the producer has time to compute
+    /// the last one's value.
     std::int64_t longest_call() const { return longest_call_; }
 
     // Producer's side.
-    /// The producer publishes here from `index` on. Wait-free.
+    /// Publications here start at `index`. Wait-free.
     void begin_at(std::int64_t index) noexcept;
     /// True when the slots of indices first … first + count − 1 are released. Wait-free.
     bool has_room(std::int64_t first, int count) const noexcept {
         const std::int64_t oldest = oldest_.load(std::memory_order_acquire);
-        // As long as nobody stood still, slots are taken in turn.
+        // Without gaps, slots are used in turn.
         if (first + count - 1 - depth_ < std::max(oldest, first_.load(std::memory_order_relaxed) - 1)) return true;
         for (int i = 0; i < count; ++i)
             if (const std::int64_t there = stamp(first + i).load(std::memory_order_relaxed);
@@ -102,61 +104,62 @@ public:
                 return false;
         return true;
     }
-    /// Copies the outputs' values into the slots. The group's progress word publishes them. Returns how many events are
-    /// lost. Wait-free.
+    /// Copies the outputs' values into the slots. The group's progress counter publishes them. Returns the number of
+    /// dropped events. Wait-free.
     std::int64_t publish(std::int64_t first, int count) noexcept;
-    /// Instead of `publish`: nothing is published, but the ends of events are kept for the next time. Returns how many
-    /// events are lost. Wait-free.
+    /// Instead of `publish`: publishes nothing, but keeps the `end` events for the next time. Returns the number of
+    /// dropped events. Wait-free.
     std::int64_t drop(int count) noexcept;
-    /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
+    /// Smallest version of `output` that the consumer may still use, or INT64_MAX if this link carries none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
-    /// From the next publication on, the values of these wires (`bits`: a set of `bit_of`) are checked. A parameter keeps its
-    /// last value when a wire brings one that is not finite, so wires to parameters do not count. Any thread; wait-free.
+    /// Checks the values of these wires (`bits`: a set of `bit_of`) from the next publication on. Wires to parameters
+    /// are exempt, because a parameter keeps its last value when the new one is not finite. Any thread; wait-free.
     void watch(std::uint64_t bits) noexcept { watched_.fetch_or(bits, std::memory_order_relaxed); }
-    /// One of the watched wires brought a value that is not finite, and the consumer may still read it. Any thread;
-    /// wait-free.
+    /// True if one of the watched wires has a value that is not finite and that the consumer may still read. Any
+    /// thread; wait-free.
     bool is_unusable(std::uint64_t bits) const noexcept {
         return (unusable_.load(std::memory_order_relaxed) & bits) != 0;
     }
-    /// The wires from the 63rd on share a bit.
+    /// Wires from the 63rd on have a common bit.
     static constexpr std::uint64_t bit_of(std::size_t wire) {
         return std::uint64_t{1} << std::min<std::size_t>(wire, 63);
     }
 
-    /// A wire of this link, or of one that it continues, brings values of `output`. Before the producer uses the link.
+    /// True if a wire of this link, or of one that it continues, carries values of `output`. Call before the producer
+    /// uses the link.
     bool may_hold(const Output* output) const noexcept;
 
     // Consumer's side.
-    /// The consumer reads here from now on. Wait-free.
+    /// The consumer reads from this link from now on. Wait-free.
     void take_over() noexcept;
-    /// The consumer never reads here again. Wait-free.
+    /// The consumer will not read from this link again. Wait-free.
     void abandon() noexcept;
-    /// True when reading something older than `want` counts as a miss; false before the first publication of a link
-    /// that continues nothing.
+    /// True if reading an older index than `want` counts as a miss; false before the first publication of a link that
+    /// continues none.
     bool misses(std::int64_t want) const noexcept {
         const std::int64_t first = first_.load(std::memory_order_acquire);
         return continues_ || first == unknown || want >= first;
     }
     /// Newest index ≤ `want` and < `done` that was published and not dropped, or the one in use. Wait-free.
     std::int64_t newest_available(std::int64_t want, std::int64_t done) const noexcept;
-    /// Takes over the values of `index` (≥ the one in use) and releases what is older. Wait-free.
+    /// Moves to the values of `index` (≥ the current one) and releases older ones. Wait-free.
     void read(std::int64_t index) noexcept;
-    /// Points inputs at values for the call of activations j … j + frames − 1. Wait-free.
+    /// Points inputs to the values for the call of activations j … j + frames − 1. Wait-free.
     void deliver(std::int64_t j, int frames) noexcept;
-    /// The same for a part of a call, which reads `index`: its activations from … from + frames − 1, the first of which
-    /// has index j. What the first part reads is kept until `end_call`. Wait-free.
+    /// The same for a part of a call, which reads `index`: activations from … from + frames − 1 of the call, the first
+    /// of which has number j. Values read by the first part are kept until `end_call`. Wait-free.
     void deliver_part(std::int64_t index, std::int64_t j, int from, int frames) noexcept;
-    /// After a call in parts: only the value in use is kept. What a producer has room for then depends on the activations
-    /// that ran, not on how they were divided into calls. Wait-free.
+    /// Ends a call in parts: only the current value is kept. So the room for the producer depends on the activations
+    /// that ran, not on their division into calls. Wait-free.
     void end_call() noexcept { hold_from(used_); }
 
     std::int64_t used() const { return used_; }
     std::int64_t depth() const { return depth_; }
-    /// `continued` is read no more. Any thread.
+    /// True when `continued` is no longer read. Any thread.
     bool settled() const noexcept { return settled_.load(std::memory_order_acquire); }
 
-    /// The plan before is being destroyed; only when settled. Control thread.
+    /// Removes the reference to the previous plan, which is being destroyed; only when settled. Control thread.
     void forget_continued() { continued = nullptr; }
 
     static constexpr std::int64_t unknown = std::numeric_limits<std::int64_t>::max();
@@ -174,26 +177,26 @@ private:
     void note_unusable(std::int64_t first, int count) noexcept;
     std::int64_t publish_events(LinkWire& wire, std::int64_t first, int count) noexcept;
     void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
-    /// Lists what lies between the used index and `newest`, in order.
+    /// Lists the indices between the current one and `newest`, in order.
     void list_held(std::int64_t newest) noexcept;
-    /// Appends what is listed.
+    /// Appends the listed values.
     void gather_batch(LinkWire& wire) noexcept;
 
     std::int64_t depth_ = 0, longest_call_ = 1;
-    /// Index whose values are in each slot, −1: none. What the reader may read is published by the writer's progress.
+    /// Index whose values are in each slot, −1: none. The producer's progress counter publishes them to the reader.
     std::vector<std::atomic<std::int64_t>> stamp_;
-    std::vector<std::int64_t> held_;  ///< consumer's list of indices; empty when no wire is a batch
+    std::vector<std::int64_t> held_;  ///< consumer's list of indices; empty if no wire is a batch
     std::size_t held_count_ = 0;
     std::int64_t used_ = -1;
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
     std::atomic<std::uint64_t> watched_{0};  ///< wires that lead to a force
-    std::atomic<std::uint64_t> unusable_{0};  ///< of these, those that `is_unusable` reports
-    std::uint64_t last_unusable_ = 0;  // producer's: wires of the last publication with a value that is not finite
-    std::int64_t unusable_until_ = 0;  // producer's: index at which it counts no more
+    std::atomic<std::uint64_t> unusable_{0};  ///< those of them that `is_unusable` reports
+    std::uint64_t last_unusable_ = 0;  // producer's: wires whose last publication is not finite
+    std::int64_t unusable_until_ = 0;  // producer's: index from which it is no longer reported
     std::atomic<bool> settled_{true};
     std::atomic<std::int64_t> first_{0};  ///< first index published here; `unknown` before the producer's switch
-    alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again
+    alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< oldest index that the consumer may still read
 };
 
 }  // namespace tactus::run

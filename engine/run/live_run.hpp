@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run in real time: one thread per group on the steady clock, one per device that guards it, one that acts at once when
-// the run is to pause or to end, and a control thread that serves them. No thread waits for another.
+// A run in real time: one thread per group on the steady clock, one guarding thread per device, one that immediately
+// pauses or ends the run on request, and a control thread that serves them. No thread waits for another.
 #pragma once
 
 #include "engine/run/live_edits.hpp"
@@ -19,7 +19,7 @@
 
 namespace tactus::run {
 
-/// What a live run works with; all of it outlives the run.
+/// The components of a live run; all of them outlive the run.
 struct LiveParts {
     io::EngineHost& host;
     Timeline& timeline;
@@ -39,7 +39,8 @@ public:
 
     /// Runs to the end. Throws Error, std::system_error.
     void run();
-    /// After `run`: threads were left behind in drivers. Neither this nor its parts may ever be destroyed.
+    /// After `run`: true if threads were abandoned in drivers. Neither this object nor its parts may ever be destroyed
+    /// then.
     bool has_left_threads() const { return has_left_threads_; }
 
 private:
@@ -50,20 +51,20 @@ private:
         GroupRuntime& group;
         std::atomic<int> order{wait};
         std::atomic<bool> is_over{false};
-        std::atomic<std::int64_t> busy_since_ns{0};  ///< when its present call began; 0: it is between two
+        std::atomic<std::int64_t> busy_since_ns{0};  ///< start of its current call; 0: between two calls
         std::thread thread;
         int priority;  ///< control thread
-        // Control thread: since when it should have ended, and how far it had come then.
+        // Control thread: the time since which it should have ended, and its progress then.
         std::int64_t late_since_ns = 0, done = 0;
     };
 
     // group_thread.cpp
     void start_threads();
-    /// Makes a thread that waits for its order. Throws std::system_error when the system refuses it.
+    /// Creates a thread that waits for its start. Throws std::system_error when the system refuses it.
     void make_thread(GroupRuntime& group, int priority);
-    /// Of the groups that run: an edit may have changed what they are there for.
+    /// Sets the priorities of running groups, whose criticality an edit may have changed.
     void set_priorities(const build::Generation& generation);
-    /// Ends those that still wait.
+    /// Ends the threads that still wait for their start.
     void cancel_threads();
     void release_threads();
     void end_thread(const GroupRuntime& group);
@@ -75,16 +76,16 @@ private:
     void prepare_threads(const build::Generation& next);
     void guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devices);
 
-    /// Thread of the watchdog: a stop and a pause act from here, whatever the control thread is at.
+    /// Thread of the watchdog: a stop and a pause are started from here, even if the control thread is busy.
     void look() noexcept;
     void service();
     void service_cards();
     void service_pause();
-    /// A notice, once per group, when values of the world are late by three periods.
+    /// Adds a notice, once per group, when its world values are late by three periods.
     void note_old_values();
-    /// The groups that are no more, all at once.
+    /// Joins all groups that have ended; returns true if none is left.
     bool all_over() const;
-    /// After its end: threads that a driver keeps are left behind.
+    /// After the end: abandons threads that a driver blocks.
     void leave_blocked();
     void end_all();
     void complete();
@@ -95,14 +96,14 @@ private:
     Present present_;
     PriorityWatch priorities_;
     Watchdog watchdog_;
-    std::size_t devices_in_use_ = 0;  // of those that the watchdog looks after
+    std::size_t devices_in_use_ = 0;  // number of devices under the watchdog
     std::atomic<std::size_t> ready_{0};  // threads that wait for the start
-    std::atomic<bool> is_refused_{false};  // real-time priority
+    std::atomic<bool> is_refused_{false};  // the system refused real-time priority
     std::atomic<bool> must_end_{false};  // an error, or a lost device, ended the run
-    bool is_still_ = false;  // time stands still, or has just begun to go on
+    bool is_still_ = false;  // time is paused, or has just been resumed
     bool has_left_threads_ = false;
     std::vector<std::unique_ptr<GroupThread>> threads_;
-    std::set<std::string> noted_sources_;  // whose late values were reported
+    std::set<std::string> noted_sources_;  // sources whose late values were reported
     std::set<std::string> noted_demotions_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logical time of a run while it goes on, and when it stands still.
+// Logical time during a run, including pauses.
 #pragma once
 
 #include "dsp/core/clock.hpp"
@@ -13,15 +13,15 @@ namespace tactus::run {
 struct LiveTime {
     RunClock clock;
     PauseWindow window;
-    Flicks advanced = -1;  ///< of a run that its caller advances: how far; −1: the clock of a live run says it
+    Flicks advanced = -1;  ///< time reached by a run that its caller advances; −1: a live run, whose clock defines it
 };
 
-/// What one thread knows of it.
+/// One thread's view of the logical time.
 class Present {
 public:
     explicit Present(const LiveTime& time) : time_(time) {}
 
-    /// Logical time now: no group has begun an activation after it. 0 before the run. Wait-free.
+    /// Returns the current logical time: no group has begun a later activation. 0 before the run. Wait-free.
     Flicks now() noexcept {
         if (time_.advanced >= 0) return time_.advanced;
         has_line_ = time_.clock.try_get(line_) || has_line_;

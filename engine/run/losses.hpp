@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run could not write to its end.
+// Recordings that a run could not complete.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace tactus::run {
 /// Control thread.
 class Losses {
 public:
-    /// Losses are added to `notices`, too.
+    /// Losses are also added to `notices`.
     explicit Losses(std::vector<std::string>& notices) : notices_(notices) {}
 
-    /// Adds a loss once; an empty text is none.
+    /// Adds a loss once; ignores an empty text.
     void note(const std::string& loss);
     const std::vector<std::string>& list() const { return list_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread, or an error that says which one the system refused.
+// Creates a thread, or throws an error that names the thread that the system refused.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 namespace tactus::run {
 
-/// `what` for: "for the group 1 kHz". Throws std::system_error.
+/// `what`: text such as "for the group 1 kHz". Throws std::system_error.
 template <class Function>
 std::thread made_thread(const std::string& what, Function&& function) {
     try {

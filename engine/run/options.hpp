@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of a run, and the outcome of an edit.
+// Options of a run, and the result of an edit.
 #pragma once
 
 #include "engine/io/frames.hpp"
@@ -24,22 +24,23 @@ namespace tactus::run {
 
 class GroupRuntime;
 
-/// Says where every value of the outputs of a group goes, as frames of that layout, or null.
+/// Returns the destination for every value of a group's outputs, as frames of that layout, or null.
 using TapMaker = std::function<std::unique_ptr<io::Sink>(const io::FrameLayout&, const GroupRuntime&)>;
 
 struct EngineOptions {
     double seconds = 1.0;
     int block = 0;               ///< most samples per call of an audio group, 0: the patch's quantum
     bool random_blocks = false;  ///< calls of random length up to `block`, for tests
-    std::optional<std::filesystem::path> folder;  ///< where recordings go; none: they are not kept
-    const take::TimingLog* replay = nullptr;      ///< repeat what timing decided in a live run
+    std::optional<std::filesystem::path> folder;  ///< folder of the recordings; empty: nothing is recorded
+    const take::TimingLog* replay = nullptr;      ///< repeats the timing decisions of a live run
     const std::vector<io::RecordedDevice>* devices =
-        nullptr;  ///< stand-ins for the devices of the run that is repeated
+        nullptr;  ///< stand-ins for the devices of the replayed run
     take::TakeWriter* take = nullptr;                          ///< records the run
-    bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
-    std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
-    observe::Observer* observer = nullptr;  ///< reads copies; changes nothing
-    /// For `check`: the plan is built and never runs. Hardware is not opened, and a plan that is too stiff is not refused.
+    bool record_values = true;  ///< the take has values from the beginning; otherwise from `Engine::record` on
+    std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< maximum bytes of decisions without recorded values
+    observe::Observer* observer = nullptr;  ///< receives copies of values; does not affect the run
+    /// For `check`: builds the plan without running it. Hardware is not opened, and a plan that is too stiff is not
+    /// rejected.
     bool only_checked = false;
     bool live = false;
     io::AudioChoice audio;  ///< live only
@@ -50,17 +51,17 @@ struct EngineOptions {
 
 struct LiveOptions {
     double dilate = 1.0;  ///< real seconds per logical second
-    std::optional<std::filesystem::path> log;  ///< where timing decisions are written
+    std::optional<std::filesystem::path> log;  ///< file for timing decisions
     const std::atomic<bool>* stop = nullptr;  ///< set by another thread to end the run early
     std::function<void()> watch;  ///< called about every 20 ms by the control thread
 };
 
 /// The result of an edit.
 struct EditOutcome {
-    std::optional<std::string> error;  ///< why the old plan runs on
+    std::optional<std::string> error;  ///< reason why the old plan continues
     std::int64_t generation = 0;
     Flicks when = 0;  ///< logical time of the switch
-    std::size_t kept = 0, nodes = 0;  ///< nodes that go on, of all
+    std::size_t kept = 0, nodes = 0;  ///< surviving nodes, and all nodes
 };
 
 using PortHashes = std::vector<std::pair<std::string, std::uint64_t>>;

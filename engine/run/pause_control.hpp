@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pauses a live run and ends it: forces fade to zero and logical time stops, the same for all groups; later both go on.
+// Pauses a live run and ends it: forces fade to zero and logical time stops, at the same time for all groups. After a
+// pause both resume.
 #pragma once
 
 #include "engine/run/live_time.hpp"
@@ -18,13 +19,14 @@ public:
     // Control thread.
     void want(bool wanted) { wanted_ = wanted; }
     Pausing state() const;
-    /// Ends a pause that is no longer wanted: sets the clock, and moves `line` with it. True at that moment.
+    /// Ends a pause that is no longer requested: sets the clock, and shifts `line` with it. Returns true at that
+    /// moment.
     bool service(control::TrimmedClock& line);
 
     // Thread of the watchdog; wait-free.
-    /// Begins a pause that is wanted. True at that moment: forces on all hands are to be let go of.
+    /// Begins a requested pause. Returns true at that moment: the caller must release the forces on all hands.
     bool begin_if_wanted() noexcept;
-    /// All groups end, at one logical time as far as they run. True at the first call.
+    /// Ends all groups at one logical time, as far as they have run. Returns true at the first call.
     bool end() noexcept;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a live run pauses or ends, in logical time: forces fade, then time stands still; afterwards forces come in anew.
+// The logical times of a pause or end of a live run: forces fade, then time stops; afterwards forces ramp in again.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -14,15 +14,15 @@ struct PauseWindow {
     static_assert(std::atomic<Flicks>::is_always_lock_free);
     static constexpr Flicks never = std::numeric_limits<Flicks>::max();
 
-    std::atomic<Flicks> fade{never};  ///< from here on forces are held off
+    std::atomic<Flicks> fade{never};  ///< forces are suspended from this time on
     std::atomic<Flicks> stop{never};  ///< activations at or after this time wait
-    std::atomic<Flicks> until{never};  ///< from here on forces are passed again
-    std::atomic<Flicks> end{never};  ///< activations at or after this time do not run at all
+    std::atomic<Flicks> until{never};  ///< forces resume at this time
+    std::atomic<Flicks> end{never};  ///< activations at or after this time never run
 
-    // While a parameter changes that cannot ramp, the same without a pause; only the control thread sets them:
+    // The same without a pause, while a parameter changes that cannot ramp; only the control thread sets them:
     std::atomic<Flicks> set_fade{never}, set_until{never};
 
-    /// For a group of `period`: one that is so slow that it had no activation while forces were held off has one more.
+    /// For a group of `period`. A group so slow that it had no activation during the suspension has one more suspended.
     bool holds_off(Flicks time, Flicks period) const noexcept {
         return is_within(fade, until, time, period) || is_within(set_fade, set_until, time, period);
     }

@@ -10,9 +10,9 @@
 
 namespace tactus::run {
 
-/// Of SCHED_FIFO, 11 to 80; the watchdogs are above it (84, 85). Criticality decides, then the rate of calls: within one
-/// class that is the rate-monotonic order, which no other fixed order beats (Liu and Layland 1973). By rate alone a sound
-/// group of 48 kHz would come before a hand of 1 kHz.
+/// SCHED_FIFO priority, 11 to 80; the watchdogs are above it (84, 85). Criticality comes first, then the rate of calls:
+/// within one class that is the rate-monotonic order, which is optimal among fixed orders (Liu and Layland 1973). By
+/// rate alone a 48 kHz sound group would come before a 1 kHz hand.
 inline int priority_of(compile::Criticality criticality, Flicks call_period) noexcept {
     constexpr int of_fastest = 80, levels = 14;  // one for each octave from 1 Hz to 8 kHz
     const int octaves = std::clamp(static_cast<int>(std::lround(std::log2(rate_of(call_period)))), 0, levels - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes real-time priority away from threads of groups that starve others, and gives it back.
+// Demotes threads of groups that starve others from real-time priority, and restores it.
 #pragma once
 
 #include "engine/run/demotions.hpp"
@@ -16,7 +16,7 @@
 
 namespace tactus::run {
 
-/// Sets the real-time priority of a thread, 0: none. False when the system refuses.
+/// Sets the real-time priority of a thread, 0: none. Returns false if the system refuses.
 bool set_priority(pthread_t thread, int priority) noexcept;
 
 class PriorityWatch {
@@ -24,17 +24,17 @@ public:
     PriorityWatch();
 
     // Control thread.
-    /// From now on the thread of the group `name` is watched. `busy_since`: when its present call began, steady ns, or 0.
-    /// Further threads than 64 are not watched.
+    /// Watches the thread of the group `name` from now on. `busy_since`: start of its current call, steady ns, or 0. At
+    /// most 64 threads are watched; further ones are ignored.
     void add(const std::string& name, pthread_t thread, int priority, const std::atomic<std::int64_t>& busy_since);
-    /// Of a thread that is watched, or not; a group that is demoted gets it later.
+    /// Sets the priority of a thread, watched or not; a demoted group gets it later.
     void set(pthread_t thread, int priority) noexcept;
-    /// Before the thread is joined.
+    /// Call before the thread is joined.
     void remove(pthread_t thread) noexcept;
-    /// What happened since the last call, for people.
+    /// Returns messages about changes since the last call.
     std::vector<std::string> take_notices();
 
-    /// Thread of a watchdog, of one at a time. Calls the system; waits for nobody.
+    /// For the thread of a watchdog, one at a time. Makes system calls, but never waits.
     void look(std::int64_t now_ns) noexcept;
 
 private:
@@ -46,9 +46,9 @@ private:
         int priority = 0;
         const std::atomic<std::int64_t>* busy_since = nullptr;
         bool is_demoted = false;
-        std::atomic<int> cause{0};  ///< of its last demotion, a DemotionCause; 0 once it was reported
+        std::atomic<int> cause{0};  ///< of its last demotion, a DemotionCause; 0 after it was reported
     };
-    /// The control thread holds it for as long as it takes to write a few words.
+    /// The control thread holds this lock only while it writes a few words.
     void lock() noexcept;
     void unlock() noexcept { is_busy_.store(false, std::memory_order_release); }
 

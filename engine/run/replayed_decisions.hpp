@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decisions that an earlier run made, read from its log.
+// The decisions of an earlier run, read from its log.
 #pragma once
 
 #include "engine/run/decisions.hpp"
@@ -40,18 +40,18 @@ public:
     void pass(std::int64_t tick) noexcept override;
 
 private:
-    /// The record that covers an activation, or null. `source` −1: any.
+    /// Returns the record that covers an activation, or null. `source` −1: any.
     const take::TimingRecord* find(take::TimingKind kind, int source, std::int64_t tick) const noexcept;
-    /// The switch to a plan at an activation, or null.
+    /// Returns the record of the switch to a plan at an activation, or null.
     const take::TimingRecord* find_switch(std::int64_t plan, std::int64_t tick) const noexcept;
 
-    static constexpr std::int64_t read_ahead = 4096;  // activations; a call is shorter, and reads no file then
+    static constexpr std::int64_t read_ahead = 4096;  // activations; calls are shorter, so none reads a file
 
-    mutable take::GroupRecords records_;  // reads on when it is asked for later ones
+    mutable take::GroupRecords records_;  // reads on when later records are requested
     const ReplayedChanges& changes_;
     std::size_t first_ = 0;  ///< records before this one are past
     std::int64_t switched_to_ = 0;  ///< plan that took over last, by its number
-    std::size_t applied_ = 0;  ///< changes of parameters before this one are made
+    std::size_t applied_ = 0;  ///< changes of parameters before this one are applied
 };
 
 }  // namespace tactus::run

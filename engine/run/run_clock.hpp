@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock that all threads of a live run read, and one trims.
+// The clock of a live run: all threads read it, one trims it.
 #pragma once
 
 #include "dsp/control/trimmed_clock.hpp"
@@ -26,13 +26,15 @@ public:
         version_.store(version + 2, std::memory_order_release);
     }
 
-    /// Any thread. A reader that is unlucky takes the line it read last: between two lines lie microseconds. Wait-free.
+    /// Any thread. A reader that collides with the writer uses its previous line, which differs by microseconds.
+    /// Wait-free.
     control::TrimmedClock get(control::TrimmedClock last) const noexcept {
         try_get(last);
         return last;
     }
 
-    /// Any thread. False, and `line` as it was, while no whole line is there: none yet, or one is being set. Wait-free.
+    /// Any thread. Returns false and leaves `line` unchanged if no line is available: none was set yet, or one is being
+    /// written. Wait-free.
     bool try_get(control::TrimmedClock& line) const noexcept {
         const std::uint64_t version = version_.load(std::memory_order_acquire);
         const control::TrimmedClock now{logical_.load(std::memory_order_acquire),

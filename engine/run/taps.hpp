@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The streams that keep every value of every output, one for each group, while values are recorded.
+// The streams that record every value of every output, one for each group, while values are recorded.
 #pragma once
 
 #include "engine/run/losses.hpp"
@@ -13,24 +13,24 @@
 
 namespace tactus::run {
 
-/// Control thread, `drain` apart.
+/// Control thread, except for `drain`.
 class Taps {
 public:
     explicit Taps(TapMaker make) : make_(std::move(make)) {}
 
-    /// The stream of a group whose outputs have that layout; made when there is none. Null: the maker wants none.
-    /// Whoever builds a plan calls it.
+    /// Returns the stream of a group with that layout of outputs; creates it if needed. Returns null if the maker
+    /// returns none. For the thread that builds a plan.
     RecordStream* get(const io::FrameLayout& layout, const GroupRuntime& group);
-    /// Makes what `get` has added known to the other functions.
+    /// Publishes the streams that `get` has added to the other functions.
     void update();
-    /// The streams keep values from a logical time on, or until one; then they belong to a stretch that ends.
+    /// Sets the logical time from which, or until which, the streams record. The latter ends their stretch.
     void begin_at(Flicks from);
     void end_at(Flicks until);
-    /// Completes those whose stretch is over.
+    /// Completes the streams whose stretch is over.
     void finish_past();
-    /// Completes those whose group is over, and those that no program writes to any more: an edit changed the outputs.
+    /// Completes the streams whose group has ended, and those without a writer because an edit changed the outputs.
     void finish_ended(const std::unordered_set<const RecordStream*>& in_use);
-    /// Completes all. After the run.
+    /// Completes all streams. After the run.
     void finish();
 
     /// Any thread, outside of the ticks.
@@ -38,7 +38,7 @@ public:
     void drain_full();
 
     void note_losses(Losses& losses) const;
-    /// Values that a slow disk lost. After `finish`.
+    /// Reports the values lost to a slow disk. After `finish`.
     void note_drops(Losses& losses) const;
 
 private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What keeps the hands of a live run safe beside the ticks: a thread for each device, and one that acts at once when the
-// run is to pause or to end. Neither waits for a disk, for a group or for another device. When real-time threads use a core
-// for 950 ms of a second, the kernel stops all of them until the next second; a twin of normal priority acts meanwhile.
+// Keeps the hands of a live run safe independently of the ticks: one thread for each device, and one that immediately
+// pauses or ends the run on request. None of them waits for a disk, a group or another device. When real-time threads
+// use a core for 950 ms of a second, the kernel stops all of them until the next second; meanwhile a twin thread of
+// normal priority takes over.
 #pragma once
 
 #include "engine/io/device_watch.hpp"
@@ -19,28 +20,28 @@ namespace tactus::run {
 /// Control thread.
 class Watchdog {
 public:
-    /// `look` is called about once a millisecond by a thread above every group, or by its twin, never by both at once.
+    /// `look` is called about once a millisecond by a thread with a priority above every group, or by its twin, but
+    /// never by both at the same time.
     explicit Watchdog(std::function<void()> look) : look_(std::move(look)) {}
-    /// After `farewell`, or when no thread was ever left behind.
+    /// Call after `farewell`, or if no thread was ever abandoned.
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Begins to look. Throws std::system_error when the system refuses the thread.
+    /// Starts the thread. Throws std::system_error when the system refuses it.
     void begin();
-    /// Looks after a device, too, from now on. Throws Error when there are too many, std::system_error when the system
-    /// refuses the thread.
+    /// Adds a device. Throws Error if there are too many, std::system_error when the system refuses the thread.
     void watch(build::DeviceSlot& slot);
-    /// The devices watched last go before they were ever used, until `count` are left.
+    /// Removes the devices added last, which were never used, until `count` are left.
     void forget_beyond(std::size_t count);
     std::size_t watched() const { return count_.load(std::memory_order_relaxed); }
 
-    /// Forces on all hands fade at once and stay away, or may come again. Any thread; wait-free.
+    /// Fades forces on all hands immediately and keeps them at zero, or allows them again. Any thread; wait-free.
     void let_go() noexcept;
     void take_up() noexcept;
 
-    /// Waits until every device, all of which are retired, is without force. A driver that blocks is left behind after a
-    /// fifth of a second: false then.
+    /// Waits until every device is without force; all must be retired. Returns false if a driver blocks: its thread is
+    /// abandoned after a fifth of a second.
     bool farewell();
 
 private:
@@ -54,7 +55,7 @@ private:
     std::atomic<bool> ending_{false};
     std::atomic<bool> is_looking_{false};
     std::atomic<std::int64_t> looked_ns_{0};
-    std::atomic<std::int64_t> twin_passes_{0};  ///< odd: the twin is looking after devices
+    std::atomic<std::int64_t> twin_passes_{0};  ///< odd: the twin is checking devices
     std::atomic<bool> is_twin_over_{false};
     std::thread thread_, twin_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of one group of a timing log, packed: each one as its difference from what the records before it predict. A device
-// that rests takes 2 bytes a sample, one that moves about 60 in place of 208.
+// The packed records of one group of a timing log: each record is stored as its difference from a prediction. A device
+// at rest takes 2 bytes per sample, a moving one about 60 instead of 208.
 #pragma once
 
 #include "engine/take/timing_record.hpp"
@@ -15,27 +15,28 @@
 
 namespace tactus::take {
 
-/// What the writer and the reader both know of the records so far. A number of a sample is predicted from the last four by
-/// the polynomial of degree 0 to 3 that was best lately, the scalar of a quaternion by its vector, an integer by its last value, a
-/// counter by its last step: every bit is kept, and a smooth motion leaves few bits that are not predicted.
+/// The predictor, whose state is equal in the writer and the reader. A number of a sample is predicted from the last
+/// four by the polynomial of degree 0 to 3 with the lowest recent cost, the scalar of a quaternion by its vector, an
+/// integer by its last value, a counter by its last step. The coding is lossless, and a smooth motion leaves few bits
+/// that are not predicted.
 class RecordPrediction {
 public:
     static constexpr std::size_t words = 21;  ///< of a sample
     using Words = std::array<std::uint64_t, words>;
 
     static Words words_of(const DeviceSample& sample) noexcept;
-    /// False when the words are no sample: a flag is neither 0 nor 1.
+    /// Returns false if the words are not a valid sample: a flag is neither 0 nor 1.
     static bool read_words(const Words& words, DeviceSample& sample) noexcept;
 
-    /// Of one kind of record from one source.
+    /// State for one kind of record from one source.
     struct Stream {
         std::int64_t tick = 0, value = 0, step = 0;
         std::int32_t count = 0;
         std::array<Words, 4> before{};  ///< newest first
-        std::array<std::array<std::uint16_t, 4>, words> cost{};  ///< of each degree, in bits, averaged
+        std::array<std::array<std::uint16_t, 4>, words> cost{};  ///< of each degree, bits; running mean
 
         Words predicted(TimingKind kind) const noexcept;
-        /// The scalar of a quaternion of which `sample` has the vector: they make a unit quaternion.
+        /// Predicts the scalar of the unit quaternion whose vector part is in `sample`.
         std::uint64_t predicted_scalar(const Words& sample) const noexcept;
         std::int64_t next_tick() const noexcept;
         std::int64_t next_value() const noexcept;
@@ -66,7 +67,7 @@ public:
         incomplete,  ///< the bytes end within a record
         damaged,
     };
-    /// Takes the bytes of one record off `bytes`.
+    /// Removes one record from the front of `bytes`.
     Result unpack(std::string_view& bytes, TimingRecord& record);
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that were heard, in a record of the timing log. They lie in the numbers of its DeviceSample, so that all
-// records have one size; flags stay false.
+// Recorded samples of a sound input in a record of the timing log. They are stored in the numbers of its DeviceSample,
+// so that all records have one size; flags stay false.
 #pragma once
 
 #include "graph/node/device.hpp"
@@ -11,7 +11,7 @@
 
 namespace tactus::take {
 
-/// Samples of one record: two in each word of eight bytes.
+/// Number of samples per record: two in each word of eight bytes.
 inline constexpr int sound_record_samples = 40;
 
 namespace detail {
@@ -35,7 +35,7 @@ void each_word(Sample& s, Visit visit) noexcept {
 
 }  // namespace detail
 
-/// `count` up to sound_record_samples. Real-time.
+/// Packs `count` samples, at most sound_record_samples. Real-time safe.
 inline DeviceSample pack_sound(const float* samples, int count) noexcept {
     std::array<float, sound_record_samples> all{};
     std::memcpy(all.data(), samples, sizeof(float) * static_cast<std::size_t>(count));

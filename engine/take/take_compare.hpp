@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares every value that a repetition publishes with those of the take, bit by bit, while it runs.
+// Compares every value of a replayed run with the value in the take, bit by bit, during the replay.
 #pragma once
 
 #include "engine/io/streams.hpp"
@@ -18,7 +18,7 @@ namespace tactus::take {
 struct TakeDifference {
     std::string port;
     std::int64_t tick = 0;
-    double time = 0.0;  ///< logical, s
+    double time = 0.0;  ///< logical time, s
     std::vector<std::string> channels;
     std::vector<double> expected, got;
 };
@@ -27,15 +27,15 @@ class TakeComparison {
 public:
     explicit TakeComparison(const Take& take) : take_(take) {}
 
-    /// The sink for the values of a group, for EngineOptions::tap. Null when the take has no values of the group.
+    /// Returns the sink for the values of a group, for EngineOptions::tap. Null if the take has no values of the group.
     std::unique_ptr<io::Sink> tap(const io::FrameLayout& layout, const run::GroupRuntime& group);
 
     // After the run:
     std::uint64_t compared_values() const { return compared_; }
-    /// The earliest in logical time; at equal times the first name.
+    /// The earliest difference in logical time; at equal times the first name.
     const std::optional<TakeDifference>& first_difference() const { return first_; }
 
-    // For the stream ends.
+    // For the implementation of the sinks.
     void count(std::uint64_t values);
     void differs(TakeDifference difference);
 

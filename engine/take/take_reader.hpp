@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a take back, see engine/take/take_writer.hpp.
+// Reads a take, see engine/take/take_writer.hpp.
 #pragma once
 
 #include "engine/io/host.hpp"
@@ -33,7 +33,7 @@ struct TakenEdit {
     Flicks when = 0;
     std::string text;
 };
-/// A parameter set while the run went on.
+/// A parameter that was set during the run.
 struct TakenChange {
     std::int64_t id = 0;
     std::string node, param;
@@ -57,21 +57,23 @@ struct Take {
     std::vector<io::RecordedDevice> devices;
     std::vector<TakeStreamInfo> streams;
     TimingLog log;
-    std::int64_t lines = 0;  ///< of events.jsonl
-    bool is_complete = false;  ///< the run ended normally; false: the take was cut off
-    std::map<std::string, std::uint64_t> result;  ///< hash of every output, empty when the run was cut off
-    std::map<std::string, std::int64_t> written;  ///< frames, records or lines by file, empty when it was cut off
+    std::int64_t lines = 0;  ///< number of lines of events.jsonl
+    bool is_complete = false;  ///< the run ended normally; false: the take ends early
+    std::map<std::string, std::uint64_t> result;  ///< hash of every output; empty if the take ends early
+    std::map<std::string, std::int64_t> written;  ///< frames, records or lines by file; empty if the take ends early
 
-    /// Throws Error when the folder is no take or is damaged. A take that was cut off is read up to its last whole record.
+    /// Throws Error if the folder is not a take or is damaged. An incomplete take is read up to its last whole record.
     static Take load(const std::filesystem::path& folder);
 
-    /// Why a repetition may differ: another machine, another build, changed files. Empty: no reason.
+    /// Returns the reasons why a replay may differ: another machine, another build, changed files. Empty if there are
+    /// none.
     std::vector<std::string> differences() const;
-    /// Assets that are missing or have changed: a repetition will differ.
+    /// Returns the assets that are missing or have changed, for which a replay will differ.
     std::vector<std::string> changed_assets() const;
-    /// Files whose length differs from what the run wrote. When the run was cut off, only its log can be checked.
+    /// Returns the files whose length differs from the length that the run wrote. In an incomplete take only the log
+    /// can be checked.
     std::vector<TakeDamage> damages() const;
-    /// Removes streams that cannot be read at all.
+    /// Removes unreadable streams.
     void drop_unreadable_streams();
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the outputs of one group go in a take.
+// Writes the outputs of one group to a take.
 #pragma once
 
 #include "engine/io/streams.hpp"
@@ -13,19 +13,19 @@
 
 namespace tactus::take {
 
-/// One file, and the outputs in it.
+/// One file and its outputs.
 struct TakeFile {
     std::string name;  ///< within the take
     std::vector<io::FrameColumn> columns;
 };
 
-/// Opens its files with the first frames, which say at which activation the files begin.
+/// Opens its files at the first frame, whose activation is the start of the files.
 class TakeSink : public io::Sink {
 public:
     struct Told {
         std::function<void(const TakeFile&, std::int64_t start)> opened;
         std::function<void(const std::string& file, std::int64_t frames)> finished;
-        std::function<void()> cut;  ///< some values are not kept
+        std::function<void()> cut;  ///< called when values are lost
     };
     TakeSink(std::filesystem::path folder, Flicks period, std::size_t frame_bytes, std::vector<TakeFile> files,
              Told told);
@@ -41,8 +41,8 @@ private:
     const std::size_t frame_bytes_;
     const std::vector<TakeFile> files_;
     const Told told_;
-    std::vector<std::unique_ptr<TakeStreamWriter>> writers_;  // of the files that are open
-    std::int64_t update_ns_ = 0;  // of the next update; a run that is killed soon has its first values
+    std::vector<std::unique_ptr<TakeStreamWriter>> writers_;  // of the open files
+    std::int64_t update_ns_ = 0;  // time of the next header update; early, so that the first values survive a crash
 };
 
 }  // namespace tactus::take

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outputs of a group in a take: every value they published, as a multichannel sound file of doubles that audio
-// editors open. A large value is kept as two numbers, the halves of its content's hash.
+// editors open. A large value is stored as two numbers, the halves of its content hash.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -20,33 +20,34 @@ struct TakeStreamInfo {
     std::string file;       ///< within the take
     std::string port;       ///< "node.port"
     std::string group, type;
-    int group_number = 0;    ///< as in the timing log: an edit may end a group and begin another of that name
+    int group_number = 0;    ///< as in the timing log: an edit can end a group and create another of that name
     Flicks period = 0;
     std::int64_t start = 0;  ///< activation of the file's first frame
-    int channel = 0, channels = 1;  ///< the first of its channels, and how many they are
+    int channel = 0, channels = 1;  ///< its first channel, and the number of its channels
 };
 
-/// Most channels of a file.
+/// Largest number of channels of a file.
 inline constexpr int most_channels = 1024;
 
-/// Names of a type's channels.
+/// Returns the names of a type's channels.
 std::vector<std::string> channels_of(const ValueType& type);
-/// One value as the numbers of a frame.
+/// Converts one value to the numbers of a frame.
 void to_frame(const ValueType& type, const void* value, double* frame);
 
 class TakeStreamWriter {
 public:
-    /// `path` appears at once and is readable while it grows. Throws Error.
-    /// `columns` of frames of `frame_bytes` make at most `most_channels` channels; the first frame is that of `start`.
+    /// `path` appears immediately and is readable while it grows. `columns` of frames of `frame_bytes` bytes make at
+    /// most `most_channels` channels; the first frame is that of activation `start`. Throws Error.
     TakeStreamWriter(const std::filesystem::path& path, Flicks period, std::int64_t start,
                      std::vector<io::FrameColumn> columns, std::size_t frame_bytes);
     ~TakeStreamWriter();
     TakeStreamWriter(const TakeStreamWriter&) = delete;
     TakeStreamWriter& operator=(const TakeStreamWriter&) = delete;
 
-    /// Frames of activations first … first + count − 1. The last one is repeated where activations never ran.
+    /// Writes frames of activations first … first + count − 1. The previous frame is repeated where activations never
+    /// ran.
     void write(std::int64_t first, const std::byte* frames, std::size_t count);
-    /// Tells the file's header how long it is by now.
+    /// Updates the length in the file's header.
     void update();
     void finish();
     std::int64_t frames() const;  ///< written so far
@@ -67,12 +68,12 @@ public:
 
     int channels() const;  ///< of the output
     std::int64_t frames() const;  ///< in the file
-    /// The next frame asked for will not lie before that of `activation`.
+    /// Positions the reader: the next requested frame must not precede that of `activation`.
     void seek(std::int64_t activation);
-    /// The output's part of the frame of an activation, or null when it is not in the file. Activations must be asked
-    /// for in order.
+    /// Returns the output's part of the frame of an activation, or null if the file does not contain it. Activations
+    /// must be requested in ascending order.
     const double* frame(std::int64_t activation);
-    /// The same of another output of that file.
+    /// The same for another output of that file.
     const double* frame(std::int64_t activation, const TakeStreamInfo& other);
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take: a folder that holds all that is needed to repeat a run and to check that the repetition is the same. Files
-// only grow, and can be read up to the last second after a crash:
+// A take: a folder with everything needed to repeat a run and to verify the repetition. Files only grow, and after a
+// crash can be read up to the last second:
 //
 //   take.json       the patch, what the command line changed, hashes of assets, build, CPU family, seconds asked for
 //   patch-N.toml    the text of the plan numbered N, 0 first
@@ -37,10 +37,10 @@ namespace tactus::take {
 
 struct TakeFile;
 
-/// Format number of take.json. Format 2, with one file per output, can be read as well; other formats are refused.
+/// Format number of take.json. Format 2, with one file per output, can be read as well; other formats are rejected.
 constexpr int take_format = 3, oldest_take_format = 2;
 
-/// What a take states about its run.
+/// Description of a run in its take.
 struct TakeAbout {
     std::filesystem::path patch_file;  ///< absolute
     patch::PatchOverrides overrides;
@@ -49,28 +49,29 @@ struct TakeAbout {
     bool live = false;
 };
 
-/// When the disk is full during the run, the take keeps what it has, repeats the run up to there, and grows no more.
+/// If the disk is full during the run, the take keeps its data, can repeat the run up to that point, and stops growing.
 class TakeWriter {
 public:
-    /// Makes the folder; one that holds something else is refused. Throws Error.
+    /// Creates the folder; a folder with other content is rejected. Throws Error.
     TakeWriter(std::filesystem::path folder, TakeAbout about);
-    /// Removes the files of a run that never began, so that the folder can be used again.
+    /// Removes the files of a run that never started, so that the folder can be used again.
     ~TakeWriter();
     TakeWriter(const TakeWriter&) = delete;
     TakeWriter& operator=(const TakeWriter&) = delete;
 
-    /// The plan that runs first; before anything is recorded.
+    /// Sets the first plan; call before anything is recorded.
     void begin(const patch::Patch& patch, std::uint64_t plan_hash);
     void device(const build::DeviceSlot& slot);
-    /// Where the frames of a group go: files of at most `most_channels` channels, opened with the first frame.
+    /// Returns the sink for the frames of a group: files of at most `most_channels` channels, opened at the first
+    /// frame.
     std::unique_ptr<io::Sink> sink(const io::FrameLayout& layout, const run::GroupRuntime& group);
-    /// Describes the assets of an edit; reads all of them. Any thread. Throws Error.
+    /// Describes the assets of an edit, which reads all of them. Any thread. Throws Error.
     static std::string describe_assets(const patch::Patch& patch);
-    /// The plan that takes over at `when`; `assets` as described.
+    /// Records the plan that takes over at `when`; `assets` from describe_assets.
     void edit(std::int64_t number, Flicks when, const patch::Patch& patch, const std::string& assets);
     void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
     void record(const TimingRecord& record);
-    /// What each group had reached (index in the log, activation, logical time) before the last records were written.
+    /// Progress of each group (index in the log, activation, logical time) before the last records were written.
     struct Progress {
         int group;
         std::int64_t done;
@@ -78,21 +79,21 @@ public:
     };
     void checkpoint(const std::vector<Progress>& progress);
     void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
-    /// Why the take repeats only a part of the run; empty: it repeats all of it. Any thread.
+    /// Reason why the take repeats only a part of the run; empty if it repeats all of it. Any thread.
     std::string loss() const;
     bool is_lost() const { return is_lost_; }
-    /// The take repeats the run only up to here.
+    /// Marks the take as valid only up to the current time.
     void lose(const std::string& why);
 
     const std::filesystem::path& folder() const { return folder_; }
-    /// Gives the folder another name, on the same disk, while it grows. Throws Error.
+    /// Renames the folder, on the same disk, while it grows. Throws Error.
     void move_to(const std::filesystem::path& folder);
-    /// Bytes of its log by now.
+    /// Current size of its log, bytes.
     std::uint64_t size() const { return log_ ? log_->size() : 0; }
 
 private:
     void line(const std::string& json);
-    /// A name that no other file of the take has.
+    /// Returns a name that no other file of the take has.
     std::string file_for(const std::string& group);
     void opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group);
 
@@ -102,9 +103,9 @@ private:
     std::unique_ptr<file::GrowingFile> events_;
     mutable std::mutex writing_;  // every thread that drains a stream writes lines
     std::int64_t lines_ = 0;  // of events.jsonl
-    std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
+    std::map<std::string, std::int64_t> frames_;  // of each completed stream
     std::atomic<bool> is_lost_{false};
-    std::atomic<bool> holds_a_run_{false};  // a part of a run was written
+    std::atomic<bool> holds_a_run_{false};  // some data of a run was written
     std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
     std::unordered_set<std::string> files_;
@@ -112,11 +113,11 @@ private:
     std::uint64_t flush_bytes_ = 0;  // log size at which a flush is due, if not due by time
 };
 
-/// Hash of a file's bytes; for a text that names other files, their bytes too. Throws Error.
+/// Returns the hash of a file's bytes; for a text that names other files, including their bytes. Throws Error.
 std::uint64_t hash_of_asset(const std::filesystem::path& path);
-/// Of the running program.
+/// Identifies the build of the running program.
 std::string build_identity();
-/// Vendor, family and model of the processor, as far as they may change rounding.
+/// Returns vendor, family and model of the processor, as far as they may affect rounding.
 std::string cpu_family();
 
 }  // namespace tactus::take

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that timing decided in a live run, as one kind of record. An offline run fed with the log computes the
-// bits of the live run, whatever was late in it.
+// All timing decisions of a live run, in one kind of record. An offline run with the log reproduces the bits of the
+// live run, whatever was late in it.
 #pragma once
 
 #include "assets/file/growing_file.hpp"
@@ -21,17 +21,18 @@
 
 namespace tactus::take {
 
-/// A log: an index of its file. The records themselves are read when they are needed (GroupRecords).
+/// An index of a log file. The records themselves are read on demand (GroupRecords).
 struct TimingLog {
     std::uint64_t plan_hash = 0;
-    double seconds = 0.0;  ///< as asked for
-    /// False: the run was cut off, or records are missing. The log then ends at the last time that all groups had reached.
+    double seconds = 0.0;  ///< requested duration
+    /// False if the run was interrupted or records are missing. The log then ends at the last time that all groups had
+    /// reached.
     bool is_whole = true;
     std::int64_t records = 0;  ///< in the file
-    std::optional<std::int64_t> written;  ///< number of records, as the last record states it
-    Flicks cut = 0;  ///< of a run that was cut off: logical time up to which it can be repeated
+    std::optional<std::int64_t> written;  ///< number of records, as stated by the last one
+    Flicks cut = 0;  ///< for an incomplete log: logical time up to which the run can be repeated
 
-    /// Packed records of a group that follow each other in the file.
+    /// Consecutive packed records of a group in the file.
     struct Chunk {
         std::uint64_t offset = 0;
         std::uint32_t length = 0;
@@ -39,31 +40,31 @@ struct TimingLog {
     struct Group {
         std::vector<Chunk> chunks;
         std::int64_t records = 0;
-        std::optional<std::int64_t> end;  ///< it ran up to the activation before this one
+        std::optional<std::int64_t> end;  ///< one past its last activation
     };
     std::vector<Group> groups;
     std::shared_ptr<const int> file;  ///< descriptor, closed with the last copy
 
-    /// `may_be_cut` accepts a log that stops anywhere, as after a crash. Reads all of it once, to check it; keeps an index.
-    /// Throws Error when the file is missing, not a log, or was not written to its end.
+    /// `may_be_cut` accepts an incomplete log, as after a crash. Reads the whole file once to check it, and keeps an
+    /// index. Throws Error if the file is missing, is not a log, or is incomplete without `may_be_cut`.
     static TimingLog load(const std::filesystem::path& path, bool may_be_cut = false);
 
-    /// Activations of a group that can be repeated.
+    /// Number of activations of a group that can be repeated.
     std::int64_t end_of(std::size_t group, Flicks period) const;
 };
 
-/// The records of a group in order, read in pieces: memory does not grow with the log.
+/// The records of a group in order, read in pieces, so that memory does not grow with the log.
 class GroupRecords {
 public:
-    /// None when the log has no such group.
+    /// Empty if the log has no such group.
     GroupRecords(const TimingLog& log, std::size_t group);
     explicit GroupRecords(std::vector<TimingRecord> all) : window_(all.begin(), all.end()) {}
 
-    /// The record numbered `i` from 0, or null beyond the last one. None that was forgotten.
+    /// Returns record `i`, counted from 0, or null after the last one. `i` must not precede a forget_before.
     const TimingRecord* at(std::size_t i) noexcept;
     /// Reads up to the first record of that activation or a later one.
     void read_ahead(std::int64_t tick) noexcept;
-    /// The records before the one numbered `i` are not asked for again.
+    /// Releases the records before record `i`.
     void forget_before(std::size_t i) noexcept;
 
 private:
@@ -71,14 +72,14 @@ private:
 
     std::shared_ptr<const int> file_;
     std::vector<TimingLog::Chunk> chunks_;
-    std::int64_t left_ = 0;  // records that were not read yet
+    std::int64_t left_ = 0;  // number of records not read yet
     std::size_t next_chunk_ = 0;
     RecordUnpacker unpacker_;
     std::deque<TimingRecord> window_;
-    std::size_t first_ = 0;  // number of the first one in the window
+    std::size_t first_ = 0;  // number of the first record in the window
 };
 
-/// Writes a log outside of the ticks. The records of each group are packed by themselves and written in chunks.
+/// Writes a log outside of the ticks. The records of each group are packed separately and written in chunks.
 class TimingLogWriter {
 public:
     enum class Name {
@@ -91,11 +92,11 @@ public:
     TimingLogWriter(const TimingLogWriter&) = delete;
     TimingLogWriter& operator=(const TimingLogWriter&) = delete;
 
-    /// Throws Error when there is no room, once; the log ends with the last whole chunk then.
+    /// Throws Error once if the disk is full; the log then ends with the last whole chunk.
     void write(const TimingRecord& record);
-    /// Passes what was written to the operating system: a crash of the program does not lose it.
+    /// Flushes to the operating system: a crash of the program does not lose the data.
     void flush();
-    /// Writes the last record. When the disk is full the log keeps its name and counts as cut off. Throws Error.
+    /// Writes the last record. If the disk is full, the log keeps its name and counts as incomplete. Throws Error.
     void finish();
     std::uint64_t size() const { return bytes_; }  ///< of all chunks so far
     std::int64_t records() const { return records_; }
@@ -103,7 +104,7 @@ public:
 private:
     struct Packed {
         RecordPacker packer;
-        std::string chunk;  // waits to be written
+        std::string chunk;  // not yet written
     };
     void write_chunk(std::uint16_t group, Packed& packed);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One decision of timing in a live run.
+// One timing decision of a live run.
 #pragma once
 
 #include "graph/node/device.hpp"
@@ -12,23 +12,23 @@ enum class TimingKind : std::uint8_t {
     device_sample,  ///< `source` is the device
     held_read,      ///< activations tick … tick + count − 1 read index `value` of link `source`
     skipped,        ///< activations tick … tick + count − 1 never ran
-    dropped,        ///< publications tick … tick + count − 1 towards link `source` found no room
+    dropped,        ///< publications tick … tick + count − 1 to link `source` were dropped for lack of room
     parameter,  ///< from activation tick on, the parameter change numbered `value` holds; it comes in over `source`
     ///< activations, 0: at once
     fade,  ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
     ///< pause, which `value` 1 begins and 0 ends
     plan,  ///< from activation tick on, the plan numbered `value` runs; what it changes of parameters on which a force
     ///< depends comes in over `source` activations, 0: at once
-    progress,  ///< all before tick is in the log; where a log that was cut off can be trusted to
-    end,  ///< the group ran up to tick − 1
-    whole,  ///< the last record of a log that was written to its end; `value` is the number of all records
+    progress,  ///< all records before tick are in the log; an incomplete log is valid up to here
+    end,  ///< the last activation of the group was tick − 1
+    whole,  ///< the last record of a complete log; `value` is the number of all records
     heard,  ///< samples of sound input `source`, in `sample` (take/sound_record.hpp): the last `value` ones of
     ///< activations tick … tick + count − 1
     overdue,  ///< from activation tick on, source `value` of the force on device `source` is overdue or not finite;
     ///< −1: none is
 };
 
-/// Written by the group that decides, in its own order.
+/// Written by the deciding group, in its own order.
 struct TimingRecord {
     TimingKind kind = TimingKind::end;
     std::uint16_t group = 0;
