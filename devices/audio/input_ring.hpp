@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a card heard last, between its callback and the thread of a group. The callback never waits and overwrites the
-// oldest frames; a reader finds out afterwards whether what it copied was still whole.
+// The newest input frames of a card, passed from its callback to the thread of a group. The callback never waits and
+// overwrites the oldest frames; a reader checks after copying whether the frames were overwritten meanwhile.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace tactus::audio {
 
 class InputRing {
 public:
-    /// What the card did up to its last callback.
+    /// State of the card at its last callback.
     struct View {
         std::int64_t captured = 0;  ///< frames since the card was opened
         std::int64_t steady_ns = 0;  ///< time of the last callback
-        std::int64_t largest = 0;  ///< most frames in one callback
+        std::int64_t largest = 0;  ///< largest number of frames in one callback
     };
 
     InputRing(int channels, std::size_t frames)
@@ -26,8 +26,8 @@ public:
     int channels() const noexcept { return static_cast<int>(channels_); }
     std::int64_t capacity() const noexcept { return static_cast<std::int64_t>(frames_); }
 
-    /// The card's thread; wait-free. `interleaved` null: the card gave none, which counts as silence. `overflowed`: the
-    /// card says that it lost frames before these.
+    /// The card's thread; wait-free. Null `interleaved`: the card delivered nothing, which counts as silence.
+    /// `overflowed`: the card reports that it lost frames before these.
     void capture(const float* interleaved, std::size_t count, std::int64_t steady_ns, bool overflowed) noexcept {
         const std::int64_t first = captured_.load(std::memory_order_relaxed);
         const auto more = static_cast<std::int64_t>(count);
@@ -44,8 +44,8 @@ public:
         captured_.store(first + more, std::memory_order_release);
     }
 
-    /// Any thread; wait-free, as a reader may have a higher priority than the card. The time may be that of a callback
-    /// that is not in `captured` yet.
+    /// Any thread; wait-free, because a reader may have a higher priority than the card. The time may belong to a
+    /// callback that is not in `captured` yet.
     View view() const noexcept {
         View now;
         now.captured = captured_.load(std::memory_order_acquire);
@@ -54,8 +54,8 @@ public:
         return now;
     }
 
-    /// Copies frames first … first + count − 1 of one channel. False: not all are there, yet or any more. Any thread;
-    /// wait-free.
+    /// Copies frames first … first + count − 1 of one channel. Returns false if some are not available yet, or no
+    /// longer. Any thread; wait-free.
     bool read(std::int64_t first, std::size_t count, int channel, float* into) const noexcept {
         const auto more = static_cast<std::int64_t>(count);
         if (first < 0 || first + more > captured_.load(std::memory_order_acquire)) return false;
@@ -67,7 +67,7 @@ public:
         return first >= writing_until_.load(std::memory_order_relaxed) - capacity();
     }
 
-    /// Times that the card said it lost frames. Any thread.
+    /// Number of overflows that the card has reported. Any thread.
     std::uint64_t overflows() const noexcept { return overflows_.load(std::memory_order_relaxed); }
 
 private:

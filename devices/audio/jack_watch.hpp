@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observes the state of a JACK server that PortAudio does not report.
+// Reads the states of a JACK server that PortAudio does not report.
 #pragma once
 
 #include <atomic>
@@ -15,13 +15,13 @@ class JackWatch {
 public:
     /// Never throws; without a server it reports nothing.
     JackWatch() noexcept;
-    /// Must not be called when the server is gone, because libjack would wait for it. See `is_gone`.
+    /// Must not run when the server is gone, because libjack would wait for it. See `is_gone`.
     ~JackWatch();
     JackWatch(const JackWatch&) = delete;
     JackWatch& operator=(const JackWatch&) = delete;
 
-    /// Names the ports "out_0", "out_1", … or "in_0", … of the stream that PortAudio has opened last; "": as they are. A
-    /// name that another port has is left out.
+    /// Names the ports "out_0", "out_1", … or "in_0", … of the stream that PortAudio opened last; "" keeps a name.
+    /// Names that another port already has are skipped.
     void name_ports(const char* kind, const std::vector<std::string>& names) const;
 
     // Any thread; wait-free.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// State shared by the engine's thread and the card's callback.
+// State common to the engine's thread and the card's callback.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -39,15 +39,15 @@ public:
     bool is_ending() const noexcept { return ending_.load(std::memory_order_acquire); }
     bool is_empty() const noexcept { return ring_.size() == 0; }
 
-    /// True when `feed` would find that many frames, or when silence is due. The card's thread; wait-free.
+    /// Returns true if `feed` would find that many frames, or if silence is due. The card's thread; wait-free.
     bool can_feed(std::size_t frames) const noexcept {
         if (is_ending() || written_.load(std::memory_order_relaxed) == 0) return true;
         const auto skipped = static_cast<std::size_t>(unwanted_.load(std::memory_order_relaxed) - left_out_);
         return ring_.size() / channels_ >= enough(frames) + skipped;
     }
 
-    /// Fills the card's buffer at `steady_ns`, with silence for missing frames. Silence before playback started is no
-    /// underflow. The card's thread; wait-free.
+    /// Fills the card's buffer at `steady_ns`, with silence for missing frames. Silence before the start of playback is
+    /// not an underflow. The card's thread; wait-free.
     void feed(float* output, std::size_t frames, std::int64_t steady_ns) noexcept {
         const std::size_t wanted = frames * channels_;
         is_playing_ = is_playing_ || is_ending() ||
@@ -98,7 +98,7 @@ private:
         count.store(count.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
     }
 
-    /// Frames that the ring must hold for playback; after the start, those that the callback requests.
+    /// Number of frames that the ring must hold for playback; after the start, the number that the callback requests.
     std::size_t enough(std::size_t frames) const noexcept {
         if (is_playing_) return frames;
         return start_ == 0 ? 1 : std::min(start_ + frames, ring_.capacity() / channels_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board with motors and encoders is told and tells, in the frames of grippers (devices/gripper/frame.hpp):
+// Messages from and to a board with motors and encoders, in the frames of grippers (devices/gripper/frame.hpp):
 //
 //     torque, kind 3, n = 10:  0  flags: bit 0 run (else no torque)   1  number of motors
 //                              2  int32 torque of motor 0, µN·m      6  int32 of motor 1
@@ -8,7 +8,7 @@
 //                              4  int32 angle of motor 0, µrad   8  int32 of motor 1
 //                              12 uint16 buttons, bit n: button n   14 zero   16 uint32 serial number, 0: none
 //
-// A board answers each torque frame with a joints frame, and gives no torque when no good frame came for 20 ms.
+// A board answers each torque frame with a joints frame, and gives no torque if no valid frame came for 20 ms.
 #pragma once
 
 #include "devices/gripper/frame.hpp"
@@ -34,7 +34,7 @@ struct JointsFrame {
 
 gripper::Frame pack(const TorqueFrame& torque, std::uint16_t sequence) noexcept;
 gripper::Frame pack(const JointsFrame& joints, std::uint16_t sequence) noexcept;
-/// False for another kind or length.
+/// Returns false for another kind or length.
 bool unpack(const gripper::Frame& frame, TorqueFrame& out) noexcept;
 bool unpack(const gripper::Frame& frame, JointsFrame& out) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board speaks on its serial line. One exchange a round: torques out, angles in.
+// Protocols of a board's serial line. One exchange per round: torques out, angles in.
 #pragma once
 
 #include "devices/board/board_frames.hpp"
@@ -12,28 +12,28 @@
 
 namespace tactus::board {
 
-/// The newest that a board told.
+/// The newest state received from a board.
 struct Told {
     std::array<double, 2> angle{};  ///< rad
     std::uint32_t buttons = 0, serial = 0;
     std::uint64_t count = 0;  ///< answers so far
-    std::uint64_t heard = 0;  ///< whole ones, also those that were not believed
+    std::uint64_t heard = 0;  ///< complete answers, including those rejected as implausible
 };
 
 class Protocol {
 public:
     virtual ~Protocol() = default;
-    /// What a line is told when it was opened.
+    /// Bytes to send after the line is opened.
     virtual std::vector<std::uint8_t> greeting() { return {}; }
-    /// The next request, with torques in N·m. `run`: false: no torque.
+    /// Builds the next request, with torques in N·m. `run` false: no torque.
     virtual std::span<const std::uint8_t> request(const std::array<double, 2>& torque, bool run) noexcept = 0;
-    /// Takes received bytes. `silence_ns`: time since the bytes before.
+    /// Processes received bytes. `silence_ns`: time since the previous bytes.
     virtual void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept = 0;
-    /// The line was opened anew.
+    /// Call after the line is opened again.
     virtual void reset() noexcept = 0;
-    /// How long the line must be silent before it is asked again without an answer. 0: it may be asked at any time.
+    /// Time for which the line must be silent before the request is repeated without an answer. 0: at any time.
     virtual std::int64_t patience_ns() const noexcept { return 0; }
-    /// s that a request and its answer take on the line, at least.
+    /// Minimum duration of a request and its answer on the line, s.
     virtual double exchange_s() const noexcept { return 0.0; }
     const Told& told() const noexcept { return told_; }
 
@@ -41,14 +41,14 @@ protected:
     Told told_;
 };
 
-/// Tactus' own frames with a checksum.
+/// The frames of Tactus, with a checksum.
 class FrameProtocol final : public Protocol {
 public:
     FrameProtocol(int motors, int baud) : motors_(motors), baud_(baud) {}
     std::span<const std::uint8_t> request(const std::array<double, 2>& torque, bool run) noexcept override;
     void take(std::span<const std::uint8_t> bytes, std::int64_t silence_ns) noexcept override;
     void reset() noexcept override;
-    /// A little more than a request and its answer take on the line: torques that wait there come too late.
+    /// A little more than the duration of a request and its answer: torques that wait in the line would come too late.
     std::int64_t patience_ns() const noexcept override;
     double exchange_s() const noexcept override;
 
@@ -59,15 +59,15 @@ private:
     gripper::FrameBytes out_;
 };
 
-/// Haply's first board (2diy, firmware M3 1.5): no frame mark and no checksum, so that only silence tells where an
-/// answer begins, and only an answer of the right length and range counts, within 10 degrees of the one before: bytes of two
-/// answers, joined where one was cut, are angles, too. A true jump counts with the answer after it. Who asks on while an answer is cut or foreign
-/// never leaves the line silent.
+/// Haply's first board (2diy, firmware M3 1.5). It has no frame mark and no checksum: an answer begins after silence,
+/// and counts only with the right length and range and within 10 degrees of the previous one. The last condition is
+/// needed because the joined bytes of two truncated answers also decode as angles. A true jump is accepted with the
+/// answer after it. A request sent during a truncated or foreign answer would delay that silence; see patience_ns.
 class DiyProtocol final : public Protocol {
 public:
     struct Settings {
         std::array<double, 2> offset_deg{180.0, 0.0};  ///< of the encoders
-        double counts = 13'824.0;  ///< of an encoder, per turn
+        double counts = 13'824.0;  ///< of an encoder, per revolution
     };
     explicit DiyProtocol(const Settings& settings) : settings_(settings) {}
     std::vector<std::uint8_t> greeting() override;

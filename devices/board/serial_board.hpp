@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drivers "serial_board" (a board that speaks Tactus' frames) and "haply_2diy".
+// Drivers "serial_board" (a board that uses Tactus' frames) and "haply_2diy".
 #pragma once
 
 #include "devices/driver/backend.hpp"
@@ -13,7 +13,7 @@ namespace tactus::board {
 /// Error.
 std::unique_ptr<driver::Backend> make_serial_board(Options& options);
 
-/// Options: those of serial_board but mechanism and radius; offset_1, offset_2, counts. Throws Error.
+/// Options: those of serial_board except mechanism and radius; offset_1, offset_2, counts. Throws Error.
 std::unique_ptr<driver::Backend> make_haply_2diy(Options& options);
 
 }  // namespace tactus::board

@@ -32,21 +32,21 @@ public:
     void fill(std::vector<FigurePoint> outline, Colour colour);
     void rectangle(double x, double y, double width, double height, Colour colour);
     /// A raster of coloured cells, as of a spectrogram: `cells` has columns × rows indices of `palette` (at most 256
-    /// colours), row by row from the top. An SVG file holds it as a PNG picture.
+    /// colours), row by row from the top. An SVG file contains it as a PNG image.
     void cells(double x, double y, double width, double height, int columns, int rows, std::vector<std::uint8_t> cells,
                std::vector<Colour> palette);
-    /// `at` is on the base line. `turned`: rotated, reads upwards.
+    /// `at` is on the baseline. `turned`: rotated to read upwards.
     void text(FigurePoint at, std::string text, double size, Colour colour = {}, TextAnchor anchor = TextAnchor::start,
               bool bold = false, bool turned = false);
     /// Clips to this rectangle until `unclip`.
     void clip(double x, double y, double width, double height);
     void unclip();
 
-    /// A complete SVG file with a white background. Of many points of a line within half a pixel, the first, the lowest, the
-    /// highest and the last are kept.
+    /// A complete SVG file with a white background. Of the points of a line within half a pixel, only the first,
+    /// lowest, highest and last are kept.
     std::string svg() const;
-    /// The same as pixels, `scale` per unit. Text uses a scalable system font, or a built-in bitmap font. Throws Error
-    /// for more than 16384 pixels per side.
+    /// The same as an image with `scale` pixels per unit. Text uses a scalable system font, or a built-in bitmap font.
+    /// Throws Error for more than 16384 pixels per side.
     Image image(double scale = 2.0) const;
 
     double width() const { return width_; }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shader program, and what draws it.
+// A shader program, and the kind of driver that executes it.
 #pragma once
 
 #include <utility>
 
 namespace tactus::display {
 
-/// True when the current context draws on the processor (Mesa's llvmpipe and softpipe).
+/// Returns true if the current context renders on the processor (Mesa's llvmpipe and softpipe).
 bool is_software_driver();
 
 /// A linked vertex and fragment shader. Its context must be current when it is used or destroyed.

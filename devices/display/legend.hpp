@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour legend and scale bar in the corners of a picture.
+// Colour legend and scale bar in the corners of an image.
 #pragma once
 
 #include "devices/display/offscreen.hpp"
@@ -18,17 +18,17 @@ struct Legend {
     };
     struct Scale {
         std::string title, low_text, high_text;
-        Vec3 low{0.0}, high{1.0};  ///< a gradient between the two
+        Vec3 low{0.0}, high{1.0};  ///< a gradient from low to high
     };
     std::string title;
     std::vector<Scale> scales;
     std::vector<Entry> entries;
-    std::vector<std::string> warnings;  ///< shown in red: what could not be drawn
+    std::vector<std::string> warnings;  ///< shown in red: objects that could not be drawn
 
     bool empty() const { return title.empty() && scales.empty() && entries.empty() && warnings.empty(); }
 };
 
-/// The legend of bone colours.
+/// Returns the legend of bone colours.
 Legend::Scale density_scale(const geometry::DensityColours& colours);
 
 /// The legend as an image with a light background; `scale` pixels per unit, 13 units per line of text.
@@ -39,7 +39,8 @@ void add_legend(Image& image, const Legend& legend);
 /// The same within `width` columns from `x` on, in the corner that the viewer sees as the lower left one.
 void add_legend(Image& image, const Legend& legend, int x, int width, Flip flip);
 
-/// A scale bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of the target.
+/// Draws a scale bar of a round length in the lower right corner. `metres_per_pixel` applies at the depth of the
+/// target.
 void add_scale_bar(Image& image, double metres_per_pixel);
 
 }  // namespace tactus::display

@@ -23,7 +23,7 @@ Bounds bounds_of(const geometry::SurfacePatch& patch);
 /// Allocates ranges of a buffer in powers of two, so that freed ranges can be reused.
 class BufferShelf {
 public:
-    /// First element of a range of at least `count`. `end()` may grow.
+    /// Returns the first element of a range of at least `count`. `end()` may grow.
     std::size_t take(std::size_t count);
     void give_back(std::size_t first, std::size_t count);
     std::size_t end() const { return end_; }
@@ -34,7 +34,7 @@ private:
     std::size_t end_ = 0;
 };
 
-/// Some of the triangles of a mesh, in the order in which all are drawn.
+/// A part of a mesh's triangles, in the order in which all are drawn.
 struct TriangleSpan {
     std::size_t first = 0, most = std::numeric_limits<std::size_t>::max();
 };
@@ -50,19 +50,19 @@ public:
     MeshPool& operator=(const MeshPool&) = delete;
 
     Mesh make();
-    /// A mesh with levels of detail by CoarseSurface; `grid`: the grid of its parts.
+    /// Creates a mesh with levels of detail by CoarseSurface; `grid`: the grid of its parts.
     Mesh make(const geometry::SurfaceGrid& grid);
     void remove(Mesh mesh);
     /// Replaces a part; an empty part removes it. Throws Error when a triangle refers to a missing vertex.
     void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch);
-    /// The same with levels of detail that were made before; `coarse`: of a mesh with a grid, by CoarseSurface.
+    /// The same with levels of detail computed before; `coarse`: from CoarseSurface, for a mesh with a grid.
     void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch,
                   const geometry::CoarseSurface::Levels& coarse);
-    /// Draws the visible parts in a picture of `width` × `height` pixels; `to_clip` maps the mesh frame to clip space.
-    /// `grain`: greatest width of a level-of-detail cell at the nearest point, pixels; 0: all triangles. Returns the
-    /// number of triangles drawn: with a span, fewer than `most` when they end.
+    /// Draws the visible parts in a frame of `width` × `height` pixels; `to_clip` maps the mesh frame to clip space.
+    /// `grain`: largest width in pixels of a level-of-detail cell at the nearest point; 0: all triangles. Returns the
+    /// number of triangles drawn; with a span, fewer than `most` when the mesh ends.
     std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain, TriangleSpan span = {}) const;
-    std::size_t triangles(Mesh mesh) const;  ///< in all
+    std::size_t triangles(Mesh mesh) const;  ///< total
     /// Increases whenever a mesh changes.
     std::uint64_t changes() const { return changes_; }
 
@@ -91,7 +91,7 @@ private:
     std::vector<Parts> meshes_;
     geometry::CoarseSurface coarse_;
     std::uint64_t changes_ = 0;
-    // Buffers for the driver.
+    // Scratch buffers for the driver.
     mutable std::vector<const Part*> seen_;
     mutable std::vector<std::int32_t> counts_, bases_;
     mutable std::vector<const void*> offsets_;

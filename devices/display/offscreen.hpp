@@ -27,7 +27,7 @@ struct View {
     double vertical_field_of_view_rad = 0.6;
 };
 
-/// 8-bit sRGB picture: r g b per pixel, rows from top to bottom.
+/// An 8-bit sRGB image: r g b per pixel, rows from top to bottom.
 struct Image {
     int width = 0;
     int height = 0;
@@ -39,13 +39,13 @@ struct Image {
     }
 };
 
-/// The view along `direction` (from the eye into the scene) that fits the bounding sphere of the box from `low` to
-/// `high` into a picture of `aspect` = width / height. `up` must not be parallel to `direction`.
+/// Returns the view along `direction` (from the eye into the scene) that fits the bounding sphere of the box from `low`
+/// to `high` into an image of `aspect` = width / height. `up` must not be parallel to `direction`.
 View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Vec3& up = {0.0, 0.0, 1.0},
               double aspect = 1.0);
 
-/// Renders anti-aliased, with two lights on a light neutral background. Deterministic on one machine. Throws Error when
-/// there is no OpenGL context, when the arrays of a mesh have inconsistent lengths, or for a size outside 1 to 8192
+/// Renders anti-aliased, with two lights on a light neutral background. Deterministic on one machine. Throws Error if
+/// there is no OpenGL context, if the arrays of a mesh have inconsistent lengths, or for a size outside 1 to 8192
 /// pixels.
 Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offscreen pictures of a scene.
+// Offscreen images of a scene.
 #pragma once
 
 #include "devices/display/gl_context.hpp"
@@ -14,7 +14,7 @@ namespace tactus::display {
 /// Owns an OpenGL context that is current in its thread during its lifetime.
 class PictureMaker {
 public:
-    /// Throws Error when there is no OpenGL context, and for a size outside 1 to 8192 pixels.
+    /// Throws Error if there is no OpenGL context, and for a size outside 1 to 8192 pixels.
     PictureMaker(int width, int height);
     ~PictureMaker();
 

@@ -14,14 +14,15 @@ namespace tactus::display {
 /// Writes a PNG file atomically. Throws Error when it cannot be written.
 void write_png(const Image& image, const std::string& path);
 
-/// The bytes of a PNG file with a palette of at most 256 colours; `cells` has columns × rows indices, row by row.
+/// Returns the bytes of a PNG file with a palette of at most 256 colours; `cells` has columns × rows indices, row by
+/// row.
 std::string palette_png_bytes(int columns, int rows, std::span<const std::uint8_t> cells,
                               std::span<const Colour> palette);
 
-/// Bytes as text, for pictures inside of SVG and HTML.
+/// Encodes bytes as Base64, for images inside SVG and HTML.
 std::string base64(std::string_view bytes);
 
-/// The bytes of a PNG file, for HTML pages with embedded pictures.
+/// Returns the bytes of a PNG file, for HTML pages with embedded images.
 std::string png_bytes(const Image& image);
 
 }  // namespace tactus::display

@@ -7,7 +7,7 @@
 
 namespace tactus::display {
 
-/// A PNG file of at most 4096 pixels a side. Throws Error when it is none, or cannot be read.
+/// Reads a PNG file of at most 4096 pixels per side. Throws Error if it is not one or cannot be read.
 Image read_png(const std::string& path);
 
 }  // namespace tactus::display

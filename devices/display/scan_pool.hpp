@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans in GPU memory: what the inside of a body looks like where a plane cuts it.
+// Scans in GPU memory, drawn on the section of a body where a plane cuts it.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -13,12 +13,12 @@
 
 namespace tactus::display {
 
-/// Values that are drawn black and white.
+/// The values that are drawn as black and white.
 struct GreyScale {
     double black = 0.0, white = 1.0;
 };
 
-/// What a scan is kept as.
+/// A scan as stored.
 struct GreyImage {
     std::array<int, 3> size{};
     std::vector<std::uint8_t> grey;
@@ -26,8 +26,8 @@ struct GreyImage {
     bool empty() const { return grey.empty(); }
 };
 
-/// The grey values of a grid of at least 2 samples per axis in 8 bits, and of a very large one every n-th sample; empty
-/// for an empty grid. Needs no context, and can be made on another thread.
+/// Returns the grey values of a grid of at least 2 samples per axis in 8 bits. A very large grid is subsampled to every
+/// n-th sample. Empty for an empty grid. Needs no context, and can run on another thread.
 GreyImage grey_image(const volume::Grid& grid, const GreyScale& scale);
 
 /// All scans of one OpenGL context, which must be current in every call.
@@ -40,12 +40,12 @@ public:
     ScanPool(const ScanPool&) = delete;
     ScanPool& operator=(const ScanPool&) = delete;
 
-    /// -1 for an empty one.
+    /// Uploads an image; returns -1 for an empty one.
     Scan make(const GreyImage& image);
     void remove(Scan scan);
-    /// From the frame of the grid to the texture's coordinates.
+    /// Transform from the frame of the grid to the texture's coordinates.
     const Mat4& to_texture(Scan scan) const { return scans_[static_cast<std::size_t>(scan)].to_texture; }
-    /// To texture unit 0.
+    /// Binds to texture unit 0.
     void bind(Scan scan) const;
 
 private:

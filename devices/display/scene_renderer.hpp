@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a scene with OpenGL 3.3 into the bound framebuffer: a window or an offscreen picture. Its context must be
-// current in every call.
+// Draws a scene with OpenGL 3.3 into the bound framebuffer: a window or an offscreen image. Its context must be current
+// in every call.
 #pragma once
 
 #include "devices/display/mesh_pool.hpp"
@@ -24,19 +24,19 @@ struct DrawnMesh {
     MeshPool::Mesh mesh = 0;
     Pose pose;
     double opacity = 1.0;  ///< below 1: transparent
-    bool is_clipped = true;  ///< affected by the picture's clip plane
-    bool is_closed = false;  ///< never seen from inside: back faces are not drawn
+    bool is_clipped = true;  ///< cut by the clip plane of the frame
+    bool is_closed = false;  ///< never visible from inside: back faces are not drawn
     bool shines_through = false;  ///< faintly visible when occluded: arrows, axes
-    ScanPool::Scan scan = -1;  ///< what a section of the mesh shows; -1: the picture's colour of a section
+    ScanPool::Scan scan = -1;  ///< scan drawn on a section of the mesh; -1: the flat section colour
     Pose to_scan = {};  ///< from the frame of the mesh to that of the scan's grid
-    Vec3 tint{0.0};  ///< sRGB that replaces the colours of the surface by the share `tinted`, 0 to 1
+    Vec3 tint{0.0};  ///< sRGB, blended over the colours of the surface by the fraction `tinted`, 0 to 1
     double tinted = 0.0;
 };
 
-/// Level-of-detail cell size while something moves, pixels: the outline is off by one pixel at most.
+/// Level-of-detail cell size during motion, pixels: the outline is off by one pixel at most.
 inline constexpr double grain_of_motion = 4.0;
 
-/// A complete picture.
+/// The complete content of a frame.
 struct Picture {
     std::vector<DrawnMesh> meshes;
     std::vector<geometry::SurfaceVertex>
@@ -46,7 +46,7 @@ struct Picture {
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
     Vec3 sky{0.96, 0.97, 0.98}, ground{0.78, 0.80, 0.83};  ///< sRGB of the background, above and below
     Bounds bounds;  ///< of all meshes
-    bool is_quick = false;  ///< lit at the vertices, not at each pixel: cheap where the processor draws
+    bool is_quick = false;  ///< lit per vertex instead of per pixel: cheap with software rendering
     double grain = 0.0;  ///< level-of-detail cell size for moving scenes, pixels; 0: all triangles
 };
 
@@ -65,14 +65,14 @@ struct DrawnView {
 /// separation: a thirtieth of the distance, which is comfortable.
 std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, int width, int height, StereoMode mode,
                                 std::optional<double> separation = {});
-/// The views of one screen of a display: the projection of one eye, or of the left and the right eye.
+/// Returns the views of one screen of a display: the projection of one eye, or of the left and the right eye.
 std::vector<DrawnView> views_of(std::span<const ScreenView> eyes, int width, int height, StereoMode mode,
                                 Flip flip = Flip::none);
 
-/// How far a picture that is drawn in steps has come.
+/// Progress of a frame that is drawn in steps.
 struct DrawnSoFar {
-    std::size_t view = 0, mesh = 0, side = 0, triangle = 0;  ///< what is drawn next; side: of a transparent mesh
-    bool is_see_through = false;  ///< the opaque meshes of the view are drawn
+    std::size_t view = 0, mesh = 0, side = 0, triangle = 0;  ///< next item to draw; side: of a transparent mesh
+    bool is_see_through = false;  ///< the opaque meshes of the view are done
     bool operator==(const DrawnSoFar&) const = default;
 };
 
@@ -94,18 +94,18 @@ public:
     MeshPool& meshes() { return *pool_; }
     ScanPool& scans() { return *scans_; }
 
-    /// Clears and draws every view. Skips meshes with a pose that is not finite. Afterwards depth test, blending,
-    /// scissor and clipping are off, and the colour mask is complete.
+    /// Clears and draws every view. Skips meshes whose pose is not finite. Afterwards depth test, blending, scissor and
+    /// clipping are off, and the colour mask is complete.
     void draw(const Picture& picture, std::span<const DrawnView> views);
-    /// Draws at most so many triangles of it, and with the last ones the hidden parts of what shines through, from `so_far`
-    /// on, which it moves on. What was drawn must still be in the framebuffer, picture and views must be the same. True:
-    /// the picture is complete, with the same pixels as by `draw`.
+    /// Draws at most that many triangles of a frame, starting at `so_far`, which it advances. The last step also draws
+    /// the hidden parts of meshes that shine through. The framebuffer must still hold the previous steps, and picture
+    /// and views must be unchanged. Returns true when the frame is complete, with the same pixels as by `draw`.
     bool draw_some(const Picture& picture, std::span<const DrawnView> views, DrawnSoFar& so_far,
                    std::size_t most_triangles);
-    /// Triangles of the last `draw` or `draw_some`.
+    /// Number of triangles of the last `draw` or `draw_some`.
     std::size_t drawn_triangles() const { return drawn_triangles_; }
 
-    /// The surface point at (x, y) of the target, pixels from the lower left; nothing where there is only background.
+    /// Returns the surface point at (x, y) of the target, pixels from the lower left; nothing on the background.
     std::optional<Picked> pick(const Picture& picture, const DrawnView& view, double x, double y);
 
 private:

@@ -38,7 +38,7 @@ void main() {
 })";
 
 // The lights move with the camera: key light from the upper left, fill light from the right, rim light from behind;
-// `way` flips them for pictures seen in a mirror. `v` points to the eye.
+// `way` flips them for images seen in a mirror. `v` points to the eye.
 inline constexpr const char* lighting = R"(
 uniform vec2 way;
 vec3 lit(vec3 n, vec3 v, vec3 surface) {
@@ -54,7 +54,7 @@ vec3 lit(vec3 n, vec3 v, vec3 surface) {
 })";
 
 // A section shows the back faces of the far wall: in a flat colour, or in the grey of the scan where the line of sight
-// crosses the plane. `to_scan` leads from a pixel to that place in the scan.
+// crosses the plane. `to_scan` maps a pixel to that position in the scan.
 inline constexpr const char* section_colour = R"(
 uniform vec3 section;
 uniform bool is_cut, has_scan;
@@ -85,7 +85,7 @@ void main() {
     colour = vec4(lit(n, normalize(-eye_position), mix(surface.rgb, tint.rgb, tint.a)), opacity * surface.a);
 })";
 
-// Both sides lit at the vertices: on a processor a triangle of a few pixels costs much less so.
+// Lights both sides per vertex: in software rendering that is much cheaper for triangles of a few pixels.
 inline constexpr const char* quick_mesh_vertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

@@ -5,7 +5,7 @@
 
 namespace tactus::display {
 
-/// Path of a scalable system font; empty when none of the usual fonts is installed.
+/// Path of a scalable system font; empty if none of the usual fonts is installed.
 std::string system_font(bool bold);
 
 }  // namespace tactus::display

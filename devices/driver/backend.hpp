@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What differs between drivers of real devices. All else (threads, watchdogs, limits, reconnection) is in
-// ThreadedDevice. Every method is called by one thread of the driver's own and may block.
+// The part of a real device's driver that differs between devices. ThreadedDevice does everything else (threads,
+// watchdogs, limits, reconnection). Every method is called by one thread of the driver and may block.
 #pragma once
 
 #include "devices/driver/exchange.hpp"
@@ -14,19 +14,19 @@
 
 namespace tactus::driver {
 
-/// What is known of a device without opening it.
+/// Properties of a device that are available without opening it.
 struct Outline {
     DeviceInfo info;
-    std::string absence;  ///< why it cannot be here; empty: it may be
+    std::string absence;  ///< reason why the device cannot be present; empty: it may be
 };
 
 /// A device that is open.
 struct Opened {
-    DeviceInfo info;  ///< one without motors cannot push anybody, and needs no confirmation
-    std::string serial;    ///< for people, and for what was confirmed of this device; empty: it states none
-    std::string setup;     ///< settings on which the direction of a push depends; part of what is confirmed
+    DeviceInfo info;  ///< a device without motors exerts no force and needs no confirmation
+    std::string serial;    ///< for messages, and for the confirmation of this device; empty: unknown
+    std::string setup;     ///< settings that determine the direction of a push; part of the confirmation
     std::vector<std::string> versions;  ///< "SDK 3.17.5", for reports
-    int axes = 3;            ///< along which it pushes: 1: to the right; 2: and away; 3: and up
+    int axes = 3;            ///< directions in which it pushes: 1: right; 2: also away; 3: also up
 };
 
 enum class OpenMode {
@@ -34,7 +34,7 @@ enum class OpenMode {
     reading,  ///< nothing is enabled and nothing moves
 };
 
-/// Called with each step before it is taken: "load libdhd.so". The last one is the one that failed.
+/// Called with each step before it starts: "load libdhd.so". The last step is the one that failed.
 using StepLog = std::function<void(const std::string& step)>;
 
 class Backend {
@@ -43,20 +43,21 @@ public:
 
     virtual Outline outline() const = 0;
 
-    /// Opens the device, at first and again when it was lost. Throws Error that says what failed and what to do.
+    /// Opens the device, at first and after a loss. Throws Error that states the failure and its remedy.
     virtual Opened open(OpenMode mode, const std::shared_ptr<Exchange>& exchange, const StepLog& step) = 0;
 
-    /// Gives the force and publishes a sample, or looks after a vendor's thread that does. False: the device is lost.
+    /// Sends the force and publishes a sample, or checks the vendor's thread that does so. Returns false if the device
+    /// is lost.
     virtual bool round(Exchange& exchange) noexcept = 0;
 
-    /// Closes what is open: no force, then all else. Also after an `open` that threw.
+    /// Closes everything that is open: first removes the force. Also called after an `open` that threw.
     virtual void close() noexcept = 0;
 
     /// Time from one round to the next.
     virtual std::int64_t round_ns() const noexcept { return 500'000; }
 
-    /// True when somebody else decides how much there is to read, as at a socket or a line: then the thread runs below
-    /// every tick, so that a flood takes time from nobody.
+    /// True if an external sender determines the amount of input, as at a socket or a line. The thread then runs with a
+    /// priority below every tick, so that a flood of input delays no tick.
     virtual bool is_peer() const noexcept { return false; }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest sample and the newest force, between the thread of a vendor or a peer and the thread of the ticks. Neither
-// waits for the other. What is old counts as gone: a sample is invalid after 20 ms, a force is 0 N after 10 ms.
+// Exchanges the newest sample and the newest force between the thread of a device (of a vendor's library or a network
+// client) and the tick thread. Neither waits for the other. Old values expire: a sample is invalid after 20 ms, a force
+// is 0 N after 10 ms.
 #pragma once
 
 #include "devices/haptic/pulled_hand.hpp"
@@ -15,48 +16,48 @@
 
 namespace tactus::driver {
 
-/// What a device says of itself at one time, in the device frame of Tactus: x to the right, y away from the user, z up;
+/// State reported by a device at one time, in the device frame of Tactus: x to the right, y away from the user, z up;
 /// m, rad, m/s, rad/s.
 struct Reading {
     Pose pose;
     Twist twist;  ///< ignored unless has_twist
     std::uint32_t buttons = 0;
     bool has_twist = false;  ///< false: the velocity is estimated from the poses by an adaptive window
-    bool is_valid = true;  ///< false: the device is there, but its pose is none, as before a calibration
+    bool is_valid = true;  ///< false: the device is present but its pose is invalid, as before calibration
 };
 
-/// What a device may be given.
+/// Limits of the force sent to a device.
 struct ForceLimits {
-    double force = 0.0, torque = 0.0;  ///< N, N·m; 0: none at all
-    bool is_felt = true;  ///< false: without motors, an old force does not fade
+    double force = 0.0, torque = 0.0;  ///< N, N·m; 0: none
+    bool is_felt = true;  ///< false: no motors, so an old force does not fade
 };
 
 class Exchange {
 public:
     using Clock = std::int64_t (*)() noexcept;
     static constexpr std::int64_t oldest_sample_ns = 20'000'000;
-    static constexpr std::int64_t oldest_force_ns = 5'000'000, force_fade_ns = 5'000'000;  ///< 0 N after both
+    static constexpr std::int64_t oldest_force_ns = 5'000'000, force_fade_ns = 5'000'000;  ///< 0 N after their sum
 
     explicit Exchange(Clock now = boot_ns) noexcept : now_(now) {}
 
-    /// Before the threads begin, and by the device's thread when a device is there again: forces begin anew with small
-    /// ones. `noise` in m: most that a position is away from the truth; `angular_noise` in rad.
+    /// Call before the threads start, and from the device's thread when a device has returned: forces resume only after
+    /// small ones. `noise`: largest error of a position, m; `angular_noise`: rad.
     void begin(const ForceLimits& limits, double noise, double angular_noise) noexcept;
 
-    // The device's thread. Real-time; neither waits nor allocates.
+    // The device's thread. Real-time safe: neither waits nor allocates.
     void publish(const Reading& reading) noexcept;
-    /// The device is gone: samples are invalid at once.
+    /// The device is lost: samples become invalid immediately.
     void publish_loss() noexcept;
-    /// What the device is to give now: within the limits, finite, zero when the last commit is old.
+    /// Returns the force to send now: within the limits, finite, zero if the last commit is old.
     Wrench force() noexcept;
 
-    // The thread of the ticks. Real-time; neither waits nor allocates.
+    // The tick thread. Real-time safe: neither waits nor allocates.
     DeviceSample newest() noexcept;
     void commit(const Wrench& on_hand) noexcept;
-    /// Period of the commits in s. One that is slower than 600 Hz makes a force old later: after three periods.
+    /// Sets the period of the commits, s. For a rate below 600 Hz, a force expires after three periods instead.
     void expect(double period_s) noexcept;
 
-    /// Where a person wants the hand, of drivers that pull it there. The device's thread writes.
+    /// Target pose of the hand, for drivers that pull it there. Written by the device's thread.
     haptic::PullLink pull;
 
     /// Samples published since the beginning. Any thread.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a peer has sent.
+// Non-blocking input from a network client.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace tactus::driver {
 
-/// Reads what a socket has now into `room`, without waiting: a flood waits in the socket for the next call. How many bytes
-/// there were; none when the peer is gone.
+/// Reads the bytes that a socket has now into `room`, without waiting; more input stays in the socket for the next
+/// call. Returns the number of bytes, or nothing if the connection is closed.
 std::optional<std::size_t> read_now(int file, std::span<std::uint8_t> room) noexcept;
 
-/// Lets the system ask whether a silent peer is still there: one whose machine or cable is gone counts as gone after some
-/// 4 s, instead of never when nothing is sent to it.
+/// Enables TCP keep-alive: a connection whose machine or cable has failed is closed after about 4 s. Without it, a
+/// connection over which nothing is sent would stay open for ever.
 void keep_alive(int file) noexcept;
 
 }  // namespace tactus::driver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vendor's library, loaded when a device is opened: nothing of it is needed to build Tactus.
+// A vendor's library, loaded when a device is opened: building Tactus requires no part of it.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -11,18 +11,18 @@ namespace tactus::driver {
 
 class SharedLibrary {
 public:
-    /// Loads the first of `candidates` that can be loaded: paths, or names that the system looks for. It stays loaded
-    /// for ever: a vendor's threads may still run in it. Throws Error that names `product`, each candidate and why the
-    /// last one failed.
+    /// Loads the first of `candidates` that can be loaded: paths, or names that the system searches for. The library is
+    /// never unloaded, because a vendor's threads may still run in it. Throws Error that names `product`, each
+    /// candidate, and the reason of the last failure.
     SharedLibrary(const std::string& product, const std::vector<std::string>& candidates);
 
-    /// Sets `function` to the one of that name. Throws Error that names library and function.
+    /// Sets `function` to the symbol of that name. Throws Error that names library and function.
     template <class F>
     void require(F*& function, const char* name) const {
         function = reinterpret_cast<F*>(find(name));
         if (!function) fail(name);
     }
-    /// Null when the library has none.
+    /// Sets it to null if the library does not have the symbol.
     template <class F>
     void look_for(F*& function, const char* name) const {
         function = reinterpret_cast<F*>(find(name));
@@ -38,19 +38,20 @@ private:
     void* handle_ = nullptr;
 };
 
-/// Where a vendor's library may be.
+/// Search locations of a vendor's library.
 struct LibraryPlaces {
-    const char* sdk_variable;  ///< of the environment: the folder of the vendor's SDK
-    std::vector<std::string> folders;  ///< within the SDK; may hold one "*" as a whole part of the path
-    std::vector<std::string> stems;  ///< "libHD.so": how the names of its files begin
-    std::vector<std::string> names;  ///< for which the system looks in the end
+    const char* sdk_variable;  ///< environment variable with the folder of the vendor's SDK
+    std::vector<std::string> folders;  ///< within the SDK; may contain one "*" as a whole component of the path
+    std::vector<std::string> stems;  ///< "libHD.so": prefixes of its file names
+    std::vector<std::string> names;  ///< tried last, by the system's search path
 };
 
-/// In the order in which they are to be tried. `given`: a file that the user named, which is then the only one; or "".
+/// Returns the candidates in the order of trial. `given`: a file that the user named, which is then the only one; or
+/// "".
 std::vector<std::string> library_candidates(const std::string& given, const LibraryPlaces& places);
 
-/// Files below `folder` (which may hold one "*" as a whole part of the path) whose names begin with `stem`, sorted,
-/// newest version last in the alphabet first.
+/// Returns the files below `folder` (which may contain one "*" as a whole component of the path) whose names begin with
+/// `stem`, in descending order of their names.
 std::vector<std::string> libraries_in(const std::string& folder, const std::string& stem);
 
 }  // namespace tactus::driver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The system calls on Linux event devices (/dev/input/event*) that drivers make, so that a test can stand for the kernel.
+// The system calls on Linux event devices (/dev/input/event*) that drivers make, replaceable by a fake kernel in tests.
 #pragma once
 
 #include <linux/input.h>
@@ -13,33 +13,33 @@
 
 namespace tactus::evdev {
 
-/// As the system calls of these names: -1 and errno on failure. Any thread.
+/// Like the system calls of these names: -1 and errno on failure. Any thread.
 class EventSystem {
 public:
     virtual ~EventSystem() = default;
 
     virtual int open(const std::string& path, int flags) noexcept = 0;
     virtual void close(int file) noexcept = 0;
-    /// ioctl. `argument` is an address or a number, as the request wants it.
+    /// ioctl. `argument` is an address or a number, depending on the request.
     virtual int control(int file, unsigned long request, std::uintptr_t argument) noexcept = 0;
-    /// True when there is something to read, or the device is lost.
+    /// Returns true if there is something to read, or if the device is lost.
     virtual bool wait(int file, int longest_ms) noexcept = 0;
-    /// Bytes read.
+    /// Returns the number of bytes read.
     virtual ssize_t read(int file, std::span<input_event> events) noexcept = 0;
     virtual bool write(int file, const input_event& event) noexcept = 0;
 
     /// Paths of all event devices, in order.
     virtual std::vector<std::string> devices() = 0;
-    /// A file that the driver of the device keeps in /sys, "range"; empty: there is none.
+    /// Returns the content of an attribute of the device in /sys, such as "range"; empty if there is none.
     virtual std::string attribute(const std::string& path, const std::string& name) = 0;
 };
 
 EventSystem& linux_events();
 
-/// The bits of one kind of event that a device has (EVIOCGBIT), or of its keys that are held.
+/// The bits of one kind of event that a device has (EVIOCGBIT), or of its pressed keys.
 class Bits {
 public:
-    /// Nothing is set when the device does not say.
+    /// No bit is set if the ioctl fails.
     static Bits of_kind(EventSystem& system, int file, unsigned kind) noexcept;
     static Bits of_held_keys(EventSystem& system, int file) noexcept;
     bool operator[](unsigned code) const noexcept {
@@ -50,7 +50,7 @@ private:
     unsigned char bytes_[KEY_MAX / 8 + 1] = {};
 };
 
-/// False when the device does not say.
+/// Returns false if EVIOCGABS fails.
 bool ask_axis(EventSystem& system, int file, unsigned axis, input_absinfo& info) noexcept;
 
 }  // namespace tactus::evdev

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One effect of an event device: a constant force, or the vibration of a rumble motor. An effect lasts 100 ms and is told
-// again and again while it is wanted: a driver that hangs leaves no force. The kernel erases it when its file is closed.
-// (docs.kernel.org/input/ff.html)
+// One effect of an event device: a constant force, or the vibration of a rumble motor. An effect lasts 100 ms and is
+// renewed while it is wanted, so that a driver that hangs leaves no force. The kernel erases it when its file is
+// closed. (docs.kernel.org/input/ff.html)
 #pragma once
 
 #include "devices/evdev/event_system.hpp"
@@ -17,12 +17,13 @@ public:
 
     explicit ForceEffect(EventSystem& system) : system_(&system) {}
 
-    /// Uploads the effect without strength. `type`: FF_CONSTANT or FF_RUMBLE. False: the device refuses it (errno).
+    /// Uploads the effect with zero strength. `type`: FF_CONSTANT or FF_RUMBLE. Returns false if the device rejects it
+    /// (errno).
     bool begin(int file, std::uint16_t type) noexcept;
-    /// Strength from -1 to 1, of a rumble from 0; positive pushes to the left. `now_ns` of any steady clock. False: the
-    /// device did not take it (errno); what it gives ends by itself.
+    /// Sets the strength, from -1 to 1, of a rumble from 0; positive pushes to the left. `now_ns` of any steady clock.
+    /// Returns false if the device rejects it (errno); the current effect then ends by itself.
     bool give(double strength, std::int64_t now_ns) noexcept;
-    /// Stops and erases it. The file is open still, or its device is gone.
+    /// Stops and erases the effect. The file must still be open, even if its device is gone.
     void end() noexcept;
 
 private:

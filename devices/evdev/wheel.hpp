@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "wheel": a steering wheel with force feedback, by Linux evdev. Its motor gives a constant force that changes from
-// round to round. The hand holds its rim at the top.
+// Driver "wheel": a steering wheel with force feedback, by Linux evdev. Its motor gives a constant force that is
+// updated in each round. The hand holds its rim at the top.
 #pragma once
 
 #include "devices/driver/backend.hpp"
@@ -13,7 +13,7 @@ namespace tactus::evdev {
 
 /// Options: file, range, radius, max_torque, moves, reversed, serial. Throws Error.
 std::unique_ptr<driver::Backend> make_wheel(Options& options);
-/// With another system, which lives longer.
+/// The same with another system, which must outlive the backend.
 std::unique_ptr<driver::Backend> make_wheel_of(EventSystem& system, Options& options);
 
 }  // namespace tactus::evdev

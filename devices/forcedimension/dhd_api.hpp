@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of Force Dimension's SDK (DHD, 3.x) that are used, by the vendor's documentation of the C interface.
+// The functions of Force Dimension's SDK (DHD, 3.x) that the driver uses, from the vendor's documentation of the C
+// interface.
 #pragma once
 
 #include "devices/driver/shared_library.hpp"
@@ -9,14 +10,14 @@
 
 namespace tactus::forcedimension {
 
-/// dhdGetStatus is not told how much room there is: 17 places in 3.17, perhaps more in a later SDK.
+/// Buffer size for dhdGetStatus, which does not check it: version 3.17 writes 17 entries, a later SDK perhaps more.
 inline constexpr int most_status = 128;
-/// Places in what dhdGetStatus fills.
+/// Indices in the result of dhdGetStatus.
 enum StatusPlace { status_reset = 3, status_force = 5 };
 
 class DhdApi {
 public:
-    /// Throws Error that names a file or function that is missing. `library`: a file, or "" for the usual places.
+    /// Throws Error that names the missing file or function. `library`: a file, or "" for the usual locations.
     explicit DhdApi(const std::string& library);
 
     const std::string& path() const { return library_.path(); }
@@ -27,7 +28,7 @@ private:
     driver::SharedLibrary library_;
 
 public:
-    // Needed.
+    // Required functions.
     int (*open_id)(char) = nullptr;
     int (*close)(char) = nullptr;
     int (*stop)(char) = nullptr;
@@ -37,7 +38,7 @@ public:
     int (*status)(int*, char) = nullptr;
     int (*frame)(double*, double*, double*, double (*)[3], char) = nullptr;
     int (*set_force)(double, double, double, char) = nullptr;
-    // Older versions have not all of these.
+    // Functions that older versions may lack.
     int (*open_serial)(int) = nullptr;
     int (*serial)(unsigned short*, char) = nullptr;
     const char* (*system_name)(char) = nullptr;
@@ -54,7 +55,7 @@ public:
     int (*set_watchdog)(unsigned char, char) = nullptr;
 };
 
-/// What a type of device may be given, and what it resolves.
+/// Limits and resolution of a type of device.
 struct Model {
     int type;
     const char* name;
@@ -65,9 +66,9 @@ struct Model {
     bool turns;         ///< senses rotation
 };
 
-/// Null for a type that the table does not have.
+/// Returns null for a type that is not in the table.
 const Model* find_model(int type);
-/// What a device of an unknown type may be given.
+/// Conservative limits for a device of unknown type.
 inline constexpr Model unknown_model{0, "unknown Force Dimension device", 4.0, 0.0, 1000.0, 0.1e-3, true};
 
 }  // namespace tactus::forcedimension

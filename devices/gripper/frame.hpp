@@ -57,7 +57,7 @@ std::uint32_t crc32(std::span<const std::uint8_t> bytes) noexcept;
 
 Frame pack(const DriveFrame& drive, std::uint16_t sequence) noexcept;
 Frame pack(const SampleFrame& sample, std::uint16_t sequence) noexcept;
-/// False for another kind or length.
+/// Returns false for another kind or length.
 bool unpack(const Frame& frame, DriveFrame& out) noexcept;
 bool unpack(const Frame& frame, SampleFrame& out) noexcept;
 
@@ -74,7 +74,7 @@ public:
         std::uint64_t good = 0, bad_checksum = 0, bad_header = 0, skipped_bytes = 0;
     };
 
-    /// Adds a byte. True when it completes a valid frame, which is then `frame()`.
+    /// Adds a byte. Returns true if it completes a valid frame, which is then `frame()`.
     bool take(std::uint8_t byte) noexcept;
     const Frame& frame() const noexcept { return frame_; }
     const Counts& counts() const noexcept { return counts_; }

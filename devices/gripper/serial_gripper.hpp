@@ -28,7 +28,7 @@ struct SerialGripperSettings {
     double reopen_every = 0.25;    ///< s between attempts to reopen a lost line
 };
 
-/// What the device states: known from its settings.
+/// Returns the device properties that follow from its settings.
 DeviceInfo info_of(const SerialGripperSettings& settings);
 
 class SerialGripper final : public HapticDevice {

@@ -19,27 +19,28 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    /// Opens the line, for this program alone. Returns an empty text, or the reason of the failure. `baud` must be a rate
-    /// of termios.
+    /// Opens the line for exclusive use. Returns an empty text, or the reason of the failure. `baud` must be a rate of
+    /// termios.
     std::string open(const std::string& path, int baud) noexcept(false);
     void close() noexcept;
     bool is_open() const noexcept { return file_ >= 0; }
 
     /// Reads the available bytes, at most the size of `into`; closes the line when it is lost.
     std::size_t read(std::span<std::uint8_t> into) noexcept;
-    /// Sends a message of at most `longest` bytes. A line that is nearly full takes a part of one: its rest is sent before
-    /// any other, because a receiver takes the bytes of the next message for it. True: the line has begun to take this
-    /// one; false: it takes nothing now (the message is dropped), or it is lost, and then it is closed.
+    /// Sends a message of at most `longest` bytes. If the line is nearly full, it accepts only a part; the rest is sent
+    /// before any other message, because the receiver would otherwise interpret the next message as that rest. Returns
+    /// true if the line has accepted at least the beginning; false if it accepts nothing now (the message is dropped)
+    /// or is lost (it is then closed).
     bool send(std::span<const std::uint8_t> message) noexcept;
 
     static bool knows_baud(int baud) noexcept;
 
 private:
-    /// How many bytes the line took; closes it when it is lost.
+    /// Returns the number of bytes accepted; closes the line if it is lost.
     std::size_t write_some(std::span<const std::uint8_t> bytes) noexcept;
 
     int file_ = -1;
-    std::array<std::uint8_t, longest> rest_{};  ///< of the message that was begun
+    std::array<std::uint8_t, longest> rest_{};  ///< of a partly sent message
     std::size_t rest_size_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a client and a server of a WebSocket agree to speak it (RFC 6455, section 4).
+// The opening handshake of a WebSocket (RFC 6455, section 4).
 #pragma once
 
 #include <array>
@@ -9,19 +9,20 @@
 
 namespace tactus::haply {
 
-/// SHA-1 (FIPS 180-4), for the handshake alone: it protects nothing.
+/// SHA-1 (FIPS 180-4), for the handshake only; it protects nothing.
 std::array<std::uint8_t, 20> sha1(std::string_view text);
 
-/// Another one for each connection: 16 random bytes in Base64.
+/// Returns a new key for each connection: 16 random bytes in Base64.
 std::string handshake_key();
 
-/// What a server answers to that key: its Sec-WebSocket-Accept.
+/// Returns the server's answer to that key: its Sec-WebSocket-Accept.
 std::string accept_for(std::string_view key);
 
-/// The greeting of a client.
+/// Returns the opening request of a client.
 std::string greeting(std::string_view host, int port, std::string_view key);
 
-/// Why `answer`, which ends with an empty line, does not open the connection that was asked for; empty: it does.
+/// Returns the reason why `answer`, which ends with an empty line, does not open the requested connection; empty if it
+/// does.
 std::string refusal(std::string_view answer, std::string_view key);
 
 }  // namespace tactus::haply

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "haply": Inverse3 and Minverse with a VerseGrip, by Haply's Inverse Service on this machine.
+// Driver "haply": Inverse3 and Minverse with a VerseGrip, through Haply's Inverse Service on this machine.
 #pragma once
 
 #include "devices/driver/backend.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of Haply's Inverse Service (3.x): JSON texts, one state for each text that was sent.
+// The messages of Haply's Inverse Service (3.x): JSON texts. The service answers each text with one state.
 #pragma once
 
 #include "devices/driver/exchange.hpp"
@@ -10,22 +10,23 @@
 
 namespace tactus::haply {
 
-/// What the service says of its first Inverse3 (or Minverse).
+/// State of the first Inverse3 (or Minverse) of the service.
 struct InverseState {
-    std::string device, type, version;  ///< id; "inverse3" and alike; of the service, "" when it does not say
+    std::string device, type, version;  ///< id; "inverse3" and alike; of the service, "" if not given
     bool has_pose = false;
-    driver::Reading reading;  ///< no velocity: it is estimated as that of every device
-    std::string changed_axes;  ///< why its axes are not the maker's own; empty: they are
+    driver::Reading reading;  ///< without velocity, which is estimated as for every device
+    std::string changed_axes;  ///< the axis settings that differ from the maker's defaults; empty: none
 };
 
-/// Nothing for a text that is no such message. Fields that are missing or of another kind are left as they were.
+/// Returns nothing for a text that is not such a message. Missing fields and fields of another type keep their values.
 std::optional<InverseState> read_inverse(std::string_view text);
 
 /// The name of the service's field for a force changed between its versions.
 enum class ForceKey { vector, values };
 ForceKey force_key_of(std::string_view version);
 
-/// The text that gives a force in N. `first`: with the name of this program, as the first text of a connection.
+/// Returns the text that sends a force in N. `first`: with the name of this program, for the first text of a
+/// connection.
 std::string force_text(std::string_view device, const Vec3& newton, ForceKey key, bool first);
 
 }  // namespace tactus::haply

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The client's side of a WebSocket (RFC 6455) to a service on this machine: text messages, no extensions, no encryption.
+// The client side of a WebSocket (RFC 6455) to a service on this machine: text messages, no extensions, no encryption.
 #pragma once
 
 #include <chrono>
@@ -11,17 +11,18 @@
 
 namespace tactus::haply {
 
-/// Longest message that is taken; a longer one is an error.
+/// Longest accepted message; a longer one is an error.
 inline constexpr std::size_t longest_message = 64 * 1024;
 
-/// Puts messages together from frames of a server that arrive in any pieces.
+/// Assembles messages from the frames of a server, which may arrive in any pieces.
 class MessageReader {
 public:
     enum class Found { nothing, message, ping, closed, broken };
 
-    /// Adds received bytes. Broken for ever when more than a message and a half waits.
+    /// Adds received bytes. The reader becomes broken permanently if more than one and a half messages are pending.
     void add(std::span<const char> bytes);
-    /// The next of what was received. After `message` and `ping`, `text` has it. `broken`: not by the RFC, or too long.
+    /// Returns the next received item. After `message` and `ping`, `text` contains it. `broken`: invalid by the RFC, or
+    /// too long.
     Found next();
     const std::string& text() const { return text_; }
 
@@ -42,14 +43,14 @@ public:
     WebSocket(const WebSocket&) = delete;
     WebSocket& operator=(const WebSocket&) = delete;
 
-    /// Connects and shakes hands, within `longest` in all. Throws Error.
+    /// Connects and performs the handshake, within `longest` in total. Throws Error.
     void open(const std::string& host, int port, std::chrono::milliseconds longest);
     void close() noexcept;
-    /// False when the peer is gone or takes nothing.
+    /// Returns false if the connection is closed or accepts nothing.
     bool send(std::string_view text);
 
     enum class Heard { nothing, message, closed };
-    /// Waits at most `longest` for a message, which `text` then has.
+    /// Waits at most `longest` for a message and stores it in `text`.
     Heard receive(std::chrono::milliseconds longest);
     const std::string& text() const { return reader_.text(); }
 

@@ -15,10 +15,10 @@
 
 namespace tactus::haptic {
 
-/// What is known of hardware without opening it.
+/// Properties of hardware that are available without opening it.
 struct HardwareOutline {
     DeviceInfo info;
-    std::string absence;  ///< why it cannot be here, "there is no /dev/ttyUSB0"; empty: it may be
+    std::string absence;  ///< why it cannot be present, "there is no /dev/ttyUSB0"; empty: it may be
 };
 
 struct HapticDriver {
@@ -26,37 +26,37 @@ struct HapticDriver {
     std::string summary;  ///< one line, shown to users
     std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve) = nullptr;
     bool is_real = false;  ///< hardware; runs in real time only
-    /// Of hardware: reads the options as `open` does and opens nothing. Null: the driver cannot say.
+    /// For hardware: reads the options as `open` does and opens nothing. Null if the driver does not support it.
     HardwareOutline (*describe)(Options& options, const PathResolver& resolve) = nullptr;
-    bool needs_window = false;  ///< a person at the window of a live run moves it
-    /// Of a device behind a Backend, instead of `open` and `describe`: reads all options.
+    bool needs_window = false;  ///< a person moves it at the window of a live run
+    /// For a device behind a Backend, instead of `open` and `describe`: reads all options.
     std::unique_ptr<driver::Backend> (*backend)(Options& options) = nullptr;
-    bool is_untested = false;  ///< nobody has tried it with its device
+    bool is_untested = false;  ///< not yet tested with its device
 };
 
 /// All drivers, in the order of listings.
 std::span<const HapticDriver> haptic_drivers();
 
-/// Registers a driver of an embedding program or a test. Call it before any device is opened; a driver of the same name
-/// is replaced.
+/// Registers a driver of an embedding program or a test. Call it before any device is opened. It replaces a driver of
+/// the same name.
 void add_haptic_driver(HapticDriver driver);
 
 /// True for a driver of hardware.
 bool is_real_driver(std::string_view driver);
 
-/// True for a driver that a person at a window moves.
+/// True for a driver that a person moves at a window.
 bool needs_window(std::string_view driver);
 
-/// Opens a device behind a Backend to look at it, whether or not its pushes were confirmed. Throws Error, also for a
-/// driver that has none.
+/// Opens a device behind a Backend for inspection, whether or not its push directions are confirmed. Throws Error, also
+/// for a driver without a Backend.
 std::unique_ptr<driver::ThreadedDevice> open_to_look(std::string_view driver, Options& options, driver::OpenMode mode);
 
 /// Opens a device with the options of a patch. `where`: position of the driver's name in the patch. Throws Error for an
-/// unknown driver, listing all, and for invalid options.
+/// unknown driver, with the list of all drivers, and for invalid options.
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                                  const PathResolver& resolve);
 
-/// What a driver of hardware says of a device without opening it. Throws Error as open_haptic_device does.
+/// Returns a hardware driver's description of a device without opening it. Throws Error as open_haptic_device does.
 HardwareOutline describe_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                        const PathResolver& resolve);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "gamepad": a hand that the sticks of a gamepad move, held by a spring that yields to force, which its motors tell
-// by rumbling. Linux evdev, read on a thread of its own, so that neither a tick nor a picture waits for it.
+// Driver "gamepad": a hand that the sticks of a gamepad move, held by a spring that yields to force; the gamepad
+// signals the force by rumbling. It uses Linux evdev on its own thread, so that neither a tick nor a frame waits for
+// it.
 #pragma once
 
 #include "devices/evdev/event_system.hpp"
@@ -15,7 +16,7 @@
 
 namespace tactus::haptic {
 
-/// What a gamepad says: sticks and triggers, −1 to 1, and buttons.
+/// State of a gamepad: sticks and triggers, −1 to 1, and buttons.
 struct PadState {
     /// Left stick x, y; right stick x, y; left and right trigger (0 to 1); cross x, y.
     std::array<double, 8> axes{};
@@ -24,19 +25,19 @@ struct PadState {
     std::int64_t is_lost = 0;
 };
 
-/// Speed of the hand that a state asks for, in the axes of the device: the left stick moves it along x and z, the
-/// triggers along y (away: right), the right stick turns it about z and x, the shoulders about y. Sticks rest within a
-/// tenth of their way.
+/// Returns the commanded velocity of the hand in the axes of the device: the left stick moves it along x and z, the
+/// triggers along y (right: away), the right stick turns it about z and x, the shoulder buttons about y. Sticks have a
+/// dead zone of a tenth of their travel.
 Twist twist_of(const PadState& state, double speed_m_s, double turn_rad_s) noexcept;
 
 /// Options: file (an event device; without one the first gamepad in /dev/input), speed (100 mm/s), turn (1.5 rad/s),
-/// rumble (10 N: the force at which its motors run fully; 0: they rest), and those of HandDynamics; without `grip` and
-/// `stiffness` a firm grip of 2 N/mm. Throws Error when there is no gamepad.
+/// rumble (10 N: the force of full rumble; 0: no rumble), and those of HandDynamics. Without `grip` and `stiffness` the
+/// grip is a firm one of 2 N/mm. Throws Error when there is no gamepad.
 std::unique_ptr<HapticDevice> open_gamepad(Options& options, const PathResolver& resolve);
-/// With another system, which lives longer.
+/// The same with another system, which must outlive the device.
 std::unique_ptr<HapticDevice> open_gamepad_of(evdev::EventSystem& system, Options& options);
 
-/// The hand without its gamepad, for which no file is opened.
+/// Describes the hand without opening a gamepad.
 HardwareOutline describe_gamepad(Options& options, const PathResolver& resolve);
 
 }  // namespace tactus::haptic

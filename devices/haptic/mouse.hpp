@@ -11,13 +11,14 @@
 
 namespace tactus::haptic {
 
-/// A window that says nothing for this long has lost the hand: samples are late, which fades the force.
+/// Silence of the window after which the hand counts as lost: samples are late, which fades the force.
 inline constexpr std::int64_t longest_silence_of_window_ns = 100'000'000;
-/// After this long its buttons are let go, too. A single slow picture must not drop what is held.
+/// Silence after which the window's buttons count as released, too. It is longer, because a single slow frame must not
+/// drop the held body.
 inline constexpr std::int64_t longest_hold_of_window_ns = 1'000'000'000;
 
 /// Options: those of HandDynamics; without `grip` and `stiffness` a firm grip of 2 N/mm. `link` must outlive the device;
-/// `now_ns` is the clock of its stamps. Throws Error.
+/// `now_ns` is the clock of its time stamps. Throws Error.
 std::unique_ptr<HapticDevice> open_mouse(Options& options, WindowHand& link, std::int64_t (*now_ns)());
 
 /// The same with the window of this process.

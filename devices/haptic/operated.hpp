@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Base of all simulated devices: a simulated hand that holds the device and feels its force.
+// Base of all simulated devices: a simulated hand that holds the device and yields to its force.
 #pragma once
 
 #include "dsp/simulate/device_model.hpp"
@@ -13,20 +13,20 @@
 
 namespace tactus::haptic {
 
-/// Reads the options of the hand and the device: grip, mass, inertia, stiffness, damping, angular_stiffness, angular_damping,
-/// max_force, max_torque, max_stiffness, torque (false: a device without torque, with three degrees of freedom), and
-/// model, a simulated commercial device; with one, mass and inertia are those of the hand alone.
+/// Reads the options of the hand and the device: grip, mass, inertia, stiffness, damping, angular_stiffness,
+/// angular_damping, max_force, max_torque, max_stiffness, torque (false: a device without torque, with three degrees of
+/// freedom), and model, a simulated commercial device. With a model, mass and inertia are those of the hand alone.
 simulate::HandDynamics read_hand(Options& options);
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name);
-/// None: an ideal device.
+/// Reads the option `model`; null: an ideal device.
 const simulate::DeviceModel* read_model(Options& options);
 
-/// Of a hand that a person moves by something without motors, whose friction, steps and delay are not simulated; its grip
-/// gets the strength `max_force`. Throws Error when a model is given.
+/// Describes a hand that a person moves by an input device without motors, whose friction, resolution and delay are not
+/// simulated. Its grip gets the strength `max_force`. Throws Error if a model is given.
 DeviceInfo read_info_without_motors(Options& options, simulate::HandDynamics& hand, std::string name);
 
-/// Longest time, s, that such a hand moves in one tick of `period` s. Nothing holds it while ticks are late: it would sink
-/// into what it presses on.
+/// Longest motion of such a hand in one tick of `period` s, in s. No force stops it while ticks are late, so without
+/// this limit it would sink into a body that it presses.
 double max_tick_of_hand(double period) noexcept;
 
 /// The last commanded force. A watchdog may set it while the device is read.
@@ -55,7 +55,7 @@ private:
 template <typename Operator>
 class OperatedDevice final : public HapticDevice {
 public:
-    /// Without a model the device is ideal: no friction, no steps, no delay.
+    /// Without a model the device is ideal: no friction, infinite resolution, no delay.
     OperatedDevice(DeviceInfo info, const simulate::HandDynamics& dynamics, Operator initial,
                    const simulate::DeviceModel* model = nullptr)
         : info_(std::move(info)), initial_(std::move(initial)), operator_(initial_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand that a spring pulls where a person wants it, as drivers tell of it: a window may look, and moves nothing.
+// The target pose of a hand that a spring pulls, as published by drivers for display in a window.
 #pragma once
 
 #include "devices/hosted/seqlock.hpp"
@@ -17,11 +17,11 @@ struct PulledHand {
     std::int64_t at_ns = 0;  ///< steady clock
 };
 
-/// The thread that moves the hand writes, anybody reads; wait-free on both sides. Nothing is written where no hand is
-/// pulled, and while the device is lost.
+/// Written by the thread that moves the hand, read by any thread; wait-free on both sides. Nothing is written if no
+/// hand is pulled or while the device is lost.
 using PullLink = hosted::Seqlock<PulledHand>;
 
-/// A device that tells of it. The link may outlive the device.
+/// A device that publishes its target pose. The link may outlive the device.
 class PulledDevice {
 public:
     virtual ~PulledDevice() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory that an engine and a device's process share: samples one way, forces and motor speeds the other. Each side
-// checks what it reads: the other may be broken.
+// The memory common to an engine and a device's process: samples in one direction, forces and motor speeds in the
+// other. Each side validates its input, because the other may be faulty.
 #pragma once
 
 #include "devices/haptic/pulled_hand.hpp"
@@ -15,7 +15,7 @@
 
 namespace tactus::hosted {
 
-/// What the device reported last. Published at the rate of the device's process.
+/// The newest sample of the device. Published at the rate of the device's process.
 struct SampleRecord {
     double position[3] = {}, orientation[4] = {1.0, 0.0, 0.0, 0.0};  ///< m; w, x, y, z
     double linear[3] = {}, angular[3] = {};  ///< m/s, rad/s
@@ -24,12 +24,12 @@ struct SampleRecord {
     std::int64_t counter = 0;
     std::uint64_t buttons = 0;
     std::uint64_t is_valid = 0, is_late = 0;
-    std::uint64_t holds_force = 0;  ///< the device's process gives no force until it is asked for a small one
-    std::int64_t answers_ns = 0;  ///< `committed_ns` of the force that the device had at this sample
+    std::uint64_t holds_force = 0;  ///< the process gives no force until it receives a small one
+    std::int64_t answers_ns = 0;  ///< `committed_ns` of the force that was active at this sample
     std::int64_t published_ns = 0;  ///< boot_ns: the heartbeat of the device's process
 };
 
-/// What the engine committed last.
+/// The newest force from the engine.
 struct ForceRecord {
     double force[3] = {}, torque[3] = {};  ///< N, N·m on the hand
     std::int64_t committed_ns = 0;  ///< boot_ns: the heartbeat of the engine; 0: none yet
@@ -42,7 +42,7 @@ struct DriveRecord {
     std::int64_t committed_ns = 0;
 };
 
-/// Where a person wants the hand, of drivers that pull it there by a spring.
+/// Target pose of the hand, for drivers that pull it there by a spring.
 struct PullRecord {
     double position[3] = {}, orientation[4] = {1.0, 0.0, 0.0, 0.0};  ///< of the hand: m; w, x, y, z
     double wanted_position[3] = {}, wanted_orientation[4] = {1.0, 0.0, 0.0, 0.0};
@@ -63,13 +63,13 @@ ForceRecord pack(const Wrench& wrench, std::int64_t now_ns) noexcept;
 DriveRecord pack(const MotorDrive& drive, std::int64_t now_ns) noexcept;
 InfoRecord pack(const DeviceInfo& info) noexcept;
 PullRecord pack(const haptic::PulledHand& hand) noexcept;
-/// Not valid when the pose is no pose or the velocity is not finite.
+/// Returns an invalid sample if the pose is invalid or the velocity is not finite.
 DeviceSample unpack(const SampleRecord& record) noexcept;
 Wrench unpack(const ForceRecord& record) noexcept;
 MotorDrive unpack(const DriveRecord& record) noexcept;
-/// None: a pose is no pose, or the force is not finite.
+/// Returns nothing if a pose is invalid or the force is not finite.
 std::optional<haptic::PulledHand> unpack(const PullRecord& record) noexcept;
-/// Throws Error when a number cannot be that of a device.
+/// Throws Error if a number is not plausible for a device.
 DeviceInfo unpack(const InfoRecord& record);
 
 enum class HostState : std::uint32_t { opens, runs, ended };
@@ -83,24 +83,24 @@ struct Block {
     std::int64_t engine = 0;  ///< process id
     std::atomic<HostState> state{HostState::opens};
     std::atomic<std::uint32_t> must_end{0};  ///< set by the engine
-    std::atomic<std::int64_t> engine_lives_ns{0};  ///< steady_ns of the engine's control thread; 0: it says nothing
-    char reason[256] = {};  ///< why the process ended, for people; complete when `state` is ended
-    InfoRecord info;  ///< complete when the process has said that it is ready
+    std::atomic<std::int64_t> engine_lives_ns{0};  ///< steady_ns of the engine's control thread; 0: not yet set
+    char reason[256] = {};  ///< reason of the process's end, for messages; complete when `state` is ended
+    InfoRecord info;  ///< complete when the process has reported that it is ready
     alignas(64) Seqlock<SampleRecord> sample;
     alignas(64) Seqlock<ForceRecord> force;
     alignas(64) Seqlock<DriveRecord> drive;
     alignas(64) Seqlock<PullRecord> pull;
 };
 
-/// Text from memory that another process writes: ends at its size, and holds only what can be printed.
+/// Copies text from memory that another process writes: stops at its size, and keeps only printable characters.
 std::string text_of(const char* text, std::size_t size);
 
 /// The block, mapped into this process.
 class SharedBlock {
 public:
-    /// A new one, in memory without a name. Throws Error.
+    /// Creates a block in anonymous memory. Throws Error.
     static SharedBlock create();
-    /// That behind a descriptor that was inherited; closes it. Throws Error when it is no such block.
+    /// Maps the block of an inherited descriptor and closes the descriptor. Throws Error if it is not a valid block.
     static SharedBlock open(int descriptor);
 
     SharedBlock(SharedBlock&& other) noexcept;
@@ -110,7 +110,7 @@ public:
     Block* operator->() const noexcept { return block_; }
     Block& operator*() const noexcept { return *block_; }
     int descriptor() const noexcept { return descriptor_; }
-    /// Closes the descriptor; the memory stays.
+    /// Closes the descriptor; the memory stays mapped.
     void close_descriptor() noexcept;
 
 private:

@@ -4,8 +4,8 @@
 
 namespace tactus::hosted {
 
-/// What `tactus-device-host` does, and any program that adds drivers of its own first (haptic::add_haptic_driver). The
-/// exit code: 0 ended in order, 2 the device cannot be opened, 3 the driver did not return.
+/// Main function of `tactus-device-host`, and of any program that first adds its own drivers
+/// (haptic::add_haptic_driver). Exit code: 0 normal end, 2 the device cannot be opened, 3 the driver did not return.
 int run_device_host() noexcept;
 
 }  // namespace tactus::hosted

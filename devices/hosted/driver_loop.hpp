@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that has the driver: opens it, gives forces and publishes samples, closes it. Every call of the driver is
-// made here, since some vendors' handles belong to a thread.
+// The thread that owns the driver: it opens it, sends forces, publishes samples and closes it. All calls of the driver
+// are made here, because some vendors' handles belong to a thread.
 #pragma once
 
 #include "devices/hosted/block.hpp"
@@ -18,14 +18,14 @@ class DriverLoop {
 public:
     DriverLoop(Block& block, int socket) : block_(block), socket_(socket) {}
 
-    /// From opening to closing the device. Returns when `end` was called or the device cannot be had.
+    /// Runs from opening to closing the device. Returns when `end` was called or the device cannot be opened.
     void run() noexcept;
 
     // Any thread.
     void end() noexcept { must_end_.store(true, std::memory_order_release); }
     bool is_over() const noexcept { return is_over_.load(std::memory_order_acquire); }
     bool has_failed() const noexcept { return has_failed_.load(std::memory_order_acquire); }
-    /// steady_ns at which a commit of the engine was seen last; 0: none yet.
+    /// steady_ns of the last commit received from the engine; 0: none yet.
     std::int64_t heard_ns() const noexcept { return heard_ns_.load(std::memory_order_relaxed); }
 
 private:

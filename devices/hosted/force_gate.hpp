@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which force a device's process gives, from what the engine committed and when.
+// Decides which force a device's process gives, from the engine's commits and their age.
 #pragma once
 
 #include "devices/hosted/block.hpp"
@@ -10,23 +10,23 @@
 
 namespace tactus::hosted {
 
-/// Forces pass while the engine's last commit is young. An old one fades to zero; then forces pass only after some small
-/// ones, so that a hand is not thrown out by an engine that comes back.
+/// Passes forces while the engine's last commit is recent. An old force fades to zero; afterwards forces pass only
+/// after some small ones, so that a returning engine does not throw the hand.
 class ForceGate {
 public:
-    std::int64_t limit_ns = 10'000'000;  ///< age of a commit at which the engine counts as lost
-    std::int64_t fade_ns = 5'000'000;  ///< from there to zero
+    std::int64_t limit_ns = 10'000'000;  ///< age at which a commit counts as lost
+    std::int64_t fade_ns = 5'000'000;  ///< duration of the fade to zero
     double small_force = 0.5, small_torque = 0.05;  ///< N, N·m
     int small_commits = 3;
     control::ForceBounds bounds;  ///< of the device
     bool is_felt = true;  ///< false: the device has no motors, and every force passes
 
-    /// The force for the device now. `number` is that of Seqlock::read. Real-time; allocates nothing.
+    /// Returns the force for the device now. `number` is that of Seqlock::read. Real-time safe; does not allocate.
     Wrench give(const ForceRecord& newest, std::uint64_t number, std::int64_t now_ns) noexcept;
 
-    /// Forces pass.
+    /// True if forces pass.
     bool passes() const noexcept { return passes_; }
-    /// Forces that the engine wants do not pass: it was lost meanwhile, or it began with a large one.
+    /// True if requested forces do not pass, because the engine was lost meanwhile or began with a large force.
     bool holds() const noexcept { return !passes_ && (was_lost_ || wants_large_); }
 
 private:
@@ -39,7 +39,7 @@ private:
     bool passes_ = false, was_lost_ = false, wants_large_ = false;
 };
 
-/// Neither older than `limit_ns` nor from the future, as a broken stamp may be.
+/// True if the stamp is neither older than `limit_ns` nor in the future, as a corrupt stamp may be.
 constexpr bool is_young(std::int64_t stamp_ns, std::int64_t now_ns, std::int64_t limit_ns) noexcept {
     constexpr std::int64_t clocks_differ_ns = 1'000'000;
     return stamp_ns > 0 && stamp_ns <= now_ns + clocks_differ_ns && stamp_ns >= now_ns - limit_ns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's process, as the engine sees it.
+// The process of a device, managed by the engine.
 #pragma once
 
 #include <sys/types.h>
@@ -10,12 +10,12 @@
 
 namespace tactus::hosted {
 
-/// The program that runs drivers: $TACTUS_DEVICE_HOST, or that beside this program, or the installed one. Throws Error
-/// when it is not there.
+/// Returns the program that runs drivers: $TACTUS_DEVICE_HOST, otherwise the one beside this program, otherwise the
+/// installed one. Throws Error if there is none.
 std::filesystem::path host_program();
 
-/// Started with a session of its own, so that no key of the terminal reaches it, without descriptors but those given.
-/// Never waits for it without a bound.
+/// Runs in its own session, so that no key of the terminal reaches it, and inherits only the given descriptors. No
+/// function waits for it without a limit.
 class HostProcess {
 public:
     /// `block` and `socket` become descriptors 3 and 4. Throws Error.
@@ -25,12 +25,12 @@ public:
     HostProcess(const HostProcess&) = delete;
     HostProcess& operator=(const HostProcess&) = delete;
 
-    /// It has ended, and nothing of it is left. Does not wait.
+    /// True if it has ended and was reaped. Does not wait.
     bool has_ended() noexcept;
-    /// Waits until it has ended, at most so long.
+    /// Waits for its end, at most `longest`.
     bool wait(std::chrono::milliseconds longest) noexcept;
     void kill() noexcept;
-    /// "was killed by signal 9", "ended with exit code 3"; after `has_ended`.
+    /// Returns "was killed by signal 9" or "ended with exit code 3"; after `has_ended`.
     std::string how_it_ended() const;
     pid_t id() const noexcept { return process_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device whose driver runs in a process of its own: what the engine has of it.
+// The engine's side of a device whose driver runs in a separate process.
 #pragma once
 
 #include "devices/haptic/catalogue.hpp"
@@ -29,7 +29,7 @@ public:
     /// Starts the process and waits until the driver has opened its device. Throws Error with the driver's text, or when
     /// it takes longer than placement.open_timeout.
     HostedDevice(const DeviceRequest& request, const Placement& placement, const haptic::PathResolver& resolve);
-    /// No force; asks the process to end, waits at most 100 ms, kills it.
+    /// Removes the force, asks the process to end, waits at most 100 ms, then kills it.
     ~HostedDevice() override;
 
     const DeviceInfo& info() const override { return info_; }
@@ -43,12 +43,13 @@ public:
     void drive(const MotorDrive& wanted) noexcept override;
     std::shared_ptr<const haptic::PullLink> pull() const noexcept override { return pull_; }
 
-    /// Control thread of a live run, at least every half second: says that the engine lives, and looks after the process.
-    /// One that was silent for 500 ms is killed. Why the device is lost, for people, or "". Does not wait.
+    /// Control thread of a live run, at least every half second: refreshes the engine's heartbeat and checks the
+    /// process, which is killed after 500 ms of silence. Returns the reason if the device is lost, otherwise "". Does
+    /// not wait.
     const std::string& service() noexcept;
     const std::string& loss() const noexcept { return loss_; }
 
-    /// boot_ns of the commit whose force the device had at the sample acquired last; 0: none.
+    /// boot_ns of the commit whose force was active at the last acquired sample; 0: none.
     std::int64_t answered_ns() const noexcept { return newest_.answers_ns; }
     pid_t process() const noexcept { return process_->id(); }
 
@@ -76,7 +77,7 @@ private:
     Socket socket_;
     std::unique_ptr<HostProcess> process_;
     DeviceInfo info_;
-    double own_delay_s_ = 0.0;  // of the device without its process
+    double own_delay_s_ = 0.0;  // of the device, without that of its process
     std::int64_t limit_ns_ = 20'000'000;
     const std::shared_ptr<haptic::PullLink> pull_ = std::make_shared<haptic::PullLink>();
     // Thread of the tick.
@@ -87,17 +88,17 @@ private:
     std::string loss_;
 };
 
-/// Opens a device where its options say: in this process, or in one of its own. Throws Error.
+/// Opens a device in this process or in a separate one, as its options specify. Throws Error.
 std::unique_ptr<HapticDevice> open_placed(const DeviceRequest& request, const haptic::PathResolver& resolve);
 
-/// Opens it in this process whatever its options say, for runs that are not live. Throws Error.
+/// Opens it in this process regardless of its options, for runs that are not live. Throws Error.
 std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
 
-/// s that the process of its own, if the options ask for one, adds to the delay of a device whose nodes have `period_s`.
-/// Throws Error on options that cannot be read.
+/// Returns the delay in s that a separate process, if the options request one, adds to a device whose nodes have
+/// `period_s`. Throws Error for invalid options.
 double added_latency_s(const DeviceRequest& request, double period_s);
 
-/// What the driver of hardware says of it without opening it. Throws Error on options that cannot be read.
+/// Returns the hardware driver's description of the device without opening it. Throws Error for invalid options.
 haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
 
 }  // namespace tactus::hosted

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of OpenHaptics' device layer (HD, 3.x) that are used, by the vendor's reference, appendix A.
+// The functions of OpenHaptics' device layer (HD, 3.x) that the driver uses, from the vendor's reference, appendix A.
 #pragma once
 
 #include "devices/driver/shared_library.hpp"
@@ -10,14 +10,14 @@ namespace tactus::openhaptics {
 
 inline constexpr unsigned invalid_device = 0xFFFFFFFFu;
 
-/// As the vendor returns it, by value.
+/// Returned by the vendor's library by value.
 struct HdError {
     unsigned code;
     int internal;
     unsigned device;
 };
 
-// Parameters, capabilities, answers.
+// Parameters, capabilities, results.
 inline constexpr unsigned current_buttons = 0x2000, current_transform = 0x2052, current_force = 0x2700,
                           current_torque = 0x2701;
 inline constexpr unsigned model_type = 0x2501, driver_version = 0x2502, serial_number = 0x2504,
@@ -25,8 +25,8 @@ inline constexpr unsigned model_type = 0x2501, driver_version = 0x2502, serial_n
                           max_stiffness = 0x2602, max_force = 0x2603, max_torque = 0x2622;
 inline constexpr unsigned force_output = 0x4000, max_force_clamping = 0x4001;
 inline constexpr unsigned calibration_ok = 0x5000, calibration_needs_update = 0x5001;
-/// Up to the first device error: warm motors, clipped forces, the device's own protection. Then, errors that mean that
-/// the device itself is gone.
+/// Codes from first_force_error up to first_device_error: warm motors, clipped forces, the device's own protection.
+/// From there to last_device_error: the device itself is lost.
 inline constexpr unsigned first_force_error = 0x0200, first_device_error = 0x0300, last_device_error = 0x03FF;
 
 using HdCallback = unsigned (*)(void*);
@@ -34,11 +34,11 @@ inline constexpr unsigned callback_continue = 1;
 
 class HdApi {
 public:
-    /// Throws Error that names a file or function that is missing. `library`: a file, or "" for the usual places.
+    /// Throws Error that names the missing file or function. `library`: a file, or "" for the usual locations.
     explicit HdApi(const std::string& library);
 
     const std::string& path() const { return library_.path(); }
-    /// Empties the stack of errors; the text of the oldest that is not about force, or "".
+    /// Empties the error stack. Returns the text of the oldest error that is not about force, or "".
     std::string pop_errors() const;
 
 private:
@@ -64,7 +64,7 @@ public:
     void (*unschedule)(unsigned long) = nullptr;
     void (*start_scheduler)() = nullptr;
     void (*stop_scheduler)() = nullptr;
-    void (*set_rate)(unsigned long) = nullptr;  ///< null in old versions: 1 kHz
+    void (*set_rate)(unsigned long) = nullptr;  ///< null in old versions, which run at 1 kHz
 };
 
 }  // namespace tactus::openhaptics

@@ -9,7 +9,7 @@
 
 namespace tactus::openhaptics {
 
-/// Options: library, config (the name that the vendor's setup program gave the device). Throws Error.
+/// Options: library, config (the device name from the vendor's setup program). Throws Error.
 std::unique_ptr<driver::Backend> make_touch(Options& options);
 
 }  // namespace tactus::openhaptics

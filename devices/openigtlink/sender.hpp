@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses for 3D Slicer and others that connect: a server of OpenIGTLink.
+// An OpenIGTLink server that sends poses to 3D Slicer and other clients.
 #pragma once
 
 #include "graph/node/setup.hpp"
@@ -12,22 +12,23 @@
 
 namespace tactus::openigtlink {
 
-/// Where clients connect. Several senders share one: a client gets the transforms of all. It never waits: a client that
-/// does not read is left out after `longest_backlog` bytes.
+/// A listening server. Several senders use the same one, and a client receives the transforms of all. The server never
+/// waits: a client with a backlog of more than `longest_backlog` bytes is skipped.
 class TransformServer {
 public:
     static constexpr std::size_t longest_backlog = 65536;
-    static constexpr std::size_t most_clients = 32;  ///< further ones are hung up: files are left to the run
+    static constexpr std::size_t most_clients = 32;  ///< further ones are disconnected to save descriptors
 
-    /// The server of this process at that address and port; opened when there is none. Any thread. Throws Error.
+    /// Returns the server of this process at that address and port; opens it if there is none. Any thread. Throws
+    /// Error.
     static std::shared_ptr<TransformServer> at(const std::string& address, int port);
     ~TransformServer();
     TransformServer(const TransformServer&) = delete;
     TransformServer& operator=(const TransformServer&) = delete;
 
-    /// Takes new clients, and sends the message to all. Any thread.
+    /// Accepts new clients and sends the message to all. Any thread.
     void send(const std::vector<std::uint8_t>& message);
-    int port() const { return port_; }  ///< of a server at port 0: the one it got
+    int port() const { return port_; }  ///< for port 0: the port that the system assigned
 
 private:
     struct Shared;
@@ -37,7 +38,7 @@ private:
     std::unique_ptr<Shared> shared_;
 };
 
-/// Sends the newest pose of a stream as the transform `name`.
+/// Returns a keeper that sends the newest pose of a stream as the transform `name`.
 std::shared_ptr<StreamKeeper> make_sender(std::string address, int port, std::string name);
 
 }  // namespace tactus::openigtlink

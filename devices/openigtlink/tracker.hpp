@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "openigtlink": the pose of a tool that a tracker's server or 3D Slicer sends. It gives no force.
+// Driver "openigtlink": the pose of a tool from a tracker's server or from 3D Slicer. It gives no force.
 #pragma once
 
 #include "devices/driver/backend.hpp"
@@ -10,12 +10,12 @@
 
 namespace tactus::openigtlink {
 
-/// Between two poses of a tracker that come some 10 to 100 times a second: the hand moves from one to the next during
-/// the time that lay between them, so it lags by that time and its speed has no steps.
+/// Interpolates between the poses of a tracker, which come 10 to 100 times a second. The hand moves from one pose to the
+/// next in the time between them, so it lags by that time and its position has no jumps.
 class Interpolation {
 public:
     void add(const Pose& pose, std::int64_t at_ns) noexcept;
-    /// False before the first pose, and `oldest_ns` after the last one.
+    /// Returns false before the first pose, and `oldest_ns` after the last one.
     bool at(std::int64_t now_ns, std::int64_t oldest_ns, Pose& pose, Twist& twist) const noexcept;
     void clear() noexcept { count_ = 0; }
 

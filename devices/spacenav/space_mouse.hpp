@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "space_mouse": a 3D mouse whose cap gives the speed of a hand. It has no motors; the hand yields to force as
-// that of the driver "mouse".
+// Driver "space_mouse": a 3D mouse whose cap commands the velocity of a hand. It has no motors; the hand yields to
+// force like that of the driver "mouse".
 #pragma once
 
 #include "devices/driver/backend.hpp"
