@@ -34,7 +34,7 @@ struct DeviceSample {
     Pose pose;
     Twist twist;                 ///< velocity of the pose's origin, along the axes of the device frame
     std::uint32_t buttons = 0;
-    std::int64_t counter = 0;  ///< rises with each fresh sample of the driver; the same number again: an old sample
+    std::int64_t counter = 0;  ///< increases with each fresh sample; an unchanged number marks an old one
     bool valid = false;  ///< false: ignore the other members
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; ramp it in again
     bool sound_lost = false;  ///< set by the engine once when a sound card is lost: fade the force and ramp it in again

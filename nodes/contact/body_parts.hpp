@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that a node which makes a body owns.
+// The data of a node that creates a body.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -15,8 +15,8 @@
 
 namespace tactus::nodes {
 
-/// Points and distance field of one body; optionally the triangles of the field's zero surface. Throws Error when no
-/// point stands for an area.
+/// Points and distance field of one body; optionally the triangles of the field's zero surface. Throws Error if no
+/// point represents an area.
 struct BodyParts {
     contact::Pointshell shell;
     contact::Voxmap map;

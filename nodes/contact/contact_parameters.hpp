@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters shared by all nodes with pointshell contact.
+// Parameters common to all nodes with pointshell contact.
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
@@ -50,8 +50,8 @@ struct ContactParameters {
         contact.set(scene, held, grip, law(), both_ways, static_cast<std::size_t>(budget));
     }
 
-    /// Force of a saturated contact over the depth at which it set in, N/m: the points' own stiffness has fallen to zero
-    /// there. 0 without saturation.
+    /// Force of a saturated contact divided by the depth at which saturation begins, N/m. Used because the derivative
+    /// of the points' force is zero there. 0 without saturation.
     double secant(const contact::ContactSum& now) const noexcept {
         const double depth = now.penetration + blend;
         return saturates() && depth > 0.0 ? glm::length(now.wrench().force) / depth : 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where on a bone a saw works: found, or chosen by a point and a direction.
+// The site at which a saw works on a bone: found automatically, or given by a point and a direction.
 #pragma once
 
 #include "assets/bone/bone.hpp"

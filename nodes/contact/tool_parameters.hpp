@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the tools that cut bone.
+// Code common to the tools that cut bone.
 #pragma once
 
 #include "dsp/contact/contact_switch.hpp"
@@ -16,8 +16,8 @@ inline constexpr const char* tool_waits = "the tool lies in bone and has no forc
 inline constexpr const char* tool_released =
     "the tool was released from the bone: its force fades, and it has force again once it is out of the bone";
 
-/// Share of the force that a patch asked for which the device was given, 0 to 1; 1 without both wires. A device that is
-/// weaker than the tool's force, or that has failed, renders a part of it or nothing.
+/// Fraction of the commanded force that the device received, 0 to 1; 1 without both wires. A device that is weaker than
+/// the tool's force, or that has failed, renders a part of it or nothing.
 inline double rendered_share(const In<Wrench>& asked, const In<Wrench>& applied) noexcept {
     if (!asked.connected || !applied.connected) return 1.0;
     const double square = glm::dot(asked->force, asked->force);
@@ -27,8 +27,8 @@ inline double rendered_share(const In<Wrench>& asked, const In<Wrench>& applied)
     return share > 1.0 - rounding ? 1.0 : std::max(share, 0.0);
 }
 
-/// A tick after a pause of more than 100 ms and three ticks does not continue the motion before it, if the tool was moved
-/// meanwhile.
+/// After a pause of more than 100 ms and three ticks, a tick does not continue the previous motion if the tool was
+/// moved meanwhile.
 class PauseWatch {
 public:
     bool is_moved_in_pause(const Tick& tick, const Pose& pose) noexcept {

@@ -17,8 +17,8 @@ public:
     struct Now {
         saw::HoldState state = saw::HoldState::engaged;
         bool touches = false;
-        double force = 0.0, lag = 0.0;  ///< N, m: they count while the tool touches; of the force what was rendered
-        double rendered = 1.0;  ///< share of the force that the device rendered
+        double force = 0.0, lag = 0.0;  ///< N, m: counted while the tool touches; `force` as rendered
+        double rendered = 1.0;  ///< fraction of the force that the device rendered
         double reach = 0.0;  ///< m from the pose to the tool's edge
         double seconds = 0.0;  ///< of the tick
     };
@@ -40,7 +40,7 @@ public:
         }
     }
 
-    /// `scale`: forces on the device over those of the tool.
+    /// `scale`: force on the device divided by force on the tool.
     void tell(Report& report, double scale) const {
         const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
         report.set("contact", "fraction", share(touching_, ticks_));

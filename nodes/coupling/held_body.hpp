@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the couplings of a held body: which body is held, its grip, and the fading of forces.
+// Code common to the couplings of a held body: index of the body, its grip, and the fading of forces.
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::nodes {
 
-/// What a coupling shows: the body that it holds in a scene, in the hand at `device`.
+/// Visual of a coupling: the body that it holds in a scene, in the hand at `device`.
 inline Visual held_visual(double held, const Vec3& grip_at = Vec3(0.0)) {
     return {.kind = VisualKind::held,
             .scene = "scene",
@@ -23,10 +23,10 @@ inline Visual held_visual(double held, const Vec3& grip_at = Vec3(0.0)) {
             .held = held};
 }
 
-/// Follows `grasp`: the place of the held body, whether it is still held, and the strength of its force.
+/// Follows `grasp`: the index of the held body, whether it is still held, and the strength of its force.
 struct Hold {
     int place = -1;
-    bool holds = false, taken = false;  ///< taken: in this tick
+    bool holds = false, taken = false;  ///< taken: grasped in this tick
     double strength = 1.0;
 
     void update(const coupling::Scene& scene, double wanted, const In<bool>& holding, const In<double>& felt) noexcept {

@@ -25,12 +25,12 @@ struct LeadParameters {
 
 class Lead {
 public:
-    /// The hand takes a body: full springs, no pull.
+    /// The hand grasps a body: full springs, no pull.
     void take() noexcept { *this = {}; }
 
-    /// `leads`: a pull is wanted; `gives_way`: the springs to the hand shall vanish while something leads; `balanced`:
-    /// the last tick ended in equilibrium; `elapsed` in s. After the hand has pulled the body away, the hand keeps it
-    /// until `gives_way` ends, whatever the pull does meanwhile.
+    /// `leads`: a pull is requested. `gives_way`: the springs to the hand fade to zero while something leads.
+    /// `balanced`: the last tick ended in equilibrium. `elapsed` in s. After the hand has pulled the body away, the
+    /// hand keeps it until `gives_way` ends, regardless of the pull.
     void update(const LeadParameters& parameters, const Pose& hand, bool leads, bool gives_way, bool balanced,
                 double elapsed) noexcept {
         if (is_valid(hand)) hand_ = hand.position;
@@ -42,21 +42,21 @@ public:
         const double change = elapsed / parameters.fade;
         share_ = std::clamp(share_ + (leads && !pulled_away_ ? change : -change), 0.0, 1.0);
         held_ = std::clamp(held_ + (settles && !pulled_away_ ? -change : change), 0.0, 1.0);
-        // The rest of the motion after the pull has ended is as slow.
+        // The rest of the motion after the end of the pull is equally slow.
         is_slow_ = share_ > 0.0 || held_ < 1.0 || (is_slow_ && !balanced);
         slip_ = is_slow_ ? parameters.lead_speed * elapsed : std::numeric_limits<double>::infinity();
     }
 
-    /// Share of the pull, 0 to 1.
+    /// Fraction of the pull, 0 to 1.
     double share() const noexcept { return share_; }
-    /// Share of the springs' strength, 0 to 1; smooth at both ends, since the hand feels a kink as a knock.
+    /// Fraction of the springs' strength, 0 to 1; smooth at both ends, because a kink is perceived as a knock.
     double springs() const noexcept { return held_ * held_ * (3.0 - 2.0 * held_); }
     /// m, `slip` of QuasiStaticSettings.
     double slip() const noexcept { return slip_; }
 
 private:
     double share_ = 0.0, held_ = 1.0, slip_ = std::numeric_limits<double>::infinity();
-    bool settles_ = false;  // since the springs were last whole; a short failure of the pull does not reset it
+    bool settles_ = false;  // since the springs had full strength; a short failure of the pull does not reset it
     bool pulled_away_ = false, is_slow_ = false;
     Vec3 hand_{0.0}, settled_at_{0.0};
 };

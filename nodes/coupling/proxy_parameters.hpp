@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the proxy nodes: the surfaces of a scene, and the parameters.
+// Surfaces of a scene and parameters, common to the proxy nodes.
 #pragma once
 
 #include "dsp/coupling/scene.hpp"

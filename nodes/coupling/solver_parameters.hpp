@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters shared by the quasi-static couplings.
+// Parameters common to the quasi-static couplings.
 #pragma once
 
 #include "dsp/core/rotation.hpp"
@@ -26,7 +26,7 @@ struct SolverParameters {
         "finest field that is touched"};
     TACTUS_GROUP(stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step)
 
-    /// For the body that `contact` is set to; `share` scales the springs.
+    /// For the body of `contact`; `share` scales the springs.
     void set(coupling::QuasiStaticSettings& settings, const coupling::HeldContact& contact,
              double share) const noexcept {
         settings.springs = {{stiffness * share, max_force * share}, {angular_stiffness * share, max_torque * share}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nodes that give and take events share.
+// Code common to nodes that emit and receive events.
 #pragma once
 
 #include "graph/node/event.hpp"
@@ -13,7 +13,7 @@ namespace tactus::nodes {
 /// Time of the i-th activation of a call.
 inline Flicks time_at(const Tick& tick, int i = 0) noexcept { return (tick.index + i) * tick.period; }
 
-/// Gives events in the name of its node.
+/// Emits events with the name of its node.
 class Emitter {
 public:
     void prepare(const Setup& setup) { source_ = event_source(setup.name); }
@@ -26,7 +26,7 @@ private:
     std::uint32_t source_ = 0;
 };
 
-/// Which kinds of events count.
+/// Selection of the kinds of events to use.
 struct EventChoice {
     Choice on{{"any", "begin", "end", "instant"}, "which events count: all, or those of one kind"};
     TACTUS_GROUP(on)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all guides share: law, place of the hand in the guide's frame, outputs.
+// Code common to all guides: law, position of the hand in the guide's frame, outputs.
 #pragma once
 
 #include "dsp/guide/guide_law.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::nodes {
 
-/// Ends the text of each guide.
+/// Last part of the description of each guide.
 #define TACTUS_GUIDE_ABOUT                                                                                           \
     " Conservative spring, damper, and both within 'max_force': passive but for sampling, which gives at most half " \
     "of "                                                                                                            \
@@ -33,13 +33,13 @@ struct GuidedHand {
     Vec3 velocity{0.0};  ///< m/s
     bool is_known = false;
 
-    /// A pose or frame that is no pose gives no force; a velocity that is not finite no damping.
+    /// An invalid pose or frame gives no force; a velocity that is not finite gives no damping.
     GuidedHand(const In<Pose>& pose, const In<Twist>& twist, const In<Pose>& frame) noexcept {
         is_known = is_valid(pose.get()) && is_valid(frame.get());
         if (!is_known) return;
         position = frame->inverse().apply(pose->position);
         if (twist.connected && is_finite(twist->linear)) velocity = glm::conjugate(frame->orientation) * twist->linear;
-        // Beyond this no guide is meant, and squares stay finite.
+        // Larger positions are ignored, so that squares stay finite.
         constexpr double far = 1e6;
         is_known = std::abs(position.x) < far && std::abs(position.y) < far && std::abs(position.z) < far;
         if (!(std::abs(velocity.x) < far && std::abs(velocity.y) < far && std::abs(velocity.z) < far))
@@ -47,7 +47,7 @@ struct GuidedHand {
     }
 };
 
-/// `v` in length 1. Throws Error at the node when it has no length.
+/// Returns `v` normalised. Throws Error at the node if it has zero length.
 inline Vec3 direction_of(const Setup& setup, const Vec3& v, const char* name) {
     const double length = std::hypot(v.x, v.y, v.z);
     if (!(length > 0.0) || !std::isfinite(length))
@@ -55,7 +55,7 @@ inline Vec3 direction_of(const Setup& setup, const Vec3& v, const char* name) {
     return v / length;
 }
 
-/// The same for what is drawn; z without a length.
+/// The same for drawing; z if `v` has zero length.
 inline Vec3 unit_of(const Vec3& v) noexcept {
     const double length = std::hypot(v.x, v.y, v.z);
     return length > 0.0 && std::isfinite(length) ? v / length : Vec3(0.0, 0.0, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole values of any plain type.
+// Copying and defaults of values of any plain type.
 #pragma once
 
 #include "graph/node/port.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::nodes {
 
-/// Copies what a call gives: one value, or the samples of a signal.
+/// Copies the value of a call: one value, or the samples of a signal.
 inline void copy_value(const std::byte* from, AnyOut& to, const Tick& tick) noexcept {
     const auto count = static_cast<std::size_t>(to.type == &value::signal ? tick.frames : 1);
     std::memcpy(to.data, from, count * to.type->size);

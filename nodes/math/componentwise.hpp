@@ -11,7 +11,7 @@
 
 namespace tactus::nodes {
 
-// The components lie side by side.
+// The components are contiguous.
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Twist) == 6 * sizeof(double) &&
               sizeof(Wrench) == 6 * sizeof(double));
 
@@ -27,15 +27,16 @@ void for_each_component(const AnyIn& a, AnyOut& out, const Tick& tick, F f) noex
     for (std::size_t k = 0; k < count; ++k) out.as<double>()[k] = f(a.as<double>()[k]);
 }
 
-/// out = f(a, b) in each component. An `f` that takes floats is given samples as they are: a sum, difference or product of
-/// floats has the same bits as that of doubles rounded to float (Figueroa 1995). As `gain` and `mix`, it may overflow.
+/// out = f(a, b) in each component. An `f` that accepts floats receives samples without conversion: a sum, difference
+/// or product of floats has the same bits as that of doubles rounded to float (Figueroa 1995). As `gain` and `mix`, it
+/// may overflow.
 template <class F>
 void for_each_component(const AnyIn& a, const AnyIn& b, AnyOut& out, const Tick& tick, F f) noexcept {
     if (out.type == &value::signal) {
         if constexpr (std::is_same_v<decltype(f(0.0f, 0.0f)), float>) {
             const float *const x = a.as<float>(), *const y = b.as<float>();
             float* const z = out.as<float>();
-            // The output may lie where an input lies, sample by sample, but never overlaps it otherwise.
+            // The output may coincide with an input, sample by sample, but never overlaps it otherwise.
 #if defined(__clang__)
 #pragma clang loop vectorize(assume_safety)
 #else

@@ -15,7 +15,7 @@ namespace tactus::nodes {
 /// Allocates in the constructor only; no other function allocates, waits or throws.
 class CaseBodies {
 public:
-    /// Each body has its origin at the middle of its surface points.
+    /// Each body has its origin at the mean of its surface points.
     explicit CaseBodies(const std::vector<bone::Bone>& bones);
 
     std::size_t count() const noexcept { return parts_.size(); }
@@ -24,7 +24,7 @@ public:
 
     /// Rebuilds the whole scene.
     void arrange(const fit::Arrangement& now) noexcept;
-    /// Updates the poses of one body and of those that move with it only. A fit to one of them may have become void.
+    /// Updates only the poses of one body and of those that move with it. A fit to one of them may have become invalid.
     void show_unit(const fit::Arrangement& now, int fragment) noexcept;
     /// The scene, with a new version after a change.
     const coupling::Scene& scene() noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps and alternatives of a case during a run, and the rows that tell of them.
+// Steps and alternatives of a case during a run, and the rows that record them.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -20,18 +20,18 @@ public:
 
     explicit CaseHistory(const cases::CasePlan& plan);
 
-    /// Whether the step before, or after, could be taken back into `now`.
+    /// Replaces `now` by the previous, or the next, step. Returns false if there is none.
     bool undo(fit::Arrangement& now) noexcept;
     bool redo(fit::Arrangement& now) noexcept;
 
-    /// Goes to an alternative; their number begins another one at the current state. False, without a change, when there
-    /// is none or it is the current one.
+    /// Switches to an alternative; the number after the last one starts a new alternative at the current state. Returns
+    /// false, without a change, if the number is invalid or is the current one.
     bool go_to(std::size_t alternative, fit::Arrangement& now) noexcept;
-    /// Drops an alternative; a negative number brings the one dropped last back, of at most
-    /// cases::most_dropped. False when that cannot be.
+    /// Removes an alternative; a negative number restores the one removed last, of at most cases::most_dropped. Returns
+    /// false if that is not possible.
     bool drop(double number) noexcept;
 
-    /// What has been done since the last step becomes a step.
+    /// Records all changes since the last step as a step.
     void add(const fit::Arrangement& now) noexcept;
 
     /// A row for the next step.
@@ -43,7 +43,7 @@ public:
 private:
     fit::StepTree tree_;
     fit::Arrangement kept_;  // after the last step
-    std::vector<fit::HistoryPlace> ways_;  // of the alternatives; the current one's is in the tree
+    std::vector<fit::HistoryPlace> ways_;  // of the alternatives; that of the current one is in the tree
     std::size_t way_ = 0;
     std::vector<fit::HistoryPlace> dropped_;  // the last one at the end
 };

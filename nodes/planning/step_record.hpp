@@ -46,7 +46,7 @@ public:
         trouble_ = plan_keeper_->trouble();
         plan_keeper_.reset();
     }
-    /// Steps that could not be kept, reported at the end of the run; usually none.
+    /// Error about steps that could not be saved, reported at the end of the run; usually empty.
     const std::string& trouble() const { return trouble_; }
 
 private:
