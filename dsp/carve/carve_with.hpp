@@ -11,7 +11,7 @@
 namespace tactus::carve {
 
 /// See Carver. In addition to CuttingEdge's requirements a Field has `float get(i, j, k)`, `bool set(i, j, k, float)`
-/// (false: the budget of changes is spent), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
+/// (false: the budget of changes is exhausted), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
 class CarveCore {
 public:
     CarveCore() = default;
@@ -45,7 +45,7 @@ public:
         return result;
     }
 
-    /// Removes what fronts have passed that something else moves; the law of advance has no say.
+    /// Removes the volume swept by fronts that are advanced elsewhere; the law of advance does not apply.
     template <class Field>
     CarveResult update(Field& field, std::span<const CutFront> fronts) noexcept {
         CarveResult result;
@@ -79,8 +79,8 @@ public:
 
 private:
     static constexpr std::size_t chunk = 8;  // spans stamped together
-    static constexpr double near_voxels = 3.0;  // depth below the cut that every update refreshes
-    static constexpr double least_cut = 0.05;  // voxels of motion that wait for the next update
+    static constexpr double near_voxels = 3.0;  // voxels; depth below the cut that every update refreshes
+    static constexpr double least_cut = 0.05;  // voxels; smaller motions wait for the next update
     static constexpr double detour = 2e-5;  // m by which a path may exceed the chord that is cut in one step
 
     /// Ends of a span at its last cut, in the bone's frame.
@@ -88,7 +88,7 @@ private:
         Vec3 a, b;
     };
 
-    /// A front that is no number, or far from the bone, cuts nothing and is no place that a path leads from.
+    /// A front that is not finite or far from the bone cuts nothing, and no path starts from it.
     template <class Field>
     static bool is_near(const Field& field, const CutFront& front) noexcept {
         if (!is_valid(front.pose) || static_cast<std::size_t>(front.count) > CutFront::most_nodes) return false;
@@ -111,7 +111,7 @@ private:
         return std::isfinite(speed) ? speed * s.reference_density : 0.0;
     }
 
-    /// Bone holds one end of a span while the other went aside: no tooth passes between them.
+    /// True if bone holds one end of a span while the other end moved aside: no tooth passes between them.
     bool is_torn(std::size_t n) const noexcept {
         const auto nodes = edge_.nodes();
         const Vec3 span = nodes[n + 1].at - nodes[n].at;
@@ -140,7 +140,7 @@ private:
         for (std::size_t n = 0; n < cut_.size(); ++n) cut_[n] = deep_[n] = {nodes[n].at, nodes[n + 1].at};
         for (EdgeNode& node : nodes) {
             node.travel = 0.0;
-            node.fresh = true;  // the material that the edge touches when the saw starts is then cut
+            node.fresh = true;  // the material that the edge touches when the saw starts is cut next
         }
     }
 
@@ -169,7 +169,7 @@ private:
         return false;
     }
 
-    /// Removes the volume swept since the last call, and keeps the field a distance close to the new wall.
+    /// Removes the volume swept since the last call, and keeps the field an exact distance near the new wall.
     template <class Field>
     void cut_out(Field& field, CarveResult& result) noexcept {
         const auto nodes = edge_.nodes();
@@ -190,7 +190,7 @@ private:
         const VoxelFraction fraction(field.spacing(), pose_.rotate({0, 0, 1}));
         bool whole = true;
         for (std::size_t c = 0; c < spans.size(); c += chunk) whole &= stamp(field, c, reach, fraction, result);
-        if (!whole) {  // cut again from the same place in the next update
+        if (!whole) {  // the next update cuts again from the same position
             result.budget_hit = true;
             return;
         }
@@ -201,7 +201,7 @@ private:
         }
     }
 
-    /// Refreshes the distance deeper down, one chunk at a time: the one whose edge has moved most since its last
+    /// Refreshes the distance deeper down, one chunk per call: the chunk whose edge has moved most since its last
     /// refresh, if it moved more than a quarter of a voxel.
     template <class Field>
     void deepen(Field& field, CarveResult& result) noexcept {
@@ -280,8 +280,9 @@ private:
         return KerfStamp{frame_, 0.5 * settings_.kerf, swept_, fraction}.apply(field, low, high, result);
     }
 
-    /// Voxels behind a moving edge are nearer to its old position and were refreshed then. How far against y new values
-    /// can reach, within `reach`, depends on how much the path turns sideways.
+    /// Distance against y, within `reach`, over which new values are possible. Voxels behind a moving edge are nearer
+    /// to its previous position and were refreshed then, so that the distance depends on how much the path turns
+    /// sideways.
     static double behind(const SweptSpan& s, double reach) noexcept {
         const auto of = [reach](const Vec3& direction) {
             return direction.y > 0.0 ? reach * (std::abs(direction.x) + std::abs(direction.z)) / direction.y : reach;
@@ -290,7 +291,7 @@ private:
     }
 
     CarveSettings settings_;
-    double widest_ = 0.0;  // m: kerf for which the bone keeps a band
+    double widest_ = 0.0;  // m: largest kerf for which the bone stores a wide enough band
     double voxel_ = 0.0;
     CuttingEdge edge_;
     SweptEdge swept_;
@@ -298,7 +299,7 @@ private:
     Pose pose_, frame_;
     bool placed_ = false;
     bool cutting_ = false;
-    double front_pitch_ = 0.0;  // m between the nodes of the last front; 0: this carver moves its own edge
+    double front_pitch_ = 0.0;  // m between the nodes of the last front; 0: this carver advances its own edge
 };
 
 }  // namespace tactus::carve

@@ -14,10 +14,10 @@ namespace tactus::carve {
 /// density).
 ///
 /// In bone every point of the tooth edge advances at most at the removal speed v = speed · (F/F_ref)^p ·
-/// (rate/rate_ref) · density_ref/density; in air it follows the blade at once. The swept edge, widened to the kerf with
-/// a round front, is subtracted by d ← max(d, R − distance). Path steps are at most 1 ms and the distance to the swept
-/// body is exact, so the cut depends neither on the call rate nor on the positions of the samples, and d remains the
-/// exact distance to the kerf: no re-distancing is needed. Down to `depth` below the cut the field is a distance;
+/// (rate/rate_ref) · density_ref/density; in air it follows the blade immediately. The swept edge, widened to the kerf
+/// with a round front, is subtracted by d ← max(d, R − distance). Path steps are at most 1 ms and the distance to the
+/// swept body is exact, so the cut depends neither on the call rate nor on the positions of the samples, and d remains
+/// the exact distance to the kerf: no re-distancing is needed. Down to `depth` below the cut the field is a distance;
 /// deeper, it keeps the old values, which have larger magnitudes.
 ///
 /// The first sample places the edge at the blade. A blade that is repositioned (faster than 3 m/s, or taken out of the
@@ -33,10 +33,10 @@ public:
     void set_law(const CarveSettings& law) noexcept { core_.set_law(law); }
 
     /// Cuts along `samples`, oldest first; ignores samples that are not finite. The caller publishes the edits. When
-    /// the budget of changed bricks is spent, the next update cuts the rest. Allocates nothing.
+    /// the budget of changed bricks is exhausted, the next update cuts the rest. Allocates nothing.
     CarveResult update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept;
 
-    /// The same for fronts that are advanced elsewhere. Give a carver either samples or fronts.
+    /// The same for fronts that are advanced elsewhere. Use one carver either with samples or with fronts.
     CarveResult update(volume::BoneEditor& bone, std::span<const CutFront> fronts) noexcept;
 
     /// Kerf over the largest voxel edge; below 3 the walls of the cut are not resolved.

@@ -12,8 +12,8 @@
 
 namespace tactus::carve {
 
-/// How far a tool has cut: the centres of its round front, half a kerf behind the floor of the cut, in a row along the
-/// edge; two equal nodes are the ball of a burr. Consecutive fronts are the path that `Carver` removes.
+/// Progress of a cut: the centres of the tool's round front, half a kerf behind the floor of the cut, in a row along
+/// the edge. For the ball of a burr, all nodes are equal (two). Consecutive fronts form the path that `Carver` removes.
 struct CutFront {
     static constexpr std::string_view wire_name = "front";
     static constexpr std::size_t most_nodes = 64;
@@ -21,7 +21,7 @@ struct CutFront {
     Pose pose;  ///< of the tool: x along the edge, y the cutting direction, z across
     double kerf = 0.0;  ///< m, width of the cut
     double pitch = 0.0;  ///< m between nodes
-    std::uint64_t seated = 0;  ///< bit per node: it follows the tool; others lie in bone that they have not cut
+    std::uint64_t seated = 0;  ///< bit per node: it follows the tool; other nodes lie in uncut bone
     std::uint64_t fresh = 0;  ///< bit per node: newly placed, no path leads here
     std::array<std::array<float, 3>, most_nodes> offset{};  ///< m from pose.position, axes of the scene
     std::int32_t count = 0;

@@ -19,16 +19,16 @@ struct EdgeNode {
     Vec3 target;  ///< position given by the blade
     bool cutting = false;  ///< bone limited its motion in the last step
     double travel = 0.0;  ///< m moved since the path was last cut
-    bool seated = false;  ///< false: inside bone with no air near; it neither moves nor cuts
+    bool seated = false;  ///< false: inside bone without air nearby; it neither moves nor cuts
     bool fresh = false;  ///< newly placed: no path leads here
 };
 
 /// The edge is a row of nodes one tooth pitch apart, longer than the blade by the stroke. As the stroke exceeds the
 /// pitch, a tooth passes every point between nodes, so the row is one continuous edge of width `kerf` with a round
 /// front. The teeth are at the foremost points of that front; the nodes are its centres, half a kerf behind. Each node
-/// follows its target along the blade's y, then x, then z: in air at once, in bone at most at the removal speed for the
-/// density ahead of it. A node beyond the end of the bone is held back while bone is within one pitch of it, so that
-/// the edge between it and its neighbour does not cut bone that neither of them has cut.
+/// follows its target along the blade's y, then x, then z: in air immediately, in bone at most at the removal speed for
+/// the density ahead of it. A node beyond the end of the bone is held back while bone is within one pitch of it, so
+/// that the edge between it and its neighbour does not cut bone that neither of them has cut.
 ///
 /// A Field has `double value(Vec3)`: distance, m, negative in bone; `double density(Vec3)`, kg/m³. Nothing allocates
 /// after construction.
@@ -49,7 +49,7 @@ public:
     std::span<const EdgeNode> nodes() const noexcept { return nodes_; }
     double pitch() const noexcept { return pitch_; }
 
-    /// Puts every node at its target, or behind it, against y, where it comes out of the bone.
+    /// Places every node at its target or, if that is inside the bone, behind it along −y where the bone ends.
     template <class Field>
     void place(const Field& field, const Pose& pose) noexcept {
         frame(pose);
@@ -59,7 +59,7 @@ public:
         }
     }
 
-    /// Takes the nodes from a front that something else moves. Nodes that the front lacks are not seated.
+    /// Sets the nodes from a front that is advanced elsewhere. Nodes that the front lacks are not seated.
     void adopt(const CutFront& front) noexcept {
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             EdgeNode& node = nodes_[n];
@@ -79,8 +79,8 @@ public:
         }
     }
 
-    /// Moves the targets to `pose` and lets the nodes follow. `removal` is the speed times the reference density,
-    /// kg/(m² s); 0 when the saw does not run. Steps are at most 1 ms long.
+    /// Moves the targets to `pose` and moves the nodes towards them. `removal` is the speed times the reference
+    /// density, kg/(m² s); 0 when the saw does not run. Steps are at most 1 ms long.
     template <class Field>
     void follow(const Field& field, const Pose& pose, double dt, double removal) noexcept {
         frame(pose);
@@ -112,7 +112,7 @@ private:
     static constexpr int most_steps = 64;
     static constexpr double fastest_hand = 3.0;  // m/s
     static constexpr double reach = 0.030;  // m of bone out of which a repositioned blade is moved back
-    static constexpr double most_aside = 0.010;  // m: a node farther off its blade is detached
+    static constexpr double most_aside = 0.010;  // m: a node farther from its target is detached
     static constexpr int most_moves = 32;
 
     void frame(const Pose& pose) noexcept {

@@ -12,14 +12,14 @@
 
 namespace tactus::carve {
 
-/// d ← max(d, radius − distance to the swept edge), and the volume that this removes.
+/// Applies d ← max(d, radius − distance to the swept edge), and measures the removed volume.
 struct KerfStamp {
     const Pose& frame;  ///< of the swept edge, in the bone's frame
     double radius;      ///< half the kerf, m
     const SweptEdge& swept;
     const VoxelFraction& fraction;
 
-    /// Over the voxels of a box in `frame`. False when the field could not take all changes.
+    /// Processes the voxels of a box in `frame`. Returns false if the field could not store all changes.
     template <class Field>
     bool apply(Field& field, const Vec3& low, const Vec3& high, CarveResult& result) const noexcept {
         const std::array<int, 3> size = field.size();
@@ -44,11 +44,11 @@ struct KerfStamp {
                 const Vec3 start = back.apply(field.origin() + Vec3(0.0, j, k) * spacing);
                 double from = first[0], to = last[0];
                 clip(low, high, start, step, from, to);
-                if (!(from <= to)) continue;  // of a nearly level row, `from` may exceed every int
+                if (!(from <= to)) continue;  // for a nearly level row, `from` may exceed the range of int
                 const int stop = static_cast<int>(std::floor(to));
                 for (int i = static_cast<int>(std::ceil(from)); i <= stop; ++i) {
                     const double before = field.get(i, j, k);
-                    if (before >= radius) continue;  // of most samples; their places are not needed
+                    if (before >= radius) continue;  // most samples: their positions are not needed
                     whole &= lift(field, i, j, k, before, start + step * static_cast<double>(i), result);
                 }
             }

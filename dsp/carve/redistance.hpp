@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Re-distancing: makes a distorted field a distance again, a few bricks at a time.
+// Re-distancing: restores the distance property of a distorted field, a few bricks at a time.
 #pragma once
 
 #include "dsp/volume/bricks.hpp"
@@ -26,7 +26,7 @@ public:
     void add(std::span<const std::uint32_t> bricks) noexcept;
 
     /// Processes at most `bricks` of the queue; returns how many remain. Stops early when the editor's budget of
-    /// changes is spent. About 0.1 ms per brick.
+    /// changes is exhausted. About 0.1 ms per brick.
     std::size_t tick(volume::BoneEditor& bone, int bricks) noexcept;
 
     std::size_t waiting() const noexcept { return count_; }

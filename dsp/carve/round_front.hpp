@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the round front of a kerf touches.
+// Contact of the round front of a kerf with bone.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,7 +12,7 @@ namespace tactus::carve {
 /// density(Vec3)`, kg/m³.
 struct RoundFront {
     double radius = 0.0;  ///< m, half the kerf
-    double ahead = 0.0;  ///< m: samples lie so far below the surface of the swept body; a quarter voxel
+    double ahead = 0.0;  ///< m: samples lie this far below the surface of the swept body; a quarter voxel
 
     struct Contact {
         double density = 0.0;  ///< kg/m³ of the bone the front touches; 0: none
@@ -20,7 +20,7 @@ struct RoundFront {
     };
 
     /// Samples three points of the round front (Gauss–Legendre nodes across the kerf) and, at `neighbour` to either
-    /// side, its middle, all `ahead` below the surface of the swept body. `slack`: m of bone that does not count.
+    /// side, its middle, all `ahead` below the surface of the swept body. `slack`: tolerated depth in bone, m.
     template <class Field>
     Contact look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
                  double slack) const noexcept {
@@ -55,7 +55,7 @@ struct RoundFront {
         return contact;
     }
 
-    /// Least distance of the three points, m.
+    /// Returns the smallest distance of the three points, m.
     template <class Field>
     double floor(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side) const noexcept {
         const Vec3 low = at + direction * (0.63246 * radius + ahead);

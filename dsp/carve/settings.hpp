@@ -24,13 +24,13 @@ struct CarveSettings {
     double blade_length = 0.040;  ///< m, from the first tooth to the last
     double kerf = 0.001;  ///< m, width of the cut
     double tooth_pitch = 0.00094;  ///< m
-    double stroke = 0.003;  ///< m peak to peak; at least the tooth pitch, or ridges would stay
+    double stroke = 0.003;  ///< m peak to peak; at least the tooth pitch, otherwise ridges would remain
     double speed = 0.67e-3;  ///< m/s of advance under the reference conditions
     double reference_force = 7.0;  ///< N
     double reference_rate = 228.0;  ///< Hz
     double reference_density = 1800.0;  ///< kg/m³
     double force_exponent = 0.0;  ///< 0: advance does not depend on thrust
-    double depth = 0.003;  ///< m below a cut down to which the field stays a distance
+    double depth = 0.003;  ///< m below a cut to which the field remains a distance
 };
 
 /// Upper limits of the density classes of removed bone, kg/m³: 350, 700, 1200.
@@ -39,8 +39,8 @@ inline constexpr std::array<double, 3> density_class_limits{350.0, 700.0, 1200.0
 struct CarveResult {
     double removed_m3 = 0.0;
     std::array<double, 4> removed_by_density{};  ///< m³, see density_class_limits
-    int dirty_bricks = 0;  ///< waiting to be published
-    bool budget_hit = false;  ///< part of the cut was left to the next update
+    int dirty_bricks = 0;  ///< changed but not yet published
+    bool budget_hit = false;  ///< a part of the cut is postponed to the next update
 };
 
 }  // namespace tactus::carve

@@ -12,16 +12,17 @@
 
 namespace tactus::carve {
 
-/// A piece of edge between two nodes, before (0) and after (1), m. Frame: x along the edge, y the cutting direction.
+/// A segment of the edge between two nodes, before (0) and after (1) a step, m. Frame: x along the edge, y the cutting
+/// direction.
 struct SweptSpan {
     Vec3 a0, b0, a1, b1;
     bool moved = false;  ///< false: it sweeps nothing new
-    bool fresh = false;  ///< the edge was placed here; there is no path to it
+    bool fresh = false;  ///< the edge was placed here; no path leads to it
 };
 
 /// Rounded sheet swept by a row of spans. Where neighbours differ in depth by more than their spacing, the edge between
-/// them is raised towards the shallower one, fully from twice the spacing on: the teeth that cut there pass both
-/// places, and the deeper one is in air.
+/// them is raised towards the shallower one, completely from twice the spacing on. The reason: the teeth that cut there
+/// pass both positions, and the deeper one is in air.
 class SweptEdge {
 public:
     SweptEdge() = default;
@@ -76,7 +77,7 @@ private:
     struct Bucket {
         std::size_t begin = 0, end = 0;
         double low_y = 0, high_y = 0, low_z = 0, high_z = 0;
-        bool level = true;  ///< the edge runs along x: one projection finds the closest point
+        bool level = true;  ///< the edge is parallel to x, so that one projection finds the closest point
     };
 
     std::size_t bucket_of(double x) const noexcept {
@@ -132,7 +133,7 @@ private:
         return squared_length > 1e-18 ? std::clamp(glm::dot(p - from, displacement) / squared_length, 0.0, 1.0) : 1.0;
     }
 
-    /// Alternating projection between the two directions of the sheet; no projection increases the distance.
+    /// Alternating projection onto the two directions of the sheet; each projection reduces the distance or keeps it.
     static double squared(const SweptSpan& s, const Vec3& p, bool level) noexcept {
         const Vec3 along0 = s.b0 - s.a0, along1 = s.b1 - s.a1, forth = s.a1 - s.a0, twist = along1 - along0;
         double u = std::abs(along1.x) > 1e-9 ? std::clamp((p.x - s.a1.x) / along1.x, 0.0, 1.0) : 0.5;

@@ -19,8 +19,8 @@ struct BladeShape {
 
 inline constexpr int blade_row = 44, blade_rows = 3, blade_point_count = blade_row * blade_rows;
 
-/// 132 points in three rows (thesis 6.2.2): the tooth edge, and both faces at half height. A blade centred in its kerf
-/// feels no side force, a tilted blade a torque, and a pinched blade both walls.
+/// 132 points in three rows (thesis 6.2.2): the tooth edge, and both faces at half height. So a blade centred in its
+/// kerf receives no side force, a tilted blade receives a torque, and a pinched blade touches both walls.
 struct BladePoints {
     explicit BladePoints(const BladeShape& shape = {});
     std::array<Vec3, blade_point_count> local;
@@ -34,10 +34,10 @@ struct BladeContact {
 };
 
 /// Force of point i: k_i·|d|·∇d for d < 0, with d and its exact gradient from a quadratic B-spline. Trilinear gradients
-/// would turn by 10° at every cell face under a narrow kerf.
+/// would rotate by 10° at every cell face under a narrow kerf.
 ///
-/// `stiffness` K (N/m) is an upper bound of the stiffness that the hand feels. The same k for every point in contact
-/// would ring with 132 points, and k divided by the number of contacts makes the force drop when one more point
+/// `stiffness` K (N/m) is an upper bound of the rendered stiffness. An equal k for every point would be unstable with
+/// 132 points in contact, and k divided by the number of contacts would let the force drop whenever another point
 /// touches. Therefore each family of points (tooth edge; two faces) has the energy ½·(K/c)·‖d‖₈², the 8-norm over its
 /// depths, so k_i = (K/c)·(|d_i|/‖d‖₈)⁶. The force is conservative and continuous and never softens as points come in;
 /// the curvature of the energy stays below K. c = 4 for the edge, whose points are pushed in one direction (one tooth

@@ -24,8 +24,8 @@ enum class Interpolation : std::uint8_t {
 ///
 ///     φ''(s) = ramp of width 2·blend about 0, from 0 to 1; then 1; then from 1 to 0 over the second half of `saturation`,
 ///
-/// Force and stiffness are continuous everywhere: φ = 0 until `blend` outside of the surface, φ' = s from the depth
-/// `blend` on, and the force never exceeds k·w·saturation.
+/// Force and stiffness are continuous everywhere. φ is 0 farther than `blend` outside of the surface, φ' = s from the
+/// depth `blend` on, and the force never exceeds k·w·saturation.
 struct ContactLaw {
     double stiffness = 10e3;  ///< k: N/m per point; with by_area N/m per m² of surface
     double blend = 0.03e-3;  ///< m, half the width of the blend zone at the surface; values below 1 nm act as 1 nm
@@ -67,7 +67,7 @@ struct DepthLaw {
     }
 
 private:
-    /// Stiffness that rises from 0 at x = 0 to 1 at x = width, and its integrals.
+    /// Stiffness that rises smoothly from 0 at x = 0 to 1 at x = width, and its integrals.
     static DepthEnergy<Real> ramp(Real x, Real width, Real inverse_width) noexcept {
         const Real c = std::min(std::max(x, Real(0)), width), e = std::max(x - width, Real(0));
         const Real share = c * inverse_width, half = Real(0.5) * c * share;

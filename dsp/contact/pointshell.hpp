@@ -12,8 +12,9 @@
 
 namespace tactus::contact {
 
-/// Label of a surface point. Other values are free for the user. Points `as_scanned` lie where fragments touch in their
-/// scan (scanned_border.hpp): no paint covers them, and they belong to no face and no outer contour of a fit.
+/// Label of a surface point. Other values are available to the user. Points labelled `as_scanned` lie where fragments
+/// touch in their scan (scanned_border.hpp): they cannot be painted, and they belong to no face and no outer contour of
+/// a fit.
 namespace surface_label {
 inline constexpr std::uint8_t none = 0, fracture = 1, as_scanned = 255;
 }
@@ -29,12 +30,12 @@ struct SurfacePoint {
 inline constexpr int chunk_points = 64;
 
 /// Up to 64 neighbouring points in the layout of the vector kernel: small offsets from the chunk's centre, so that
-/// single precision suffices. Unused places have weight 0.
+/// single precision suffices. Unused entries have weight 0.
 struct alignas(64) ShellChunk {
     float x[chunk_points], y[chunk_points], z[chunk_points];  ///< m, body frame, from the node's centre
     float nx[chunk_points], ny[chunk_points], nz[chunk_points];  ///< outward normals
     float count[chunk_points];  ///< number of points that this one represents: 1 in a leaf
-    float area[chunk_points];  ///< m² that it represents
+    float area[chunk_points];  ///< m² of surface that it represents
 };
 
 /// A node of the multiresolution tree. The chunk of a leaf holds all its points. The chunk of an inner node holds 64
@@ -45,7 +46,7 @@ struct ShellNode {
     double radius = 0.0;  ///< greatest distance from the centre to any point of the node, m
     std::uint32_t first_point = 0, points = 0;  ///< its points, adjacent in the shell's arrays
     std::uint32_t first_child = 0, children = 0;  ///< at most 4, adjacent in `nodes`; none in a leaf
-    std::uint32_t held = 0, below = 0;  ///< points in its chunk, and in its children's chunks together
+    std::uint32_t held = 0, below = 0;  ///< number of points in its chunk, and in its children's chunks together
 };
 
 /// Surface points in the order of a balanced k-d tree (Morton order with planes at medians): neighbours in space are

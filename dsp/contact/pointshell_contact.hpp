@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pointshell-voxmap contact: energy, its gradient and its stiffness with respect to a small motion.
 //
-// The motion. One body moves; ξ = (v, ω) is a small motion of it about the world point `about`, along world axes,
-// v in m, ω in rad: every point x of the body goes to about + v + exp([ω]×)(x − about). For the pose (p, R) of a body
-// with `about` = p this is p ← p + v, R ← exp([ω]×) R (in quaternions: exp(ω/2) · q). Gradient and stiffness are taken
-// at ξ = 0, in the order v.x v.y v.z ω.x ω.y ω.z, in N, N·m (gradient) and N/m, N/rad, N·m/rad (stiffness).
+// One body moves. ξ = (v, ω) is a small motion of it about the world point `about`, along world axes, v in m, ω in rad:
+// every point x of the body goes to about + v + exp([ω]×)(x − about). For the pose (p, R) of a body with `about` = p
+// this is p ← p + v, R ← exp([ω]×) R (in quaternions: exp(ω/2) · q). Gradient and stiffness are taken at ξ = 0, in the
+// order v.x v.y v.z ω.x ω.y ω.z, in N, N·m (gradient) and N/m, N/rad, N·m/rad (stiffness).
 //
 // With d and n = ∇d the interpolated distance and gradient at point i in world axes, r its lever from `about` and
 // J = (n, r × n):
@@ -40,22 +40,22 @@ struct ContactPair {
 struct ContactSum {
     double energy = 0.0;  ///< J
     std::array<double, 6> gradient{};  ///< ∂energy/∂ξ
-    std::array<double, 6> contact_gradient{};  ///< the part of it that comes from points; others may add to `gradient`
+    std::array<double, 6> contact_gradient{};  ///< the part of `gradient` from points; others may add to `gradient`
     std::array<double, 36> stiffness{};  ///< row by row, both triangles filled
     double total_force = 0.0;  ///< N, Σ k w φ' over the points: the scale of rounding errors
     double penetration = 0.0;  ///< m, of the deepest point, 0 when none is inside
     std::size_t in_contact = 0;  ///< points with a force
     std::size_t evaluated = 0;  ///< points whose distance was evaluated
-    bool reduced = false;  ///< the budget was too small: a coarser level stands for some points
+    bool reduced = false;  ///< the budget was too small: a coarser level represents some points
 
-    /// On the moving body, about `about`, world axes.
+    /// Wrench on the moving body about `about`, world axes.
     Wrench wrench() const noexcept {
         return {{-gradient[0], -gradient[1], -gradient[2]}, {-gradient[3], -gradient[4], -gradient[5]}};
     }
 };
 
-/// Reference implementation: every point of every pair, in double precision, sequentially; the vectorised form is
-/// tested against it. Skips pairs with an invalid pose, without points or without a map. Does not allocate.
+/// Reference implementation: every point of every pair, in double precision, sequentially; it is the reference in tests
+/// of the vectorised form. Skips pairs with an invalid pose, without points or without a map. Does not allocate.
 ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& about, const ContactLaw& law) noexcept;
 
 /// The parts to compute; the rest of the sum stays zero. `energy` is for line searches.
@@ -66,12 +66,12 @@ enum class ContactParts : std::uint8_t { energy, all };
 class PointshellContact {
 public:
     /// Capacity for `most_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. All memory is
-    /// allocated here; when the capacity is exceeded, the farthest parts stay coarse.
+    /// allocated here; when the capacity is exceeded, the farthest parts use coarser levels.
     explicit PointshellContact(std::size_t most_nodes);
 
     /// Evaluates at most `budget` points, but at least the coarsest chunk (64 points) of each pair that may touch. When
-    /// the budget is too small, the tree is refined level by level, nearest parts first; elsewhere a coarser point
-    /// represents its neighbours: forces are then approximate, and may jump when the selection changes.
+    /// the budget is too small, the tree is refined level by level, nearest parts first, and elsewhere a coarser point
+    /// represents its neighbours. Forces are then approximate, and may jump when the selection changes.
     ContactSum operator()(std::span<const ContactPair> pairs, const Vec3& about, const ContactLaw& law,
                           std::size_t budget = std::numeric_limits<std::size_t>::max(),
                           ContactParts parts = ContactParts::all) noexcept;
@@ -82,7 +82,7 @@ private:
         double clearance;
     };
 
-    /// Fills chosen_ with the nodes to evaluate; returns how many of them had to stay coarse.
+    /// Fills chosen_ with the nodes to evaluate; returns how many of them could not be refined.
     std::size_t choose(std::span<const ContactPair> pairs, double blend, std::size_t budget) noexcept;
 
     std::vector<Entry> frontier_, next_, chosen_;

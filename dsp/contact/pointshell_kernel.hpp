@@ -18,10 +18,10 @@
 namespace tactus::contact::kernel {
 
 inline constexpr std::size_t lanes = 16;
-/// Per call. Lanes are summed in single precision within a call: few enough to keep seven digits.
+/// Maximum per call. Lanes are summed in single precision within a call; this number keeps seven digits.
 inline constexpr std::size_t most_chunks = 32;
 
-/// Data of a pair that all chunks share. Map frame.
+/// Data of a pair, common to its chunks. Map frame.
 struct PairFrame {
     explicit PairFrame(const ContactLaw& contact_law) noexcept : law(contact_law) {}
 
@@ -32,9 +32,10 @@ struct PairFrame {
     float cells[9] = {};  ///< the same, in cells per metre
     float spacing[3] = {}, per_spacing[3] = {};  ///< m and 1/m
     float stiffness = 0.0f;  ///< k
-    float near = 0.0f;  ///< m: the quadratic field can reach the surface only where the trilinear one is below this
+    float near = 0.0f;  ///< m: where the trilinear field is above this, the quadratic one cannot reach the surface
     bool by_area = false, by_normal = false, quadratic = false, saturates = false, energy_only = false;
-    /// Prefetches the samples of the next chunk while one is computed: pays when the map does not fit the caches.
+    /// Prefetches the samples of the next chunk during the computation of the current one; useful if the map exceeds
+    /// the caches.
     bool prefetches = false;
     DepthLaw<float> law;
 };
@@ -65,7 +66,8 @@ void evaluate(const PairFrame& pair, std::span<const ChunkFrame> chunks, LaneSum
 /// Variants that this processor can run, best first, and the one in use. For tests and reports.
 std::vector<std::string_view> variants();
 std::string_view variant_in_use();
-/// Selects a variant, "" for the best. False when this processor cannot run it. Not while others compute.
+/// Selects a variant, "" for the best. Returns false if this processor cannot run it. Must not run in parallel with
+/// computations.
 bool use_variant(std::string_view name);
 
 }  // namespace tactus::contact::kernel

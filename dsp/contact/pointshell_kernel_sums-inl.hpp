@@ -32,7 +32,7 @@ HWY_INLINE Law ramp(V x, float width, float inverse_width) {
             hn::Add(ramped, e), share};
 }
 
-/// Writes the contribution of the points at l to the row that is being filled. True when any of them has a force.
+/// Writes the contributions of the points at l to the current row. Returns true if any of them has a force.
 HWY_INLINE bool respond(const PairFrame& pair, const ChunkFrame& at, const Places& places, const Field& field,
                         std::size_t l, std::size_t lane, Pushes& pushes, LaneSums& into) {
     const V weight = load(places.weight + l), depth = hn::Neg(field.value);

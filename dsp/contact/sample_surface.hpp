@@ -13,7 +13,7 @@
 
 namespace tactus::contact {
 
-/// How densely a surface is sampled.
+/// Density of sampling.
 struct SurfaceSampling {
     double spacing = 0.5e-3;  ///< m: a flat surface gets about one point per spacing²
     /// Where normals turn by more than `most_turn` within one spacing, points are proportionally denser, down to a
@@ -24,19 +24,19 @@ struct SurfaceSampling {
     std::size_t most_points = 2'000'000;
 };
 
-/// Blue-noise points: no two on one side of the surface are nearer than 0.77 spacings, and no further point fits. Areas
-/// are shares of the surface and sum to it. Normals are those of the triangles, outwards. Deterministic for the same
-/// surface and options. Throws Error when the spacing is not positive, or so fine that there would be more than
-/// `most_points`.
+/// Blue-noise points: no two on one side of the surface are nearer than 0.77 spacings, and no further point fits. The
+/// areas of the points sum to the area of the surface. Normals are those of the triangles, outwards. Deterministic for
+/// the same surface and options. Throws Error when the spacing is not positive, or so fine that there would be more
+/// than `most_points`.
 std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling);
 
 /// Samples the zero surface of a signed distance (m, negative inside): points lie on the zero level of the trilinear
-/// interpolant, normals are its smoothed gradient. No points when nothing crosses zero.
+/// interpolant, normals are its smoothed gradient. Empty if the field does not cross zero.
 std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling);
 
 /// Labels points that face another body: within `reach` (m) of its surface, with a normal opposite to the other's
-/// within `most_angle` (rad). Finds the fracture surfaces of fragments near their fitted poses. `into_map` maps the
-/// points' frame to the map's. Returns the number of labelled points.
+/// within `most_angle` (rad). Use: finding the fracture surfaces of fragments near their fitted poses. `into_map` maps
+/// the points' frame to the map's. Returns the number of labelled points.
 std::size_t label_facing(std::span<SurfacePoint> points, const Voxmap& other, const Pose& into_map, double reach,
                          double most_angle, std::uint8_t label = surface_label::fracture);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Analytic bodies: exact distance and evenly spread surface points. m, about the z axis or the origin.
+// Analytic bodies with exact distances and evenly distributed surface points. m, about the z axis or the origin.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -12,7 +12,7 @@
 
 namespace tactus::contact {
 
-/// A cubic grid about the origin, m; the values are left to the caller.
+/// A cubic grid centred at the origin, m; its values are not set.
 volume::Grid centred_layout(int samples_per_side, double spacing);
 /// A grid with samples `spacing` apart that contains the box from `low` to `high` and `margin` around it, m.
 volume::Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin);
@@ -34,7 +34,7 @@ struct Box {
     Vec3 size{20e-3};
 
     double distance(const Vec3& p) const;
-    /// Includes edges and corners, where normals are averaged.
+    /// Includes edges and corners, with averaged normals.
     std::vector<SurfacePoint> points(double spacing) const;
     Vec3 low() const { return -0.5 * size; }
     Vec3 high() const { return 0.5 * size; }
@@ -51,12 +51,12 @@ struct Revolved {
     Vec3 high() const;
 };
 
-/// Upright on z = 0, the lower rim bevelled by `bevel` at 45°.
+/// A cylinder with its base on z = 0; the lower rim is bevelled by `bevel` at 45°.
 Revolved make_cylinder(double diameter, double height, double bevel = 0.0);
 /// A round block below z = 0 with a hole along its axis; `bevel` widens the hole's mouth at 45°.
 Revolved make_bushing(double bore, double diameter, double height, double bevel = 0.0);
 
-/// The distance field of a shape with `margin` m around it.
+/// Samples the distance field of a shape on a grid with a margin of `margin` m.
 template <class Shape>
 Voxmap voxmap_of(const Shape& shape, double spacing, double margin) {
     return sample_voxmap(layout_around(shape.low(), shape.high(), spacing, margin),

@@ -12,30 +12,30 @@
 namespace tactus::contact {
 
 /// Signed distances to a body (m, negative inside) at the samples of a grid in the body's frame. Immutable. Values are
-/// interpolated between samples and gradients are exact derivatives of the interpolant, so that forces made of them
-/// have an energy. Outside the grid the value is `far` with gradient 0: leave a margin of some voxels around the
+/// interpolated between samples and gradients are exact derivatives of the interpolant, so that forces derived from
+/// them are conservative. Outside the grid the value is `far` with gradient 0: leave a margin of some voxels around the
 /// surface, or let the field end where the body does not.
 struct Voxmap {
     static constexpr std::string_view wire_name = "voxmap";
 
     volume::Grid grid;             ///< at least 2 samples per axis
     double far = 1.0;  ///< m, value outside the grid
-    double steepness = 1.0;  ///< greatest |difference| of neighbouring samples (26) per distance, at least 1
+    double steepness = 1.0;  ///< largest |difference| of neighbouring samples (26) per distance, at least 1
 
-    /// Trilinear value and its exact gradient. `position` in the body's frame, m.
+    /// Returns the trilinear value and its exact gradient. `position` in the body's frame, m.
     volume::Sample sample(const Vec3& position) const noexcept;
-    /// The same of a quadratic B-spline over 27 samples (border repeated): continuous gradient.
+    /// The same with a quadratic B-spline over 27 samples (border repeated): continuous gradient.
     volume::Sample smooth_sample(const Vec3& position) const noexcept;
-    /// Lower bound of either interpolant within `radius` of `position`; culls whole groups of points. Outside the
-    /// grid, the distance to the grid counts.
+    /// Returns a lower bound of either interpolant within `radius` of `position`, used to cull whole groups of points.
+    /// Outside the grid the bound is the distance to the grid.
     double least_within(const Vec3& position, double radius) const noexcept;
 };
 
-/// Takes a distance grid unchanged. Throws Error for fewer than 2 samples along an axis, spacings that are not
-/// positive, more than 2³⁰ samples and values that are not finite. The result does not depend on how jobs are run.
+/// Makes a voxmap of an unchanged distance grid. Throws Error for fewer than 2 samples along an axis, spacings that are
+/// not positive, more than 2³⁰ samples and values that are not finite. The result does not depend on how jobs are run.
 Voxmap make_voxmap(volume::Grid distance, const RunJobs& run = run_in_turn);
 
-/// From one version of a bone: exact near its surface, `far` where it stores no bricks.
+/// Makes a voxmap of one version of a bone: exact near its surface, `far` where it stores no bricks.
 Voxmap make_voxmap(const volume::BoneSnapshot& bone);
 
 /// Samples a distance function `distance(Vec3) -> m` at the samples of `layout` (its values are not read).
@@ -49,9 +49,9 @@ Voxmap sample_voxmap(volume::Grid layout, const Distance& distance) {
     return make_voxmap(std::move(layout));
 }
 
-/// The distance of the thesis, for comparison: a 3-4-5 chamfer distance (Borgefors 1986; 3 along an axis, 4 and 5 along
-/// the diagonals of faces and cells), divided by 3 and measured from the middle between inside and outside samples.
-/// Uses the signs of `distance` only. Needs cubic cells (within 0.1 %); throws Error otherwise.
+/// The distance used in the thesis, for comparison: a 3-4-5 chamfer distance (Borgefors 1986; 3 along an axis, 4 and 5
+/// along the diagonals of faces and cells), divided by 3 and measured from the middle between inside and outside
+/// samples. Uses the signs of `distance` only. Needs cubic cells (within 0.1 %); throws Error otherwise.
 volume::Grid chamfer_distance(const volume::Grid& distance);
 
 }  // namespace tactus::contact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adjoint transform of a fit's energy: to another reference point and other axes.
+// Adjoint transform of a fit's energy to another reference point and other axes.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -11,8 +11,8 @@
 
 namespace tactus::fit {
 
-/// The same sum about another point and along other axes: `arm` leads from the new point to the old one, new axes;
-/// `rotation` maps old axes to new ones.
+/// Transforms the sum to another reference point and other axes: `arm` leads from the new point to the old one, in new
+/// axes; `rotation` maps old axes to new ones.
 inline contact::ContactSum adjoint_transform(const contact::ContactSum& sum, const Mat3& rotation, const Vec3& arm,
                                              double share) noexcept {
     // Motion of the old frame from that of the new one: v' = rotationᵀ (v + ω × arm), ω' = rotationᵀ ω.

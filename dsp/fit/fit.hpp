@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snap-to-fit without a hand: where two painted surfaces fit, and how reliable the fit is.
+// Snap-to-fit without a hand: finds the pose at which two painted surfaces fit, and the reliability of the fit.
 //
 // The extended mode minimises the robust two-sided energy by Gauss–Newton steps of the coupling's solver, with a scale
 // that narrows from 4 mm to 0.25 mm, from the start and from poses around it, and keeps the pose with the best score.
@@ -23,48 +23,48 @@ enum class FitMode : std::uint8_t { thesis, extended, global };
 
 enum class FitVerdict : std::uint8_t {
     fit,  ///< one pose, constrained in all directions
-    sliding,  ///< it can move along `free` and still fit: flat, round or straight surfaces
+    sliding,  ///< it can move along `free` without losing the fit: flat, round or straight surfaces
     ambiguous,  ///< another pose fits equally well
     no_match,  ///< the surfaces do not belong together
     blocked,  ///< the surfaces fit, but the bones would overlap
-    uncertain  ///< the best place, with its error: the faces are too small or too chipped to hold it within the limits
+    uncertain  ///< the best pose, with an error beyond the limits: the faces are too small or too chipped
 };
 std::string_view name_of(FitVerdict verdict);
 
-/// What a verdict means for a plan: "fit", "fit, uncertain" or "no match".
+/// The verdict in the terms of a plan: "fit", "fit, uncertain" or "no match".
 std::string_view answer_of(FitVerdict verdict);
 
 /// A motion that the fit does not constrain.
 struct FreeDirection {
     bool is_rotation = false;
-    Vec3 axis{0.0};  ///< unit, fixed frame; a rotation is about the middle of the moving paint
+    Vec3 axis{0.0};  ///< unit, fixed frame; a rotation is about the centroid of the moving paint
 };
 
 struct FitSettings {
     double widest = 4e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
     double power = 3.0;  ///< exponent of the collinearity at the finest scale
-    double polish = 0.1e-3;  ///< m, scale of the last steps: with lost bone, a wider one pulls into the gap
+    double polish = 0.1e-3;  ///< m, scale of the last steps; with lost bone, a wider one is biased into the gap
     double polish_power = 6.0;  ///< exponent of the collinearity in the last steps
-    double intact = 0.1e-3;  ///< m, scale of the very last steps, which leave out what is chipped
-    double kerf = 0.0;  ///< m, mean width of the bone that was lost all along the faces; the fit leaves it open
+    double intact = 0.1e-3;  ///< m, scale of the final steps, which exclude chipped points
+    double kerf = 0.0;  ///< m, mean width of bone lost over the whole faces; the fit leaves this gap open
     double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: limits of an extended fit's motion from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
-    double pull = 30.0;  ///< N, thesis: of all painted points together
+    double pull = 30.0;  ///< N, thesis mode: sum over all painted points
     double least_score = Acceptance::least_score;  ///< below it the result is no_match
-    double most_rms = Acceptance::most_rms;  ///< rms distance in the overlap, share of sigma: above it it is no_match
+    double most_rms = Acceptance::most_rms;  ///< maximum rms distance in the overlap, fraction of sigma
     double least_overlap = Acceptance::least_area;  ///< m²; a smaller overlap is chance: no_match
     double least_share = Acceptance::least_share;  ///< of the smaller paint; a smaller overlap is chance: no_match
-    double least_margin = Acceptance::least_margin;  ///< to the second best pose, as share of the best score
-    double most_far = Acceptance::most_far;  ///< m, at the far end: a face that holds it less well is uncertain
+    double least_margin = Acceptance::least_margin;  ///< to the second best pose, as fraction of the best score
+    double most_far = Acceptance::most_far;  ///< m, at the far end: a less precise pose is uncertain
     double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double most_penetration = 0.5e-3;  ///< m
 };
 
-/// Coarse scans define their surfaces no better than their voxels: no scale stays finer than that.
+/// Widens the scales for coarse scans, whose surfaces are no more precise than their voxels.
 void widen_for(FitSettings& settings, const Vec3& spacing) noexcept;
 
-/// The defaults, widened for both fields.
+/// Returns the defaults, widened for the voxels of both fields.
 FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed);
 
 struct Fit {
@@ -79,8 +79,8 @@ struct Fit {
     int iterations = 0;  ///< steps of the solver, over all starts
 };
 
-/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`), blocked and uncertain (`far` of FitPrecision,
-/// m, and what is likely but beyond a limit of the faces) that applies, else fit.
+/// Returns the first of these verdicts that applies: no_match, sliding (`is_free`), ambiguous (`margin`), blocked,
+/// uncertain (`far` of FitPrecision, m, or a face that fails a limit but is likely); otherwise fit.
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings,
                  double far = 0.0) noexcept;
 
@@ -88,15 +88,15 @@ FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const F
 Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,
              const FitSettings& settings = {});
 
-/// The best fit of any moving face to any fixed one; `margin` is to the next best pose of all pairs. Neither may be
-/// empty.
+/// Returns the best fit of any moving face to any fixed one; `margin` refers to the next best pose of all pairs.
+/// Neither list may be empty.
 Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode);
 
-/// Minimises the energy from `start` at the finest scale only: refines a fit that a hand still holds. Poses are those
-/// of the bodies. Does not allocate beyond `energy`.
+/// Minimises the energy from `start` at the finest scale only: refines a fit while the hand still holds the body. Poses
+/// are those of the bodies. Does not allocate beyond `energy`.
 Pose settle(FitEnergy& energy, const Pose& start, const FitSettings& settings, int* iterations = nullptr) noexcept;
 
-/// Converts poses between the bodies' frames and those of their paints' middles.
+/// Converts poses between the bodies' frames and the frames at the centroids of their paint.
 Pose between_centres(const FitSurface& moving, const FitSurface& fixed, const Pose& bodies);
 Pose between_bodies(const FitSurface& moving, const FitSurface& fixed, const Pose& centres);
 

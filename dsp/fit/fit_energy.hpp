@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The energy of two painted surfaces that should fit, for the solver of the coupling.
+// Energy of two painted surfaces that should fit, in the form that the coupling's solver uses.
 //
 // A painted point at signed distance d of the other bone, with outward normal n and the other's gradient g there, has
 // the weight w = share · max(0, −n·g)^power: mating surfaces have opposite normals. Its energy is
@@ -9,18 +9,19 @@
 //     intact       ½ K v d²                       only of what is not chipped, for the last steps
 //
 // Bone can be missing between two pieces, but none is added: `intact` leaves out all points within 6 s of one that is
-// more than s off the other bone, because the rims of chips are rounded and lie nearly on it. What remains has the
-// weight v = w (1 − d²/s²)² for d > 0 and w min(1, s / |d|) for d < 0; its middle has no pull into the chips. When
-// less than a fifth of the weight would remain, nothing is left out.
+// more than s off the other bone, because the rims of chips are rounded and lie nearly on it. The remaining points have
+// the weight v = w (1 − d²/s²)² for d > 0 and w min(1, s / |d|) for d < 0, which avoids a bias into the chips. If less
+// than a fifth of the weight would remain, no point is left out.
 //
 // with gradients of J = (g, r × g) and the stiffness of the touching parabola, as in pointshell_contact.hpp. The
 // points of the outline pull along ½(n_x + n_y) towards their nearest partner y, which is zero for two points of one
 // circular arc, so that a curved contour continues without a step. The weights are those of the last update: they are
 // constant within one solve, so that the energy has the stated gradient.
 //
-// A kerf is bone that was lost all along. Both faces are those of one fracture that opened along the normal of its plane: the
-// energy at a pose is that of the closed faces, with the moving one shifted back by the opening. The distance of rough
-// faces varies with their slopes, so that it says less: w is the mean distance, and w / (mean cosine) the opening.
+// A kerf is bone that was lost over the whole faces. Both faces belong to one fracture that opened along the normal of
+// its plane: the energy at a pose is that of the closed faces, with the moving one shifted back by the opening. The
+// distance between rough faces varies with their slopes; therefore w is the mean distance, and w / (mean cosine) the
+// opening.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -35,8 +36,8 @@ namespace tactus::fit {
 
 enum class FitKernel : std::uint8_t { robust, steady, intact };
 
-/// The halves of the energy that can be evaluated separately: the moving points in the fixed field with the outline,
-/// and the fixed points in the moving field.
+/// The two halves of the energy, which can be evaluated separately: the moving points in the fixed field with the
+/// outline, and the fixed points in the moving field.
 enum class FitHalf : std::uint8_t { moving_points, fixed_points };
 
 struct FitLaw {
@@ -51,25 +52,25 @@ struct FitLaw {
     double outline = 0.0;  ///< weight of the outline relative to the paint
     double contact = 0.0;  ///< N/m for each moving point that is inside of the fixed bone
     std::size_t stride = 1;  ///< uses every n-th painted point
-    double kerf = 0.0;  ///< m, mean width of the bone that was lost all along, see FitEnergy
-    double noise = 0.0;  ///< m, standard deviation of the distances that scans cause, see FitEnergy::noise
-    double chipped = 1.0;  ///< share of the weight that chips may have taken, see FitEnergy::share_beyond
+    double kerf = 0.0;  ///< m, mean width of bone lost over the whole faces, see FitEnergy
+    double noise = 0.0;  ///< m, standard deviation of distances due to scan noise, see FitEnergy::noise
+    double chipped = 1.0;  ///< fraction of the weight in chips, see FitEnergy::share_beyond
 };
 
-/// How well two surfaces fit at a pose.
+/// Quality of a fit at a pose.
 struct FitQuality {
     double score = 0.0;  ///< mean over both paints of collinearity · exp(−d² / 2σ²), 0 to 1
-    double covered = 0.0;  ///< share of both paints within 2σ of the other and with opposite normals
+    double covered = 0.0;  ///< fraction of both paints within 2σ of the other and with opposite normals
     double rms = 0.0;  ///< m, of the distances within the overlap
     double overlap = 0.0;  ///< m² of the moving paint that is covered
-    double share = 0.0;  ///< covered area of both, on average, as a share of the smaller paint; at most 1
+    double share = 0.0;  ///< mean covered area of both, as a fraction of the smaller paint; at most 1
     double penetration = 0.0;  ///< m, exceeded by 1 % of the points of paint and outline of both sides
-    double gap = 0.0;  ///< m, mean signed distance of what overlaps, kerf included: positive when bone is missing
+    double gap = 0.0;  ///< m, mean signed distance of the overlap, kerf included: positive when bone is missing
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline
 };
 
-/// The unit direction in which a kerf takes the moving face away from the fixed one, fixed frame. Only the rotation of
-/// `pose` counts.
+/// Returns the unit direction in which a kerf separates the moving face from the fixed one, fixed frame. Depends only
+/// on the rotation of `pose`.
 Vec3 opening_direction(const FitSurface& moving, const FitSurface& fixed, const Pose& pose) noexcept;
 
 class FitEnergy {
@@ -87,23 +88,24 @@ public:
     const FitSurface& moving() const noexcept { return *moving_; }
     const FitSurface& fixed() const noexcept { return *fixed_; }
 
-    /// Updates weights and partners for this pose of the moving centre's frame in the fixed centre's.
+    /// Updates weights and partners for this pose of the moving centroid's frame in the fixed centroid's frame.
     void look(const Pose& pose) noexcept;
     /// Energy, gradient and stiffness about the origin of the moving frame, in the form of a contact for a coupling.
     contact::ContactSum operator()(const Pose& pose, contact::ContactParts parts) noexcept;
     /// The same for one half, with its weights updated.
     contact::ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
-    /// The pose at which the faces would lie on each other without the kerf.
+    /// Returns the pose at which the faces would be in contact without the kerf.
     Pose closed(const Pose& pose) const noexcept { return closed(pose, opening(pose)); }
 
-    /// m, how far the distances of both sides scatter at the last look, as a standard deviation: by their median, so that
-    /// neither chips nor paint beyond the rim count.
+    /// Returns the standard deviation in m of the distances of both sides at the last look. It is estimated from their
+    /// median, so that chips and paint beyond the rim have no effect.
     double noise() noexcept;
-    /// Share of the weight of both sides at the last look that lies farther than `distance` (m) off the other bone.
+    /// Returns the fraction of the weight of both sides at the last look that is farther than `distance` (m) from the
+    /// other bone.
     double share_beyond(double distance) const noexcept;
 
-    /// `sigma`, m: distance at which a point counts 0.6. Ignores the law but for `stride` and `kerf`.
+    /// `sigma`, m: distance at which a point counts 0.6. Of the law, only `stride` and `kerf` apply.
     FitQuality quality(const Pose& pose, double sigma) noexcept;
 
 private:
@@ -119,13 +121,13 @@ private:
         double weight = 0.0;
     };
 
-    /// How far the moving face has opened at this pose, m, fixed frame; zero without a kerf.
+    /// Displacement of the moving face by the opening at this pose, m, fixed frame; zero without a kerf.
     Vec3 opening(const Pose& pose) const noexcept;
     static Pose closed(const Pose& pose, const Vec3& opening) noexcept;
     /// Samples the field at all points, unless the last call had the same pose: most poses are evaluated twice.
     void read(Side& side, const Pose& into) const noexcept;
     void look(Side& side, const Pose& into) noexcept;
-    /// Takes the weight of all points away that chips reach, and weighs the others by their distance.
+    /// Sets the weight of all points near chips to zero, and weights the others by their distance.
     void leave_out_chips(Side& side) noexcept;
     void link(const Pose& pose) noexcept;
     void add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept;

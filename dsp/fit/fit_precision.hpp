@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well the faces of a fit hold the moving fragment, from the covariance of their least squares.
+// Precision of a fit's pose, from the covariance of its least squares.
 #pragma once
 
 #include "dsp/fit/fit_surface.hpp"
@@ -11,40 +11,41 @@ namespace tactus::fit {
 /// Two standard deviations of a fit's pose.
 struct FitPrecision {
     double turn = 0.0;  ///< rad
-    double far = 0.0;  ///< m, at the point of the moving fragment that is farthest from its face
-    double face = 0.0;  ///< m, at the middle of its face
+    double far = 0.0;  ///< m, at the point of the moving fragment farthest from its face
+    double face = 0.0;  ///< m, at the centroid of its face
 };
 
-/// How far a fit may be from the true place, at 95 %: the noise of the scans, and the second best pose where it is not
-/// clearly worse. That pose may be a slip to the next relief, which a covariance does not contain.
+/// Error bound of a fit's pose at 95 %. It includes the noise of the scans, and the second best pose if that is not
+/// clearly worse: that pose may be a slip to the next relief, which a covariance does not contain.
 struct PoseBound {
     double turn = 0.0;  ///< rad
-    double face = 0.0, far = 0.0;  ///< m, at the middle of the face and at the farthest point
-    bool has_rival = false;  ///< the second best pose is in the bound
+    double face = 0.0, far = 0.0;  ///< m, at the centroid of the face and at the farthest point
+    bool has_rival = false;  ///< the second best pose is included
 };
 
-/// `face`, `far`: the two places on the moving fragment, in its frame. `margin`: of `best` to `rival`, as FitSettings has
-/// it. `has_healthy`: a mirrored side took part, which differs from the broken one by nature; the bound stays above that.
+/// `face`, `far`: these two points on the moving fragment, in its frame. `margin`: of `best` to `rival`, as in
+/// FitSettings. `has_healthy`: a mirrored side took part, which naturally differs from the broken one; the bound is at
+/// least that difference.
 PoseBound bound_of(const FitPrecision& precision, double margin, const Pose& best, const Pose& rival, const Vec3& face,
                    const Vec3& far, bool has_healthy) noexcept;
 
-/// Sums the faces of one moving fragment. The distances of a face scatter with the noise of its scan, which is correlated
-/// over neighbouring points: the variance of their mean is summed over all pairs of points nearer than 3 mm, by Bartlett's
-/// weights (Conley, J. Econometrics 92, 1999), and a face counts as many independent points as have that variance. Does
-/// not allocate.
+/// Accumulates the faces of one moving fragment. The distances of a face scatter with the noise of its scan, which is
+/// correlated over neighbouring points. Therefore the variance of their mean is summed over all pairs of points nearer
+/// than 3 mm, with Bartlett's weights (Conley, J. Econometrics 92, 1999), and a face counts as the number of
+/// independent points with that variance. Does not allocate.
 class FitPrecisionSum {
 public:
     /// `origin`, `far`: any point and the farthest point of the moving fragment, in the frame of all poses.
     FitPrecisionSum(const Vec3& origin, const Vec3& far) noexcept : origin_(origin), far_(far) {}
 
-    /// `there`: pose of the fixed face's centre; `into`: of the moving one's in its frame, where a kerf is closed.
+    /// `there`: pose of the fixed face's centroid; `into`: pose of the moving one in that frame, with the kerf closed.
     void add(const FitSurface& moving, const FitSurface& fixed, const Pose& there, const Pose& into) noexcept;
-    /// Infinite where the faces leave a motion free.
+    /// Returns the precision; infinite where the faces leave a motion free.
     FitPrecision precision() const noexcept;
 
     static constexpr double lever = 0.01;  ///< m, makes rotations comparable to translations
     /// 6 × 6, inverse covariance of the pose: of translations in m, then of rotations about the origin in rad times `lever`.
-    /// Zero where no faces lie on each other.
+    /// Zero if no faces are in contact.
     std::span<const double, 36> information() const noexcept { return information_; }
 
 private:

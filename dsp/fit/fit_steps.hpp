@@ -21,31 +21,32 @@ struct Narrowing {
 /// Springs without force: the solver minimises the fit's energy alone. `gyration` of the moving paint, m.
 coupling::QuasiStaticSettings free_solver(double gyration) noexcept;
 
-/// The robust law with every point, or every n-th so that about `points` of each side take part (0: all). Keeps the
-/// kerf.
+/// Sets the robust law with every point, or every n-th so that about `points` of each side take part (0: all). Keeps
+/// the kerf.
 void set_law(FitEnergy& energy, double outline, std::size_t points = 0) noexcept;
 
-/// Solver steps while the scale narrows, with weights updated before each. Poses are those of the centres.
+/// Solver steps while the scale narrows; updates the weights before each. Poses are those of the centroids.
 Pose anneal(FitEnergy& energy, const Pose& start, const Narrowing& narrowing, int& iterations) noexcept;
 
 /// The robust kernel at `finest` times `wider`.
 void set_robust(FitEnergy& energy, const FitSettings& settings, double wider) noexcept;
 
-/// At the finest scale until the steps are done; then narrower, down to the resolution of the scans; then without chips.
+/// Steps at the finest scale, then at narrower scales down to the resolution of the scans, then without chipped points.
 Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept;
 
-/// The scale of step `step` of `polish_steps`: the bias that gaps of lost bone cause at a wide scale falls with its
-/// square. The last steps, from `first_intact_step`, are those of what is not chipped, or, where next to nothing is, of all
-/// points. Their scale is not narrower than the noise of the scans, see measure_noise: it would take noise for chips.
+/// Scale of step `step` of `polish_steps`: at a wide scale, gaps of lost bone cause a bias that falls with the square
+/// of the scale. The final steps, from `first_intact_step` on, use only points that are not chipped or, if nearly none
+/// are chipped, all points. Their scale is at least the noise of the scans (measure_noise), which would otherwise count
+/// as chips.
 inline constexpr int polish_steps = 36, first_intact_step = 13;
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept;
 
-/// Measures, at a pose that is polished, the noise of the scans and how much is chipped, for the last steps. Where
-/// next to nothing is, the choice of what to leave out would follow the noise.
+/// Measures, at a polished pose, the noise of the scans and the chipped fraction, for the final steps. If nearly
+/// nothing is chipped, no points are excluded, because the selection would follow the noise.
 void measure_noise(FitEnergy& energy, const FitSettings& settings, const Pose& pose) noexcept;
 
-/// Whether the steps of what is not chipped went farther than they can correct. The steps before leave a bias below
-/// their scale; what goes farther has no hold in the points that are left. Such steps are taken back.
+/// Returns whether the final steps moved farther than they can correct. The preceding steps leave a bias below their
+/// scale; a larger motion is not determined by the remaining points, and is rejected.
 bool is_astray(const FitEnergy& energy, const FitSettings& settings, const Pose& before, const Pose& after) noexcept;
 
 /// The shortest rotation from direction `from` to `to`.
@@ -54,10 +55,11 @@ Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept;
 /// Unit vector of a mean normal; up when it is zero.
 Vec3 direction_of(const Vec3& normal) noexcept;
 
-/// The moving paint's orientation with the mean normals opposed, by the shortest rotation from `from`.
+/// Returns the orientation of the moving paint with opposed mean normals, by the shortest rotation from `from`.
 Quat opposed(const FitSurface& moving, const FitSurface& fixed, const Quat& from) noexcept;
 
-/// m, distance of two poses of the same body: translation of the middle, plus rotation times the gyration.
+/// Returns the distance in m of two poses of the same body: translation of the centroid, plus rotation times the
+/// gyration.
 double pose_distance(const Pose& a, const Pose& b, double gyration) noexcept;
 
 }  // namespace tactus::fit

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds which placed fragments a fragment fits, and at which pose: a solver for a background thread, with bounded time
+// Finds the placed fragments that a fragment fits, and the pose: a solver for a background thread, with bounded time
 // and without allocation after construction.
 //
-// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of nearby faces with opposed
+// A fragment from the middle of a bone has one face for each former neighbour. Pairs of nearby faces with opposed
 // normals are fitted one by one from the present pose, by the two-sided robust energy of fit_energy.hpp with a
-// narrowing scale. The best pair leads; then all faces that fit at its pose are fitted together, so that errors of
-// single pairs do not accumulate. When nothing nearby fits, every face is tried on every other with all rotations, a
-// pair or two per call.
+// narrowing scale. Then all faces that fit at the pose of the best pair are fitted together, so that errors of single
+// pairs do not accumulate. If nothing nearby fits, every face is tried on every other with all rotations, one or two
+// pairs per call.
 #pragma once
 
 #include "dsp/fit/arrangement/arrangement.hpp"
@@ -32,46 +32,47 @@ struct FragmentMatch {
     Pose pose;  ///< of the moving fragment, in the frame of the given poses
     FitVerdict verdict = FitVerdict::no_match;
     FitQuality quality;  ///< of the leading pair of faces
-    double margin = 0.0;  ///< to the second best pose, as a share of the best score
-    FitPrecision precision;  ///< of all faces that were fitted together
+    double margin = 0.0;  ///< to the second best pose, as a fraction of the best score
+    FitPrecision precision;  ///< of all faces fitted together
     PoseBound bound;  ///< of the pose
-    int faces = 0;  ///< number of face pairs that were fitted together
+    int faces = 0;  ///< number of face pairs fitted together
 };
 
-/// Where one pair of faces of two fragments fits, wherever the fragments are.
+/// The fit of one pair of faces of two fragments, independent of the fragments' present poses.
 struct FacePairFit {
-    std::size_t moving = 0, fixed = 0;  ///< faces, as the matcher counts them
+    std::size_t moving = 0, fixed = 0;  ///< numbers of the faces in the matcher
     Pose pose;  ///< of the moving fragment in the frame of the fixed one
-    double score = -1.0, second = 0.0;  ///< of the best pose and of the second best; negative: none
-    double overlap = 0.0;  ///< m² on each other
+    double score = -1.0, second = 0.0;  ///< of the best and the second best pose; negative: none
+    double overlap = 0.0;  ///< m² in contact
     Pose rival;  ///< the second best pose, like `pose`
 
     FacePairFit inverse() const { return {fixed, moving, pose.inverse(), score, second, overlap, rival.inverse()}; }
-    /// How much there is to it: small patches fit by chance.
+    /// Value of the pair for ranking; includes the area, because small patches fit by chance.
     double worth() const { return score > 0.0 ? score * std::sqrt(overlap) : 0.0; }
 };
 
-/// Faces of a fragment from the middle are smaller than whole fractures: the required overlap is smaller.
+/// Settings for faces of a fragment from the middle, which are smaller than whole fractures: a smaller overlap
+/// suffices.
 inline FitSettings settings_of_faces() noexcept {
     FitSettings settings;
     settings.widest = 3e-3;
     settings.outline = 0.0;
     settings.most_penetration = 0.6e-3;
-    // Bias from chips accumulates along a chain of pieces: half of the limit for a single pair.
+    // Bias from chips accumulates along a chain of fragments: half of the limit for a single pair.
     settings.polish = 0.05e-3;
     return settings;
 }
 
 struct MatcherSettings {
     FitSettings fit = settings_of_faces();  ///< widened for the coarsest of the fragments' scans
-    double near = 15e-3;  ///< m: greatest distance of the centroids of face pairs to try, and greatest displacement
+    double near = 15e-3;  ///< m: largest distance of the centroids of tried face pairs, and largest displacement
     double most_turn = 0.7;  ///< rad, greatest rotation
-    double least_share = 0.5;  ///< of the leading score: minimum for other faces to take part
+    double least_share = 0.5;  ///< of the best pair's score: minimum for other faces to take part
     std::size_t most_pairs = 6;  ///< maximum number of face pairs per call, nearest first
-    std::size_t most_joined = 16;  ///< maximum number of face pairs that are fitted together
+    std::size_t most_joined = 16;  ///< maximum number of face pairs fitted together
     std::size_t most_points = 700;  ///< maximum number of points per face
-    HealthyPullSettings healthy;  ///< the healthy side, when it takes part in the fit
-    std::size_t most_faces = 400;  ///< of all fragments; each takes some megabytes
+    HealthyPullSettings healthy;  ///< the healthy side, if it takes part in the fit
+    std::size_t most_faces = 400;  ///< maximum over all fragments; each face takes some megabytes
 };
 
 class FragmentMatcher {
@@ -79,7 +80,7 @@ public:
     MatcherSettings settings;
 
     /// Throws Error when a fragment's points and distances do not match, and when all together have more than
-    /// `most_faces`. A fragment without paint fits nothing. Memory is proportional to the number of faces.
+    /// `most_faces`. A fragment without paint has no fit. Memory is proportional to the number of faces.
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
@@ -88,29 +89,29 @@ public:
     int fragment_of(std::size_t face) const noexcept { return faces_[face].fragment; }
     std::size_t faces_of(int fragment) const noexcept;
 
-    /// Local search from the present poses. `stands`: fragments that count as partners, except the moving one.
+    /// Local search from the present poses. `stands`: fragments that are valid partners; `moving` itself is excluded.
     const FragmentMatch& near(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
-    /// Global search: tries the next pair of faces, with all rotations. Returns the best match since `begin_search`,
-    /// relative to its partner's present pose. When the set of placed fragments changes, the search restarts.
+    /// Global search: tries the next pair of faces with all rotations. Returns the best match since `begin_search`,
+    /// relative to its partner's present pose. Restarts if the set of placed fragments changes.
     const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void begin_search() noexcept;
 
     /// Tries one pair of faces with all rotations, with the smaller face in the middle and at both ends of the larger
-    /// one, and from `held` (m: the moving fragment in the frame of the fixed one). For preparations: may run in several
-    /// threads at once, each with an energy of its own, from `make_energy`.
+    /// one, and from `held` (m: the moving fragment in the frame of the fixed one). For preparation: may run in several
+    /// threads in parallel, each with its own energy from `make_energy`.
     FacePairFit fit_faces(FitEnergy& energy, std::size_t moving, std::size_t fixed, const Pose& held) const;
     FitEnergy make_energy() const;
-    /// Starts where a pair of faces fits and fits all faces that fit there together, as `near` does. The moving
-    /// fragment is that of `pair.moving`.
+    /// Fits, as `near` does, all faces that match at the fitted pose of a pair. The moving fragment is that of
+    /// `pair.moving`.
     const FragmentMatch& place(const FacePairFit& pair, std::span<const Pose> poses,
                                std::span<const char> stands) noexcept;
-    /// Quality of a pair of faces at poses of all fragments.
+    /// Returns the quality of a pair of faces at poses of all fragments.
     FitQuality quality_of(FitEnergy& energy, std::size_t moving, std::size_t fixed, std::span<const Pose> poses) const;
-    /// Number of face pairs that `search` still has to try; 0: it starts over.
+    /// Number of face pairs that `search` has not tried yet; at 0 it starts again.
     std::size_t left() const noexcept { return left_; }
 
 private:
-    static constexpr std::size_t coarse_points = 160;  ///< of a face, while starts are compared
+    static constexpr std::size_t coarse_points = 160;  ///< per face, for the comparison of starts
 
     struct Face {
         int fragment;
@@ -145,15 +146,15 @@ private:
     std::vector<Face> faces_;
     std::vector<double> paint_;  ///< m², painted area of each fragment
     std::size_t most_face_points_ = 0, most_outline_ = 0;
-    std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs that are fitted together
+    std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs fitted together
     std::vector<HealthyPull> pulls_;  ///< of each fragment; empty without a healthy side
     std::vector<Pair> pairs_;
     std::vector<Solved> solved_;
     std::vector<Pair> joined_;
     FragmentMatch match_, found_;
     Fit free_;
-    Pose found_beside_;  ///< of the match found, in its partner's frame
-    std::vector<char> stood_;  ///< when the search began
+    Pose found_beside_;  ///< of the best match, in its partner's frame
+    std::vector<char> stood_;  ///< valid partners at the start of the search
     std::size_t left_ = 0, next_ = 0;
 };
 

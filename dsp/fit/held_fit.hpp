@@ -11,18 +11,18 @@
 
 namespace tactus::fit {
 
-/// One half of the fit's energy is evaluated per tick, at the proxy, in turn. Each half is replaced by its majorising
-/// parabola there, which with linearised distances is never below it: lowering the parabolas lowers the energy, and a
-/// solver step costs only the contact.
+/// Evaluates one half of the fit's energy per tick, alternately, at the proxy. Each half is replaced by its majorising
+/// parabola there, which with linearised distances is never below it. Hence lowering the parabolas lowers the energy,
+/// and a solver step costs only the contact.
 class HeldFit {
 public:
     /// `energy` may be null: contact only. Both must outlive this object.
     HeldFit(coupling::HeldContact& contact, FitEnergy* energy) noexcept : contact_(contact), energy_(energy) {}
 
-    /// Evaluates one half (both after `forget`) with the handle at `handle`: `moving` is the moving bone's file frame
-    /// in the frame of the handle, `fixed` that of the standing one in the world. `share` in [0, 1] scales the pull.
+    /// Evaluates one half (both after `forget`) at the pose `handle`: `moving` is the moving bone's file frame in the
+    /// frame of the handle, `fixed` that of the fixed bone in the world. `share` in [0, 1] scales the pull.
     void look(const Pose& handle, const Pose& moving, const Pose& fixed, double share) noexcept;
-    /// No pull until the next `look`.
+    /// Removes the pull until the next `look`.
     void forget() noexcept { halves_ = {}; }
 
     contact::ContactSum operator()(const Pose& handle, contact::ContactParts parts) noexcept;

@@ -14,7 +14,7 @@ struct MutualGap {
 };
 
 /// Measures each surface against the other bone's distances (see gap_between), so that the result is the same in
-/// either order. Each bone's poses must be equal.
+/// either order. The two poses of each bone must be equal.
 MutualGap mutual_gap(const PlacedBone& a, const PlacedBone& b, const GapSettings& settings = {});
 
 }  // namespace tactus::fit

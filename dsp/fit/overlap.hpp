@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two placed bones lie in each other.
+// Detects whether two placed bones overlap.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -9,19 +9,19 @@
 
 namespace tactus::fit {
 
-/// A bone where it is, or would be: surface points and distances, each with the pose of its frame.
+/// A bone at its current or intended position: surface points and distances, each with the pose of its frame.
 struct PlacedBone {
     std::span<const contact::SurfacePoint> points;
     const contact::Voxmap* map = nullptr;
     Pose points_pose, map_pose;
 };
 
-/// Whether more of the surface of one lies in the other than two scans of the same surface differ by: 10 mm² deeper
-/// than `depth` and than a voxel of both. Does not allocate.
+/// Returns whether the overlap exceeds the difference of two scans of one surface: more than 10 mm² deeper than `depth`
+/// and than a voxel of both. Does not allocate.
 bool lie_in_each_other(const PlacedBone& a, const PlacedBone& b, double depth) noexcept;
 
-/// Whether both are one bone, from one file or two: nine tenths of the surface of each lie within a voxel of the other's.
-/// Does not allocate.
+/// Returns whether both are the same bone, from one file or two: nine tenths of the surface of each lie within a voxel
+/// of the other's. Does not allocate.
 bool are_one_bone(const PlacedBone& a, const PlacedBone& b) noexcept;
 
 }  // namespace tactus::fit

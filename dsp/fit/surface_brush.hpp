@@ -12,15 +12,15 @@
 
 namespace tactus::fit {
 
-/// Points sorted into cubes: a stroke visits only the cubes near the brush, and skips those that have its label
-/// already. Allocates in the constructor only.
+/// Points sorted into cubes: a stroke visits only cubes near the brush that do not have its label everywhere. Only the
+/// constructor allocates.
 class SurfaceBrush {
 public:
     static constexpr double farthest = 20e-3;  ///< m
 
     explicit SurfaceBrush(std::vector<contact::SurfacePoint> points);
 
-    /// Labels the points within `radius` (m) of a position, but those as scanned.
+    /// Labels the points within `radius` (m) of a position, except those labelled `as_scanned`.
     void stroke(const Vec3& middle, double radius, std::uint8_t label) noexcept;
     /// Distance to the nearest point, m; at most `farthest`.
     double distance(const Vec3& place) const noexcept;

@@ -27,8 +27,7 @@ inline double falls_to(const Vec3& m, const Vec3& translation, double radius) no
 }  // namespace sweep_detail
 
 /// Fraction of the motion from `from` to `from` + `translation` at which a ball first touches triangle abc, 0 to 1; 2:
-/// never. A ball that already overlaps the triangle touches it at 0 when it moves further in, and not at all when it
-/// moves out.
+/// never. A ball that already overlaps the triangle touches it at 0 if it moves further in, and never if it moves out.
 inline double ball_meets(const Vec3& from, const Vec3& translation, double radius, const Vec3& a, const Vec3& b,
                          const Vec3& c) noexcept {
     const Vec3 nearest = closest_on_triangle(from, a, b, c), out = from - nearest;

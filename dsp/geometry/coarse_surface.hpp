@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simplifies a surface by vertex clustering (Rossignac and Borrel 1993), for pictures in which a triangle of the full
+// Simplifies a surface by vertex clustering (Rossignac and Borrel 1993), for images in which a triangle of the full
 // surface covers about a pixel. Vertices in one cell of a grid are merged unless that would change the outline.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace tactus::geometry {
 
-/// The grid that a surface was made from.
+/// The grid from which a surface was made.
 struct SurfaceGrid {
     Vec3 origin{0.0};  ///< a corner between parts, m
     Vec3 voxel{1e-3};  ///< m
@@ -27,7 +27,7 @@ public:
 
     /// The simplified surface of each level; valid until the next call. A merged vertex stays within its cell and
     /// within a quarter of the cell's side of the surface; every remaining vertex is a vertex of `fine`. Several parts
-    /// that form a closed body remain closed: vertices on the face between two parts stay there, and both parts choose
+    /// that form a closed body remain closed: vertices on the face between two parts stay there, and both parts keep
     /// the same ones.
     const Levels& make(const SurfacePatch& fine, const SurfaceGrid& grid);
 

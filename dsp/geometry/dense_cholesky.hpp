@@ -9,7 +9,7 @@
 namespace tactus::geometry {
 
 /// Solves matrix · x = right by Cholesky's factorisation; `right` becomes x. `matrix` (row by row, its lower triangle
-/// is read) is overwritten. Returns false, with both undefined, when the matrix is not positive or not finite.
+/// is used) is overwritten. Returns false, with both undefined, when the matrix is not positive or not finite.
 inline bool solve_positive(std::vector<double>& matrix, std::vector<double>& right) {
     const std::size_t size = right.size();
     for (std::size_t j = 0; j < size; ++j) {

@@ -14,7 +14,7 @@
 namespace tactus::geometry {
 
 /// Index of the nearest point for each sample of `layout` (its values are not read); -1 everywhere without points.
-/// `points` are in samples from the layout's origin; of several points in one cell only the first is used. Computes
+/// `points` are in samples from the layout's origin; only the first of several points in one cell is used. Computes
 /// lower envelopes of parabolas along x, y and z (Felzenszwalb and Huttenlocher 2012) with apices at the points'
 /// positions: time and memory are linear in the number of samples. Within one row of cells the choice uses the distance
 /// to the row's middle, so on a surface the result may lie a few samples beside the true nearest point; its distance is

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points within a radius, by hashing them into cubes of space.
+// Fixed-radius search for points that are hashed into cubes of space.
 #pragma once
 
 #include "dsp/core/random.hpp"
@@ -44,10 +44,11 @@ private:
     std::size_t mask_;
 };
 
-/// Points that are added one by one, in cubes of two radii: a ball touches at most eight of them, its own first.
+/// Points that are added one by one, in cubes with a side of two radii: a ball overlaps at most eight cubes. Its own
+/// cube is searched first.
 class GrowingCubes {
 public:
-    /// `radius`: the greatest of a query.
+    /// `radius`: the largest of a query.
     GrowingCubes(std::size_t expected, double radius)
         : table_(2.001 * radius, std::bit_ceil(expected + 1)), head_(std::bit_ceil(expected + 1), none) {}
 
@@ -57,7 +58,7 @@ public:
         head_[slot] = static_cast<std::uint32_t>(points_.size() - 1);
     }
 
-    /// Fetches the slots about a place that is asked for soon.
+    /// Prefetches the slots around a position that will be queried soon.
     void prefetch(const Vec3& p) const {
         const auto [x, y, z] = table_.cell(p);
         const std::int64_t bx = table_.beside(p.x, x), by = table_.beside(p.y, y), bz = table_.beside(p.z, z);
@@ -65,8 +66,8 @@ public:
             __builtin_prefetch(&head_[table_.slot({x + (n & 1 ? bx : 0), y + (n & 2 ? by : 0), z + (n & 4 ? bz : 0)})]);
     }
 
-    /// Calls visit(index, distance²) for all within `radius`; stops when it returns false. Twice for the same point
-    /// when two cubes share a slot.
+    /// Calls visit(index, distance²) for all points within `radius`; stops when it returns false. A point is visited
+    /// twice if two cubes have the same slot.
     template <class Visit>
     void around(const Vec3& p, double radius, const Visit& visit) const {
         const auto [x, y, z] = table_.cell(p);
@@ -94,7 +95,7 @@ private:
     std::vector<Entry> points_;
 };
 
-/// From a cube to itself, first, and to the 26 around it.
+/// Steps from a cube to itself, first, and to the 26 cubes around it.
 inline constexpr std::array<std::array<int, 3>, 27> cube_steps = [] {
     std::array<std::array<int, 3>, 27> steps{};
     std::size_t n = 1;
@@ -105,20 +106,20 @@ inline constexpr std::array<std::array<int, 3>, 27> cube_steps = [] {
     return steps;
 }();
 
-/// Points with normals that are all known. Those of a slot lie side by side in memory.
+/// Points with normals, all given at construction. The points of a slot are contiguous in memory.
 class PackedCubes {
 public:
     struct Entry {
         Vec3 place, normal;
         std::uint32_t index = 0;  ///< in the given lists
     };
-    /// The slots of a cube, first, and of those around it. Queries in spatial order keep it from one to the next.
+    /// The slots of a cube, first, and of the cubes around it. Queries in spatial order reuse it.
     struct Block {
         CubeTable::Cell cell{std::numeric_limits<std::int64_t>::max(), 0, 0};
         std::array<std::uint32_t, 27> slots{};
     };
 
-    /// `radius`: the greatest of a query.
+    /// `radius`: the largest of a query.
     PackedCubes(std::span<const Vec3> places, std::span<const Vec3> normals, double radius)
         : side_(1.001 * radius),
           table_(side_, std::bit_ceil(places.size() / 4 + 1)),
@@ -142,7 +143,7 @@ public:
     /// All points, in the order of the slots.
     std::span<const Entry> all() const { return entries_; }
 
-    /// Slots that hold all points within the radius of `p`.
+    /// Returns the slots that contain all points within the radius of `p`.
     const Block& around(const Vec3& p, Block& block) const {
         const CubeTable::Cell cell = table_.cell(p);
         if (cell == block.cell) return block;
@@ -152,7 +153,7 @@ public:
                 table_.slot({cell[0] + cube_steps[n][0], cell[1] + cube_steps[n][1], cell[2] + cube_steps[n][2]});
         return block;
     }
-    /// Squares of the distances, m², from a place to the cubes of its block.
+    /// Returns the squared distances, m², from a position to the cubes of its block.
     std::array<double, 27> apart2(const Vec3& p, const Block& block) const {
         std::array<std::array<double, 3>, 3> along{};
         for (int a = 0; a < 3; ++a) {

@@ -19,13 +19,13 @@ namespace tactus::geometry {
 
 /// An implicit k-d tree: the median of a range of points, along the longest axis of its bounding box, is stored in the
 /// middle of the range. Points are stored in the order of the tree, so that a search reads memory in sequence. Cells
-/// are left out by their distance from the place on all axes (Arya and Mount 1993).
+/// are pruned by their distance from the query along all axes (Arya and Mount 1993).
 class PointTree {
 public:
     PointTree() = default;
     explicit PointTree(std::span<const Vec3> points) { assign(points); }
 
-    /// Memory for this many points.
+    /// Reserves memory for this many points.
     void reserve(std::size_t points) {
         points_.reserve(points);
         index_.reserve(points);
@@ -50,7 +50,7 @@ public:
 
     /// Whether a point is nearer to `place` than `distance`, m. Does not allocate.
     bool has_nearer(const Vec3& place, double distance) const noexcept {
-        // Nothing at this distance or beyond is found; the search ends at the first point within.
+        // Only points below this distance count; the search ends at the first one.
         Search search{place, distance * distance, 0, false};
         if (!points_.empty()) look_for_any(search, 0, points_.size(), Vec3(0.0), 0.0);
         return search.is_found;
@@ -136,7 +136,7 @@ private:
             search.least = square, search.best = index_[n];
     }
 
-    /// `outside`: distances from the place to the cell along the axes; `away2`: the sum of their squares.
+    /// `outside`: distances from the query to the cell along the axes; `away2`: the sum of their squares.
     void look(Search& search, std::size_t first, std::size_t last, const Vec3& outside, double away2) const noexcept {
         if (last - first <= leaf) {
             for (std::size_t n = first; n < last; ++n) test(search, n);
@@ -149,7 +149,7 @@ private:
         else look(search, middle + 1, last, outside, away2);
         test(search, middle);
         const double other2 = away2 + side * side - outside[axis] * outside[axis];
-        // Rounding must not leave out a point at the same distance.
+        // Rounding must not exclude a point at the same distance.
         if (other2 * (1.0 - 1e-12) > search.least) return;
         Vec3 beyond = outside;
         beyond[axis] = side;
@@ -158,7 +158,7 @@ private:
     }
 
     std::vector<Vec3> points_;
-    std::vector<std::uint32_t> index_, rank_;  // number given to a stored point, and the reverse
+    std::vector<std::uint32_t> index_, rank_;  // original index of a stored point, and the reverse
     std::vector<std::uint8_t> axis_;
 };
 

@@ -13,8 +13,8 @@ using Vector6 = std::array<double, 6>;
 using Matrix6 = std::array<double, 36>;  ///< row by row
 
 /// Solves k x = b by LDLᵀ without pivoting. Adds 1e-9 of the largest diagonal entry of each kind (translations,
-/// rotations) to the diagonal: directions that no spring constrains then stay at rest, and a singular matrix gives a
-/// finite x. Returns false, with x = 0, when the matrix is still not positive or not finite.
+/// rotations) to the diagonal: unconstrained directions then stay at rest, and a singular matrix gives a finite x.
+/// Returns false, with x = 0, when the matrix is still not positive or not finite.
 inline bool solve_symmetric6(Matrix6 k, const Vector6& b, Vector6& x) noexcept {
     for (std::size_t block = 0; block < 6; block += 3) {
         double greatest = 1e-3;

@@ -15,13 +15,13 @@ namespace tactus::geometry {
 inline constexpr std::array<std::array<int, 4>, 6> cell_tetrahedra{
     {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 
-/// Position of the crossing between two samples, 0 to 1. It keeps a distance from the samples: a vertex shared by many
-/// edges would make triangles without area.
+/// Position of the crossing between two samples, 0 to 1. It is kept away from the samples, because a vertex common to
+/// many edges would create degenerate triangles.
 inline double crossing(double low, double high, double iso) {
     return std::clamp((iso - low) / (high - low), 1e-3, 1.0 - 1e-3);
 }
 
-/// The triangles of one cell. Bit c of `inside` says that corner c is inside; `vertex(from, to)` gives the vertex on
+/// The triangles of one cell. Bit c of `inside` is set if corner c is inside; `vertex(from, to)` gives the vertex on
 /// the edge between two corners, `from` < `to`; `add(a, b, c)` receives a triangle, counter-clockwise seen from
 /// outside.
 template <class Vertex, class Add>

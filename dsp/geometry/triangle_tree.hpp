@@ -17,13 +17,13 @@ class TriangleTree {
 public:
     explicit TriangleTree(const TriangleSurface& surface);
 
-    /// The triangles that a caller still allows queries to test. A query that would need more stops: what it returns is
-    /// then no answer, and `is_spent` is true.
+    /// Limits the number of triangles that queries may test. A query that would exceed it stops: its result is then
+    /// invalid, and `is_spent` is true.
     struct Budget {
         std::int64_t triangles = std::numeric_limits<std::int64_t>::max();
 
         bool is_spent() const noexcept { return triangles < 0; }
-        /// Accounts for `count` triangles; false when there are not so many left.
+        /// Consumes `count` triangles; returns false if fewer remain.
         bool spend(std::int64_t count) noexcept {
             triangles -= count;
             return triangles >= 0;
@@ -36,7 +36,7 @@ public:
         /// Unit, interpolated between the corners' normals; zero next to sharp edges.
         Vec3 normal{0.0};
     };
-    /// The closest point of all triangles that is nearer than `within`; infinite distance when there is none.
+    /// Returns the closest point of all triangles nearer than `within`; infinite distance if there is none.
     Near nearest(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept {
         Budget all;
         return nearest(p, within, all);
@@ -45,13 +45,13 @@ public:
     /// Closest points of triangles nearer than `within`, one per triangle, in the order of the tree, until `found` is
     /// full.
     std::size_t all_near(const Vec3& p, double within, std::span<Near> found, Budget& budget) const noexcept;
-    /// Fraction of the motion from `from` to `from` + `translation` at which a ball first touches a triangle that it
-    /// does not leave, 0 to 1; 1 when it touches none.
+    /// Returns the fraction of the motion from `from` to `from` + `translation` at which a ball first touches a
+    /// triangle that it does not move away from, 0 to 1; 1 if it touches none.
     double sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept {
         Budget all;
         return sweep(from, translation, radius, all);
     }
-    /// 0 when the budget is spent.
+    /// Returns 0 if the budget is exhausted.
     double sweep(const Vec3& from, const Vec3& translation, double radius, Budget& budget) const noexcept;
 
     std::size_t size() const noexcept { return corners_.size() / 3; }

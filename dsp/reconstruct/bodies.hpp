@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of a surface are one piece of bone.
+// Separates a surface into bodies: connected shells with their cavities.
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
@@ -11,14 +11,14 @@
 
 namespace tactus::reconstruct {
 
-/// m³, by the divergence theorem about the middle of its box, so that a shell that is open at an end has the sign of a
-/// closed one; positive when triangles look outwards.
+/// Returns the volume in m³ by the divergence theorem about the centre of the bounding box, so that a shell with an
+/// open end has the sign of a closed one. Positive if triangles face outwards.
 double signed_volume(const geometry::TriangleSurface& surface);
 
-/// The body of each vertex, as the number of one of its vertices. A body is a connected shell and the cavities in it:
-/// shells that look the other way than the whole surface does, such as a marrow canal, which are not connected to the
-/// shell around them. A cavity in several shells belongs to the smallest. `cuts` are the planes on which shells may
-/// touch; a cavity is looked for at its vertex that is farthest from them.
+/// Returns the body of each vertex, as the index of one of its vertices. A body is a connected shell with its cavities.
+/// A cavity, such as a marrow canal, is a shell that is not connected to the surrounding one and has the opposite
+/// orientation to the whole surface. A cavity inside several shells belongs to the smallest. `cuts` are planes on which
+/// shells may touch; a cavity is located by its vertex farthest from them.
 std::vector<std::size_t> bodies_of(const geometry::TriangleSurface& surface, std::span<const Plane> cuts);
 
 }  // namespace tactus::reconstruct

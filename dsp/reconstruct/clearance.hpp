@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near plates, screws, implants, cuts and vessels come to each other.
+// Clearances between plates, screws, implants, cuts and vessels.
 #pragma once
 
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -11,20 +11,20 @@
 
 namespace tactus::reconstruct {
 
-/// All points within `radius` of a piece of a line: a screw, an implant (their ends count as rounded), a piece of vessel.
+/// All points within `radius` of a line segment: a screw, an implant (with rounded ends), a segment of a vessel.
 struct Capsule {
     Vec3 a{0.0}, b{0.0};
     double radius = 0.0;
 };
 
-/// A piece of plate.
+/// A segment of a plate.
 struct Block {
     Vec3 centre{0.0};
     Mat3 axes{1.0};  ///< columns of unit length
     Vec3 half{0.0};
 };
 
-/// A cut, as a flat disc.
+/// A cut, represented as a flat disc.
 struct Disc {
     Vec3 centre{0.0}, normal{0.0, 0.0, 1.0};
     double radius = 0.0;
@@ -39,9 +39,10 @@ double distance(const Block& a, const Block& b) noexcept;
 
 Capsule capsule_of(const Screw& screw);
 Capsule capsule_of(const DentalImplant& implant);
-std::vector<Block> blocks_of(const Plate& plate);  ///< one per piece of its centreline
-/// Of each plane in order, in the frame of the jaw: round its origin, as wide as the donor's outline there (10 mm without
-/// a donor). The first and the last one cut the jaw as well and count as at least farthest_from_limb wide.
+std::vector<Block> blocks_of(const Plate& plate);  ///< one per segment of its centreline
+/// Returns one disc per plane in order, in the frame of the jaw: centred at its origin, as wide as the donor's outline
+/// there (10 mm without a donor). The first and the last plane also cut the jaw, and are at least farthest_from_limb
+/// wide.
 std::vector<Disc> cuts_of(const FibulaInputs& inputs, const FibulaPlan& plan);
 
 /// A vessel in the frame of the jaw.
@@ -55,7 +56,7 @@ struct PlacedVessel {
 enum class Nearness { to_cut, to_vessel, to_hardware };
 const char* name_of(Nearness nearness);  ///< "cut", "vessel", "hardware"
 
-/// The nearest of one sort to a plate, screw or implant.
+/// The nearest object of one kind to a plate, screw or implant.
 struct Clearance {
     std::string object;  ///< "plate 'chin'", "screw 3 of plate 'chin'", "implant 'molar'"
     Nearness nearness = Nearness::to_cut;
@@ -63,8 +64,8 @@ struct Clearance {
     double distance = 0.0;  ///< m; negative: they overlap
 };
 
-/// A plate bridges the cuts and touches its own screws: neither is measured. Objects to which nothing of a sort exists
-/// have no entry.
+/// Returns the smallest clearances. A plate bridges the cuts and touches its own screws: neither is measured. Objects
+/// without any object of a kind have no entry.
 std::vector<Clearance> clearances(const Flap& flap, std::span<const Disc> cuts, std::span<const PlacedVessel> vessels);
 
 }  // namespace tactus::reconstruct

@@ -10,7 +10,7 @@
 
 namespace tactus::reconstruct {
 
-/// The plane, or both planes, that made faces of a piece.
+/// The plane, or both planes, that cut a piece.
 enum class CutBy { none, first, last, both };
 
 struct RestPiece {
@@ -19,21 +19,21 @@ struct RestPiece {
 };
 
 struct CutPieces {
-    geometry::TriangleSurface between;  ///< what the planes bound
+    geometry::TriangleSurface between;  ///< the part between the planes
     std::vector<RestPiece> rest;        ///< the other pieces, the largest volume first
 };
 
-/// An origin that lies farther outside the bone does not tell which limb the plane cuts.
+/// Largest distance of a plane's origin from the bone; farther away, the limb to cut is ambiguous.
 inline constexpr double farthest_from_limb = 15e-3;  // m
 
-/// Cuts a closed surface by two planes, `first` with its normal into the piece between them and `last` with its normal
-/// out of it; without `last`, all that is connected on the far side of `first` is cut off. Each plane cuts only the
-/// limb round its origin (section_of with `near`): a plane through one ramus of a jaw leaves the other one whole.
-/// Cavities stay with the piece that encloses them (bodies_of). Pieces of closed surfaces are closed: each outline gets a
-/// fan of triangles around its middle. On an outline that is
-/// not star-shaped the fan folds over itself, on a marrow cavity it overlaps the outer one; signed volumes and winding
-/// numbers stay right. Throws Error when a plane misses the surface or its origin lies more than farthest_from_limb
-/// outside of it, when the planes cross inside the surface, and when they do not separate it.
+/// Cuts a closed surface by two planes, `first` with its normal into the part between them and `last` with its normal
+/// out of it; without `last`, everything connected on the far side of `first` is cut off. Each plane cuts only the limb
+/// around its origin (section_of with `near`): a plane through one ramus of a jaw does not cut the other one. Cavities
+/// stay with the piece that encloses them (bodies_of). Pieces of closed surfaces are closed: each outline gets a fan of
+/// triangles around its centre. On an outline that is not star-shaped the fan overlaps itself, and on a marrow cavity
+/// it overlaps the outer one; signed volumes and winding numbers remain correct. Throws Error if a plane misses the
+/// surface, if its origin lies more than farthest_from_limb outside of it, if the planes intersect inside the surface,
+/// and if they do not separate it.
 CutPieces cut_between(const geometry::TriangleSurface& surface, const Plane& first, const std::optional<Plane>& last);
 
 }  // namespace tactus::reconstruct

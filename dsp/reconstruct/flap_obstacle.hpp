@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bone round which a flap's vessels run: the jaw, and the segments of the donor where they are planned.
+// The obstacle for a flap's vessels: the bone of the jaw, and the donor segments at their planned poses.
 #pragma once
 
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -10,11 +10,11 @@
 
 namespace tactus::reconstruct {
 
-/// The fields that it is made of must outlive it.
+/// The fields that it uses must outlive it.
 class FlapObstacle final : public rope::Obstacle {
 public:
-    /// `jaw`: what is kept of it, in its frame; `donor`: the whole bone in its frame, or null; `is_mirrored`: the plan is
-    /// that of the other leg, with the donor reflected at x = 0.
+    /// `jaw`: the remaining parts, in the frame of the jaw; `donor`: the whole bone in its frame, or null;
+    /// `is_mirrored`: the plan is for the other leg, with the donor reflected at x = 0.
     FlapObstacle(const FibulaPlan& plan, std::span<const rope::Obstacle* const> jaw, const rope::Obstacle* donor,
                  bool is_mirrored = false);
 
@@ -26,7 +26,7 @@ private:
         Pose to_jaw, to_donor;
         Plane low, high;
     };
-    /// Lower bound of the distance to a segment, by its two cuts alone; `normal` in the frame of the donor.
+    /// Lower bound of the distance to a segment, from its two cuts alone; `normal` in the frame of the donor.
     static double beyond_cuts(const Segment& segment, const Vec3& at, Vec3& normal) noexcept;
     double donor_distance(const Vec3& at, Vec3& normal) const noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal of a plane of the jaw, whether or not it was given.
+// The normal of a plane of the jaw, given or derived.
 #pragma once
 
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -10,7 +10,8 @@
 
 namespace tactus::reconstruct {
 
-/// Unit, along the order of the planes, as plan_fibula has it; of inputs that plan_fibula takes.
+/// Returns the unit normal along the order of the planes, as plan_fibula computes it; for inputs that plan_fibula
+/// accepts.
 inline Vec3 jaw_normal(const FibulaInputs& inputs, std::size_t plane) {
     const auto axis = [&](std::size_t n) {
         return glm::normalize(inputs.planes[n + 1].origin - inputs.planes[n].origin);

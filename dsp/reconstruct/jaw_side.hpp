@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The jaw's side of a fibula plan: where its planes and segments lie.
+// The jaw's side of a fibula plan: positions of its planes and segments.
 #pragma once
 
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -8,14 +8,14 @@
 
 namespace tactus::reconstruct {
 
-/// In the order in which segments lie in the donor from the ankle on.
+/// In the order of the segments in the donor, from the ankle on.
 struct JawSide {
     std::vector<Plane> planes;  ///< normals along the axes
     std::vector<Vec3> axis, y;  ///< of the segments
     std::vector<double> off_bisector;  ///< rad, of the inner planes
 };
 
-/// Throws Error as plan_fibula does for what is wrong with the planes.
+/// Throws Error as plan_fibula does for invalid planes.
 JawSide jaw_side(const FibulaInputs& inputs);
 
 }  // namespace tactus::reconstruct

@@ -13,7 +13,7 @@
 
 namespace tactus::reconstruct {
 
-/// Sine of the angle below which a direction does not tell a turn about an axis.
+/// Sine of the angle below which a direction does not define a rotation about an axis.
 inline constexpr double least_y = 0.05;
 
 /// rad, 0 to pi.
@@ -21,7 +21,7 @@ inline double angle_between(const Vec3& a, const Vec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Unit length. Throws Error when the vector is nearly 0 or not finite.
+/// Returns `v` normalised. Throws Error if it is nearly 0 or not finite.
 inline Vec3 direction(const Vec3& v, const std::string& what) {
     const double length = glm::length(v);
     if (!(length > 1e-9 && length < 1e9)) throw Error(fmt::format("{} is no direction", what));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways in which a fibula can be put into a jaw, best first.
+// Ranks the possible orientations of a fibula in a jaw.
 #pragma once
 
 #include "dsp/reconstruct/fibula_plan.hpp"
@@ -13,34 +13,34 @@
 
 namespace tactus::reconstruct {
 
-/// One of two legs × two ends at which the pedicle leaves × two faces turned outwards.
+/// One combination of two legs × two ends at which the pedicle leaves × two faces turned outwards.
 struct Candidate {
     FibulaInputs inputs;
     Leg leg = Leg::left;
-    bool is_mirrored = false;  ///< the other leg than was given: the given one, reflected
+    bool is_mirrored = false;  ///< the other leg than the given one: the given one, reflected
     bool at_first = false;  ///< the pedicle leaves at the first plane of the jaw: the donor is reversed
-    bool is_flipped = false;  ///< turned by 180° about its axis against what was given
-    int changes = 0;  ///< weight of what differs from what was given: 1 turned, 2 reversed, 4 the other leg
-    std::string excluded;  ///< why it cannot be; empty: it can
-    FibulaPlan plan;       ///< empty when plan_fibula refuses it
+    bool is_flipped = false;  ///< rotated by 180° about its axis against the given roll
+    int changes = 0;  ///< weight of the differences from the given plan: 1 rotated, 2 reversed, 4 the other leg
+    std::string excluded;  ///< why it is impossible; empty: it is possible
+    FibulaPlan plan;       ///< empty if plan_fibula rejects it
     FlapMeasures measures;
 };
 
-/// What stays the same in all candidates.
+/// The inputs common to all candidates.
 struct RankingScene {
-    std::span<const rope::Obstacle* const> jaw;  ///< what is kept of it, in its frame
+    std::span<const rope::Obstacle* const> jaw;  ///< its remaining parts, in its frame
     const rope::Obstacle* donor = nullptr;       ///< the donor as given, in its frame; may be null
     std::span<const Vec3> tumour;                ///< frame of the jaw
 };
 
-/// All eight, best first. A candidate is excluded when plan_fibula refuses it or an artery or vein reaches no site. The
-/// others are ordered by: plates, screws or implants that meet vessels; the worst reach of artery and vein; kinks and
-/// twists; other warnings; what differs from what was given; strain. Plates and implants stay where they are in the jaw.
-/// Places along the line hold for the given direction; others begin as far from the ankle. The donor's surface is prepared once per leg. Allocates. Throws Error as DonorBone
-/// does.
+/// Returns all eight, best first. A candidate is excluded if plan_fibula rejects it or if an artery or vein reaches no
+/// site. The others are ordered by: plates, screws or implants that touch vessels; the worst reach of artery and vein;
+/// kinks and twists; other warnings; differences from the given plan; strain. Plates and implants keep their positions
+/// in the jaw. Given positions along the line apply to the given direction; other candidates begin at the same distance
+/// from the ankle. The donor's surface is prepared once per leg. Allocates. Throws Error as DonorBone does.
 std::vector<Candidate> ranked(const FibulaInputs& inputs, const Flap& flap, const RankingScene& scene);
 
-/// The given donor reflected at x = 0: the other leg of a symmetric body.
+/// Returns the given donor reflected at x = 0: the other leg of a symmetric body.
 FibulaInputs other_leg(const FibulaInputs& inputs);
 Flap other_leg(const Flap& flap);
 

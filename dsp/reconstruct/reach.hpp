@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a flap's vessels reach their sites, and what they pass; everything that may be wrong with a flap.
+// Reach of a flap's vessels to their sites, objects along their paths, and all warnings about a flap.
 #pragma once
 
 #include "dsp/reconstruct/clearance.hpp"
@@ -18,29 +18,29 @@ namespace tactus::reconstruct {
 enum class Reach {
     slack,      ///< without tension
     in_situ,    ///< with at most the stretch that it has in the leg
-    stretched,  ///< with more
-    too_short   ///< with more than FlapLimits::over_in_situ beyond that
+    stretched,  ///< with more stretch than in the leg
+    too_short   ///< with more than FlapLimits::over_in_situ beyond the stretch in the leg
 };
 const char* name_of(Reach reach);  ///< "slack", "in-situ", "stretched", "too-short"
 
-/// A vessel's pedicle laid to a site.
+/// The path of a vessel's pedicle to a site.
 struct SiteReach {
     std::string vessel, site;
     VesselKind kind = VesselKind::artery;
     double in_situ = 0.0;  ///< m: the pedicle's length in the leg
-    double free = 0.0;     ///< m: cut free, rope::free_over_in_situ of it
-    double path = 0.0;  ///< m: the shortest way from the bone to the site that keeps the vessel's radius from bone
-    bool is_settled = true;  ///< the way stands still to 0.1 %, outside of bone
+    double free = 0.0;     ///< m: its length when cut free, rope::free_over_in_situ of it
+    double path = 0.0;  ///< m: shortest path from the bone to the site with the vessel's radius as distance from bone
+    bool is_settled = true;  ///< the path has converged to 0.1 %, outside of bone
     double slack = 0.0;  ///< m: free - path; 0 when the path is longer
     double strain = 0.0;  ///< path / free - 1; 0 when slack
-    std::optional<double> tension;  ///< N, of an artery: rope::artery() at this strain; a vein has reach only
+    std::optional<double> tension;  ///< N, for an artery: rope::artery() at this strain; veins have reach only
     double bend_radius = 0.0;  ///< m: least over 10 mm of the shortest way and the last 10 mm on the bone; a slack
         ///< vessel can be laid in a wider bend
     std::optional<double>
         twist;  ///< rad: the vein's side of the artery at the site against the side that is carried along
         ///< from the bone (Bishop frame), for an artery with a vein at hand
-    double contact = 0.0;  ///< m of the path that touches bone
-    std::optional<double> to_plate, to_screw;  ///< m, of the path
+    double contact = 0.0;  ///< m of the path in contact with bone
+    std::optional<double> to_plate, to_screw;  ///< m, from the path
     Reach reach = Reach::slack;
     std::vector<Vec3> points;  ///< the path, frame of the jaw
 };
@@ -55,25 +55,25 @@ struct SpanReach {
 };
 
 struct FlapMeasures {
-    std::vector<PlacedVessel> vessels;  ///< with the path to the site that each reaches best
+    std::vector<PlacedVessel> vessels;  ///< with the path to the site with its best reach
     std::vector<Clearance> clearances;
-    std::vector<SiteReach> reaches;  ///< every vessel to every site of its kind
+    std::vector<SiteReach> reaches;  ///< of every vessel to every site of its kind
     std::vector<SpanReach> spans;
-    std::optional<double> tumour_margin;  ///< m: least distance of the tumour from the first and last cut, inside them
+    std::optional<double> tumour_margin;  ///< m: smallest distance of the tumour from the first or last cut
     std::vector<FlapWarning> warnings;
 };
 
 Reach reach_at(double strain, const FlapLimits& limits);
 
-/// The reach in `all` of that vessel that is best: least strain, then most slack. None: null.
+/// Returns the best reach of that vessel in `all`: smallest strain, then largest slack. Null if there is none.
 const SiteReach* best_of(std::span<const SiteReach> all, const std::string& vessel);
 
-/// `bone`: what paths go round, frame of the jaw, or null; `tumour`: points of its surface, frame of the jaw.
+/// `bone`: obstacle of the paths, frame of the jaw, or null; `tumour`: points of its surface, frame of the jaw.
 /// Allocates.
 FlapMeasures measure_flap(const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap,
                           const rope::Obstacle* bone, std::span<const Vec3> tumour = {});
 
-/// Fills `warnings` from the other measures; measure_flap has done so.
+/// Derives `warnings` from the other measures; measure_flap has already done so.
 void add_warnings(FlapMeasures& measures, const FibulaInputs& inputs, const FibulaPlan& plan, const Flap& flap);
 
 }  // namespace tactus::reconstruct

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The symmetric system of a chain of points in which each one depends on the two before it, factored from both ends.
+// Solver for the symmetric system of a chain in which each point is coupled to the two before it, factored from both
+// ends.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -13,7 +14,7 @@ namespace tactus::rope {
 
 /// A symmetric positive matrix of 3×3 blocks; blocks more than two apart are 0. It is factored as L D Lᵀ from both ends
 /// towards two points in the middle (a twisted factorisation): both halves have the same operations and no common
-/// element until they meet, so they are the two lanes of one vector. Memory is taken by the constructor.
+/// element until they meet, so that they are computed as the two lanes of one vector. Only the constructor allocates.
 class BlockBand {
 public:
     /// At least three points.
@@ -22,10 +23,10 @@ public:
 
     void clear() noexcept {
         for (Column& c : columns_) c = {};
-        // With an odd number of points to eliminate, the second half begins with a point that depends on nothing.
+        // With an odd number of points to eliminate, the second half begins with a decoupled dummy point.
         if (size_ % 2 == 1) columns_[0].diagonal[0][1] = columns_[0].diagonal[3][1] = columns_[0].diagonal[5][1] = 1.0;
     }
-    /// Takes the elements of a matrix of the same size.
+    /// Copies the elements of a matrix of the same size.
     void copy(const BlockBand& other) noexcept { columns_ = other.columns_; }
     /// Adds to block (i, j), i - j = 0, 1 or 2, and to its mirror image.
     void add(std::size_t i, std::size_t j, const Mat3& block) noexcept {
@@ -53,7 +54,7 @@ public:
         Block& to = i - j == 1 ? c.next : c.second;
         for (const std::size_t n : {0u, 4u, 8u}) to[n][at.lane] += diagonal;
     }
-    /// Makes the equations of point i read x = right side; the right side must be 0.
+    /// Replaces the equations of point i by x = right side; the right side must be 0.
     void fix(std::size_t i) noexcept {
         const std::size_t first = i > 2 ? i - 2 : 0, last = i + 2 < size_ ? i + 2 : size_ - 1;
         for (std::size_t n = first; n <= last; ++n) {
@@ -66,8 +67,8 @@ public:
                 for (Pair& v : apart == 1 ? c.next : c.second) v[at.lane] = 0.0;
         }
     }
-    /// Solves for `x`, which holds the right side; the matrix is overwritten by its factors. False when it is not
-    /// positive.
+    /// Solves for `x`, which holds the right side; the matrix is overwritten by its factors. Returns false if it is not
+    /// positive definite.
     bool solve(std::vector<Vec3>& x) noexcept;
 
 private:

@@ -12,7 +12,7 @@
 
 namespace tactus::rope {
 
-/// Several bodies may move: `pose` places the field. Where the field ends there is no bone.
+/// `pose` places the field; there may be several moving bodies. Outside of the field there is no bone.
 class BoneField final : public Obstacle {
 public:
     /// `field` must outlive this object.
@@ -26,9 +26,9 @@ public:
         return steep > 1e-6 ? at.value / steep : at.value;
     }
 
-    /// The distance is value / steepness of the interpolant, which is no true distance, and where the field ends it
-    /// jumps. But within a ball the value is nowhere less than the field's own bound, and nowhere steeper than √3 times
-    /// the greatest difference of neighbouring samples.
+    /// The distance is value / steepness of the interpolant, which is not an exact distance, and it jumps at the border
+    /// of the field. The clearance is therefore bounded by two properties: within a ball the value is at least the
+    /// field's own bound, and its gradient is at most √3 times the largest difference of neighbouring samples.
     double free_way(const Vec3& place, double /*now*/, double near) const noexcept override {
         const Vec3 at = pose_.inverse().apply(place);
         const double least = std::max(near, 0.0) * std::numbers::sqrt3 * field_.steepness;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rope lies against.
+// Interface of obstacles for a rope.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -11,11 +11,12 @@ namespace tactus::rope {
 class Obstacle {
 public:
     virtual ~Obstacle() = default;
-    /// Signed distance to the surface, m, negative inside; `normal` becomes its gradient, of unit length. Called in
-    /// real-time ticks.
+    /// Returns the signed distance to the surface, m, negative inside; `normal` becomes its gradient, of unit length.
+    /// Called in real-time ticks.
     virtual double distance(const Vec3& place, Vec3& normal) const noexcept = 0;
-    /// A way, m, that a point may go from `place`, where the distance is `now`, without coming nearer than `near`. A
-    /// true distance changes by no more than the way; others must say what they know. 0 or less: none.
+    /// Returns a clearance, m: how far a point may move from `place`, where the distance is `now`, without coming
+    /// closer than `near`. For an exact distance this is the difference; other fields must return their own bound. 0 or
+    /// less: none.
     virtual double free_way(const Vec3& /*place*/, double now, double near) const noexcept { return now - near; }
 };
 
@@ -34,7 +35,7 @@ private:
     double radius_;
 };
 
-/// An endless cylinder.
+/// An infinite cylinder.
 class Cylinder final : public Obstacle {
 public:
     /// `axis` has unit length.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rope as others see it.
+// The shape of a rope, for other nodes and displays.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -11,14 +11,14 @@
 
 namespace tactus::rope {
 
-/// The points of a rope in a scene, and the share of the strain limit that each of its segments has reached. By value.
+/// The points of a rope in a scene, and the fraction of the strain limit at each segment. Passed by value.
 struct RopeShape {
     static constexpr std::string_view wire_name = "rope";
     static constexpr std::size_t most_points = 65;
 
     std::array<std::array<float, 3>, most_points> points{};  ///< m
     std::array<float, most_points> load{};  ///< of the segment after a point: 0 slack, 1 at the limit or beyond
-    std::uint32_t count = 0;  ///< of points; 0: there is none
+    std::uint32_t count = 0;  ///< number of points; 0: no rope
     float radius = 0.0f;  ///< m
     std::uint32_t is_vein = 0;
     std::int64_t version = 0;

@@ -14,8 +14,8 @@
 
 namespace tactus::rope {
 
-/// The union of up to sixteen distance fields. A field counts only where a place is within its grid; where there is none,
-/// `far` is the distance, without a normal. Nothing allocates.
+/// The union of up to sixteen distance fields. A field is used only at positions within its grid; where there is none,
+/// the distance is `far`, without a normal. Nothing allocates.
 class SceneBones final : public Obstacle {
 public:
     void clear() noexcept { count_ = 0; }
@@ -61,7 +61,7 @@ public:
     }
 
 private:
-    static constexpr double far = 10e-3;  // m: no place is said to be farther away
+    static constexpr double far = 10e-3;  // m: largest distance returned
 
     struct Part {
         const contact::Voxmap* map = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Labels on the voxels of a volume: where they meet, and voxels beside the graph that take the label of their bone.
+// Labels on the voxels of a volume: contact faces of labels, and labels for voxels beside the graph.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -18,14 +18,14 @@ struct LabelMap {
     std::vector<std::uint8_t> label;
 };
 
-/// Gives the voxels where `open` is not 0 and that have no label the label of the nearest one, by steps across faces
-/// through such voxels; of equally near ones, the one that was reached first. Voxels that no label reaches stay 0.
-/// Returns the number of voxels that took a label.
+/// Assigns the nearest label to the unlabelled voxels where `open` is not 0. Distance is the number of steps across
+/// faces through such voxels; among equally near labels the one reached first wins. Voxels that no label reaches stay
+/// 0. Returns the number of newly labelled voxels.
 std::size_t spread(LabelMap& map, std::span<const std::uint8_t> open);
 
-/// Marks the voxels without a label that are in a closing of one label by a ball of `radius` (m), or in a hollow of that
-/// closing: marrow behind thin cortex. Voxels between two labels, such as those of a fracture gap, are in the closing of
-/// neither and are not marked, if the gap of each is wider than its own closing.
+/// Marks unlabelled voxels in a closing of one label by a ball of `radius` (m), or in a hollow of that closing: marrow
+/// behind thin cortex. Voxels between two labels, such as those of a fracture gap, are not marked if the gap is wider
+/// than the closing.
 std::vector<std::uint8_t> marrow_of(const LabelMap& map, const Vec3& spacing, double radius);
 
 /// Faces between voxels of two labels, `a` less than `b`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multigrid for the equations of a random walk, as preconditioner of a conjugate gradient solver.
+// Multigrid for the linear system of a random walk, as preconditioner of a conjugate gradient solver.
 #pragma once
 
 #include "dsp/segment/laplacian.hpp"
@@ -11,10 +11,10 @@
 
 namespace tactus::segment {
 
-/// A hierarchy of coarser equations by unsmoothed aggregation (Braess, Computing 55, 1995): the nodes of a block of
-/// 2 x 2 x 2 cells become one node, or several where the block is split by weak conductances, so that a coarse node
-/// never joins two sides of a gap. Smoothed by Chebyshev polynomials of the matrix, which is symmetric and has no order
-/// of rows; the cycle is a W. A linear, symmetric and positive operator.
+/// A hierarchy of coarser systems by unsmoothed aggregation (Braess, Computing 55, 1995): the nodes of a block of 2 x 2
+/// x 2 cells become one node, or several where the block is split by weak conductances, so that a coarse node never
+/// joins two sides of a gap. Smoothed by Chebyshev polynomials of the matrix, which is symmetric and has no order of
+/// rows; the cycle is a W. A linear, symmetric and positive operator.
 class Multigrid {
 public:
     /// `place`: the cell of each row. `matrix` must outlive the hierarchy.
@@ -48,7 +48,7 @@ private:
 
     const Laplacian& fine_;
     std::vector<Coarse> coarse_;
-    std::vector<double> factor_;  ///< Cholesky factor of the coarsest matrix, row by row; empty: too large
+    std::vector<double> factor_;  ///< Cholesky factor of the coarsest matrix, row by row; empty if that is too large
 };
 
 }  // namespace tactus::segment

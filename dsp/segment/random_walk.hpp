@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segmentation by random walks: the label of a voxel is the seed that a walk from it most likely meets first.
+// Segmentation by random walks: the label of a voxel is the seed that a walk from it reaches first with the highest
+// probability.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -13,19 +14,19 @@
 
 namespace tactus::segment {
 
-/// How well the equations are solved.
+/// Required accuracy of the solution.
 struct WalkAccuracy {
-    double residual = 1e-4;  ///< of each label, relative to its right side
+    double residual = 1e-4;  ///< of each label, relative to its right-hand side
     int most_iterations = 200;
 };
 
-/// What a solve found. Probabilities are interleaved: node * labels + label. Those of a node lie in [0, 1] and their sum
+/// Result of a solve. Probabilities are interleaved: node * labels + label. Those of a node lie in [0, 1] and their sum
 /// is 1 within rounding; all are 0 in parts of the graph without a seed.
 struct Walks {
     int labels = 0;
     std::vector<float> probability;
-    double residual = 0.0;  ///< worst of all labels, from the probabilities as returned: |b - A x| / |b|
-    int iterations = 0;  ///< of the label that took most
+    double residual = 0.0;  ///< largest of all labels, from the returned probabilities: |b - A x| / |b|
+    int iterations = 0;  ///< maximum over the labels
 };
 
 /// Random walks on a graph (Grady, IEEE PAMI 28, 2006): the probability of each label at each free node solves the

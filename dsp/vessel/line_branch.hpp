@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line of points as a branch, for what draws and writes branches.
+// Converts a line of points to a branch, for drawing and writing.
 #pragma once
 
 #include "dsp/vessel/track.hpp"
@@ -8,8 +8,9 @@
 
 namespace tactus::vessel {
 
-/// A branch through `points` (m) with one radius (m) and the end `End::length`. Contrast and confidence stay 0: a line
-/// does not know them. Points nearer than 0.1 µm to the one before are left out, so that there may be less than two nodes.
+/// Returns a branch through `points` (m) with one radius (m) and the end `End::length`. Contrast and confidence are 0,
+/// because a line has none. Points closer than 0.1 µm to the previous one are dropped, so that fewer than two nodes may
+/// remain.
 Branch branch_of_line(std::span<const Vec3> points, double radius);
 
 }  // namespace tactus::vessel

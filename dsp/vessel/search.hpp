@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for the next pieces of a vessel.
+// Searches the next steps of a vessel.
 #pragma once
 
 #include "dsp/vessel/tracker.hpp"
@@ -8,26 +8,26 @@
 
 namespace tactus::vessel {
 
-/// What a search needs to know.
+/// Inputs of a search.
 struct Search {
     const Scan& scan;
     const TrackSettings& settings;
     Window window;
     Sampling sampling;
-    /// t-statistics that pure noise does not reach (`tactus bench vessel --case noise`): of one piece, of the mean over the
-    /// pieces looked ahead, of the piece at the seed, and of the mean over the nodes of a whole branch.
+    /// Thresholds of t-statistics that pure noise does not reach (`tactus bench vessel --case noise`): of one step, of
+    /// the mean over the look-ahead, of the tube at the seed, and of the mean over the nodes of a whole branch.
     double least_score = 3.5, least_mean = 5.0, least_start = 6.0, least_branch = 7.5;
 };
 
-/// Distance from the axis to the edge of the vessel, m: where the brightness, averaged along the axis, falls below half
-/// of the contrast. The third smallest of twelve directions; at most four radii.
+/// Returns the distance from the axis to the edge of the vessel, m, where the brightness, averaged along the axis,
+/// falls below half of the contrast. It is the third smallest of twelve directions, at most four radii.
 double edge_distance(const Scan& scan, const Tube& tube);
 
-/// The best fitting tube around `seed`, of any direction and radius, at most 1.3 times as wide as the distance to the
-/// edge. Score 0 when there is none.
+/// Returns the best fitting tube around `seed`, of any direction and radius, at most 1.3 times as wide as the distance
+/// to the edge. Score 0 if there is none.
 Tube best_start(const Search& search, const Vec3& seed);
 
-/// Places taken by what was tracked before.
+/// Positions already covered by earlier tracks.
 struct Taken {
     Vec3 position;
     double radius;
@@ -43,12 +43,12 @@ struct OneWay {
 /// Follows a vessel from `start` along its direction.
 OneWay follow_one_way(const Search& search, const Tube& start, const std::vector<Taken>& taken, double most_length);
 
-/// Score of a side branch that leaves a vessel, and the tube to start with.
+/// Score of a side branch that leaves a vessel, and its first tube.
 struct SideBranch {
     Tube tube;
     int node;
 };
-/// Tubes that leave the branch through its wall, the best first.
+/// Returns the tubes that leave the branch through its wall, best first.
 std::vector<SideBranch> side_branches(const Search& search, const Branch& branch, const std::vector<Taken>& taken);
 
 }  // namespace tactus::vessel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vessel pulled straight: cross-sections along its centre line, side by side.
+// A straightened vessel: cross-sections along its centre line, side by side.
 #pragma once
 
 #include "dsp/vessel/track.hpp"
@@ -17,8 +17,8 @@ struct Straightened {
     std::vector<char> is_lost;   ///< per column
 };
 
-/// The frame is transported without twist (Bishop). `half_width` in m across the vessel; places outside of the scan get
-/// the value of its border. Throws Error for a branch of fewer than two nodes.
+/// The frame is transported without twist (Bishop). `half_width` in m across the vessel; positions outside of the scan
+/// get the value at its border. Throws Error for a branch of fewer than two nodes.
 Straightened straightened(const volume::Grid& grid, const Branch& branch, double half_width);
 
 }  // namespace tactus::vessel

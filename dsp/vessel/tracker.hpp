@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows a vessel from one seed: templates of a tube, several hypotheses a step (Friman, Hindennach, Kühnel and Peitgen,
-// Medical Image Analysis 14, 2010).
+// Follows a vessel from one seed: templates of a tube, several hypotheses per step (Friman, Hindennach, Kühnel and
+// Peitgen, Medical Image Analysis 14, 2010).
 #pragma once
 
 #include "dsp/vessel/track.hpp"
@@ -10,20 +10,21 @@ namespace tactus::vessel {
 struct TrackSettings {
     double least_radius = 0.4e-3, most_radius = 20e-3;  ///< m
     double axial_window = 2.25;  ///< radii (Friman)
-    double across_window = 2.5;  ///< radii; Friman: 4.5, which holds the neighbours, too
+    double across_window = 2.5;  ///< radii; Friman: 4.5, which would include neighbours
     double step = 1.0;  ///< radii
-    int fan = 3;  ///< (2 · fan + 1)² directions a step
-    double most_angle = 1.05;  ///< rad, of a step to the next
-    int depth = 3;  ///< steps that are looked ahead
+    int fan = 3;  ///< (2 · fan + 1)² directions per step
+    double most_angle = 1.05;  ///< rad, from one step to the next
+    int depth = 3;  ///< number of steps of the look-ahead
     double psf_voxels = 0.6;  ///< standard deviation of the scanner's point spread, in samples
-    double least_contrast = 0.4;  ///< of the running median: below it the vessel ends
+    double least_contrast = 0.4;  ///< fraction of the running median; below it the vessel ends
     double most_length = 2.0;  ///< m
     bool branches = true;
-    std::optional<double> clip_below;  ///< lower values count as this one; for HU: -150
-    std::optional<double> exclude_above;  ///< value of bone or stent; none: from the vessel's own brightness
+    std::optional<double> clip_below;  ///< replaces lower values; for HU: -150
+    std::optional<double> exclude_above;  ///< value of bone or stent; none: derived from the vessel's own brightness
 };
 
-/// Everything reached from the seed. No branches when there is no vessel at the seed; `why` then says why.
+/// All branches reached from the seed. If there is no vessel at the seed, there are no branches and `why` is the
+/// reason.
 struct Followed {
     Track track;
     std::string why;

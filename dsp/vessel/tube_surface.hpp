@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Branches of a track as closed tubes.
+// Closed tube surfaces of the branches of a track.
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
@@ -7,8 +7,8 @@
 
 namespace tactus::vessel {
 
-/// A closed tube around the branch, of its radius at each node; outward triangles. `sides` corners a ring, at least 3.
-/// Empty for a branch of fewer than two nodes. Tubes of branches overlap where these meet.
+/// Returns a closed tube around the branch with its radius at each node; triangles face outwards. `sides`: corners per
+/// ring, at least 3. Empty for a branch of fewer than two nodes. Tubes of adjacent branches overlap.
 geometry::TriangleSurface tube_surface(const Branch& branch, int sides = 16);
 
 }  // namespace tactus::vessel

@@ -11,9 +11,9 @@
 
 namespace tactus::vibration {
 
-/// Data of an actuator: a mass m that moves on a spring and in a coil, inside of a housing that shakes with the handle,
-/// of total mass M. Resonance and damping are those at a constant voltage, so the damping includes what the coil's
-/// back-EMF adds. On another handle the resonance goes as 1/√(m (M − m)/M).
+/// Data of an actuator: a mass m that moves on a spring and in a coil, inside of a housing that vibrates with the
+/// handle, of total mass M. Resonance and damping apply at a constant voltage, so that the damping includes the coil's
+/// back-EMF. On another handle the resonance is proportional to 1/√(m (M − m)/M).
 struct ActuatorModel {
     std::string_view name;
     double resonance;  ///< f0, Hz, at `resonance_mass`
@@ -34,19 +34,19 @@ struct ActuatorModel {
 /// haptuator_small, haptuator_large: f0 and ζ fitted to tones of 50–250 Hz at low and high drive; 24.5 m/s² at 1 V,
 /// 150 Hz on 20 g, 6 Ω, 3 V, 0.5 A from the TL002-14R data sheet. markII_D: 65 Hz on 100 g, 4.4 g moving, 4.5 Ω, 128 µH
 /// and 8 g peak-to-peak from its data sheet, measured at resonance and the current limit; ζ from the rise time of 14 ms.
-/// Not published for the first two, and invented: the moving mass and the inductance of markII_D, and 20 g as the mass of
-/// f0 and ζ.
+/// Not published for the first two, and assumed: the moving mass and the inductance of markII_D, and 20 g as the mass
+/// of f0 and ζ.
 /// lra_10mm, a coin of the type VG1040003D (Vybronics, Jinlong): 170 Hz, 2.5 V rms, at most 170 mA rms, 2 g rms, half of the
-/// amplitude after 10 ms from its data sheet, from which ζ 0.065 follows. Invented: 100 g as the mass of the test, the
+/// amplitude after 10 ms from its data sheet, from which ζ 0.065 follows. Assumed: 100 g as the mass of the test, the
 /// moving mass of 1.3 g, 12 Ω and 0.1 mH.
-/// voice_coil_14mm, an exciter of the type TEAX14C02-8 (Tectonic): 2.4 N/A, 7.8 Ω and 0.8 W, by which 3.5 V peak, from its
-/// data sheet. Invented: 5 g of moving mass, 120 Hz and ζ 0.3 on 100 g, and 0.05 mH.
+/// voice_coil_14mm, an exciter of the type TEAX14C02-8 (Tectonic): 2.4 N/A, 7.8 Ω and 0.8 W, hence 3.5 V peak, from its
+/// data sheet. Assumed: 5 g of moving mass, 120 Hz and ζ 0.3 on 100 g, and 0.05 mH.
 std::span<const ActuatorModel> actuator_models();
 
 /// The model with that name. Throws Error with the known names.
 const ActuatorModel& find_actuator(std::string_view name);
 
-/// What follows from the data.
+/// Mechanical values derived from the data.
 struct ActuatorMechanics {
     double force_factor = 0.0;  ///< of the coil, N/A; also its back-EMF, V·s/m
     double stiffness = 0.0;  ///< of the spring, N/m
@@ -74,16 +74,16 @@ struct ActuatorOutput {
     bool limited = false;  ///< the drive exceeded the limits
 };
 
-/// Runs a model sample by sample: coil, back-EMF and both masses, discretised exactly for a voltage that is held for a
-/// sample. The amplifier clips the voltage at its limit, and lowers it where the current would exceed its own.
+/// Runs a model sample by sample: coil, back-EMF and both masses, discretised exactly for a voltage that is constant
+/// over a sample. The amplifier clips the voltage at its limit, and lowers it where the current would exceed its own.
 class Actuator {
 public:
     Actuator() = default;
     /// `rate` in Hz, `mass`: total vibrating mass (housing, handle, moving mass), kg. Far above resonance the
-    /// acceleration goes as 1/(M − m). Throws Error as `mechanics_of` does, for a mass that is not above the moving one,
-    /// and when the resonance does not fit under half the rate.
+    /// acceleration is proportional to 1/(M − m). Throws Error as `mechanics_of` does, for a mass that is not above the
+    /// moving one, and when the resonance does not fit under half the rate.
     Actuator(const ActuatorModel& model, double mass, double rate);
-    /// With its own mechanics in place of those that follow from the model.
+    /// With the given mechanics instead of those derived from the model.
     Actuator(const ActuatorModel& model, const ActuatorMechanics& mechanics, double mass, double rate);
 
     /// A drive that is not finite counts as 0 V.
@@ -91,7 +91,7 @@ public:
 
     /// Acceleration per volt at `frequency`, m/s² per V, without the limits.
     double gain(double frequency) const;
-    /// The peak of a steady tone that no limit cuts at any frequency, V.
+    /// The largest peak of a steady tone that no limit clips at any frequency, V.
     double greatest_voltage() const { return safe_voltage_; }
 
 private:

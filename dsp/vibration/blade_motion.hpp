@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the blade of a powered saw follows its trigger, and whether it cuts.
+// Motion of the blade of a powered saw in response to its trigger, and detection of cutting.
 #pragma once
 
 #include <cstddef>

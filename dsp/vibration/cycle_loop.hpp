@@ -18,9 +18,9 @@ public:
     static constexpr double longest = 20.0;  ///< s; only the first part of a longer record is used
     static constexpr std::size_t fewest_cycles = 8;
 
-    /// Rates in Hz. Among the longest loops, chooses the number of cycles after which the sound repeats itself best;
-    /// the end is cross-faded into the sound before the start. Content above 0.42 × output rate is removed. For playing
-    /// up to `max_ratio` times as fast, it keeps versions of which each holds half of the bandwidth of the one before
+    /// Rates in Hz. Among the longest loops, chooses the number of cycles with the best repetition; the end is
+    /// cross-faded into the sound before the start. Content above 0.42 × output rate is removed. For playing up to
+    /// `max_ratio` times as fast, it keeps versions of which each holds half of the bandwidth of the one before
     /// (Williams, Pyramidal parametrics, 1983), so that no component is played above half of the output rate. Throws
     /// Error when the record is shorter than 8 cycles.
     CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate, double output_rate,
@@ -42,7 +42,7 @@ public:
 
 private:
     /// One bandwidth of the loop, with guard samples on both sides. Content lies below 0.21 × the rate of the samples,
-    /// where the images that the sinc leaves are fainter than −70 dB.
+    /// where the images that remain after the sinc are below −70 dB.
     struct Version {
         std::vector<float> samples;
         std::size_t count = 0;  // samples of the loop

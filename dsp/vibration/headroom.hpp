@@ -15,11 +15,11 @@ struct BandLoss {
 struct Headroom {
     double peak = 0.0;  ///< peak of the wanted drive, V
     double headroom_db = 0.0;  ///< limit over peak; negative: the limit clips
-    double limited_fraction = 0.0;  ///< share of clipped samples
+    double limited_fraction = 0.0;  ///< fraction of clipped samples
     std::vector<BandLoss> losses;   ///< bands from 40 Hz to 1 kHz within 30 dB of the strongest that lose 0.1 dB
 };
 
-/// Clips `drive` (V, at `rate` Hz) at ±`limit` V. Allocates.
+/// Clips `drive` (V, at `rate` Hz) at ±`limit` V and measures the loss. Allocates.
 Headroom headroom(std::span<const double> drive, double rate, double limit);
 
 /// Highest permitted voltage: the amplifier's limit, or that of the coil's current limit.

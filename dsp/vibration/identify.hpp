@@ -44,10 +44,10 @@ struct Identified {
 
 /// Identifies the system that produced `captured` (samples at `rate` Hz, from the start of the first sweep) from the
 /// sweep. Averages the cross-spectrum over all repeats and over a few Hz around each of the `per_octave` frequencies:
-/// parts that do not repeat, or lie at other times than the linear response, as distortion does, cancel and lower the
-/// coherence. Where one pole explains the bins better than their average, the local model takes its place, and the
-/// response has further frequencies around each resonance that is narrower than the averages: its resolution is that of the
-/// record. Throws Error when the record is too short or does not contain the sweep. Allocates.
+/// components that do not repeat, or that occur at other times than the linear response (distortion), cancel and lower
+/// the coherence. Where one pole explains the bins better than their average, the local model takes its place, and the
+/// response has further frequencies around each resonance that is narrower than the averages: its resolution is that of
+/// the record. Throws Error when the record is too short or does not contain the sweep. Allocates.
 Identified identify(const SweepRun& run, std::span<const float> captured, double rate, int highest_order = 5,
                     int per_octave = 48);
 

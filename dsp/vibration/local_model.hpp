@@ -33,7 +33,7 @@ struct LocalModel {
     std::complex<double> pole() const { return centre - half_width / denominator; }
     double frequency() const { return std::abs(pole()); }
     double damping() const { return pole().imag() / std::abs(pole()); }
-    /// The pole is stable, and the model explains so much more than a constant that noise would not (F test, about 1e-6).
+    /// True if the pole is stable and the model explains significantly more than a constant (F test, about 1e-6).
     bool is_significant() const;
 };
 

@@ -14,9 +14,9 @@
 namespace tactus::vibration {
 
 /// Orders follow the phase of the blade; the residual is noise through the model's filter, at 8 kHz, raised to the
-/// output's rate by a windowed sinc. The sound is computed anew every 32 samples; levels change linearly in between, so
-/// that neither rate, load nor density makes a step. The load and the density follow their inputs, and cutting follows
-/// free air, within `fade_time`.
+/// output's rate by a windowed sinc. The sound is computed every 32 samples; levels are interpolated linearly in
+/// between, so that changes of rate, load or density cause no step. The load and the density follow their inputs, and
+/// cutting follows free air, within `fade_time`.
 ///
 /// `tick` is wait-free, does not allocate, and depends on its arguments and the state only.
 class ModelledSaw {
@@ -34,7 +34,7 @@ public:
     const BladeMotion& blade() const { return blade_; }
 
 private:
-    static constexpr int interval = 32;  // samples between two sounds
+    static constexpr int interval = 32;  // samples between two computations
     static constexpr std::size_t kept = SawModelSize::lines;
     static_assert(kept >= reading_taps);
 

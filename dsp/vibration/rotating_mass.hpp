@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Model of an eccentric rotating mass (ERM) on a handle: input is the drive voltage; outputs are the limited voltage, the
-// current and the acceleration of the handle along one axis. Rate and strength of its vibration are one: m r ω²/M.
+// current and the acceleration of the handle along one axis. Rate and strength of its vibration are coupled: m r ω²/M.
 #pragma once
 
 #include "dsp/vibration/actuator.hpp"
@@ -17,8 +17,8 @@ struct RotatingMassModel {
     double voltage_limit;  ///< V, either sign
 };
 
-/// A coin of 8 × 3 mm: 3 V, 67 mA and 9,000 turns a minute, from data sheets of its class. Invented: an unbalance that
-/// shakes 100 g with 0.75 g, 2 V to start, a time constant of 50 ms, and 30 Ω.
+/// A coin of 8 × 3 mm: 3 V, 67 mA and 9,000 revolutions per minute, from data sheets of its class. Assumed: an
+/// unbalance that accelerates 100 g with 0.75 g, 2 V to start, a time constant of 50 ms, and 30 Ω.
 inline constexpr RotatingMassModel coin_erm{3.0, 942.4777960769379, 2.0, 0.05, 8.28e-7, 30.0, 3.6};
 
 /// Runs a model sample by sample.

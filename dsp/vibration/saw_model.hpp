@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A parametric model of a saw's vibration: orders that are locked to the stroke, and a residual that is noise through an
-// all-pole filter and swells with the stroke. Its parameters are interpolated between the recorded conditions.
+// A parametric model of a saw's vibration: orders that are locked to the stroke, and a residual (noise through an
+// all-pole filter) whose level varies over the stroke. Its parameters are interpolated between the recorded conditions.
 #pragma once
 
 #include "dsp/vibration/saw_voice.hpp"

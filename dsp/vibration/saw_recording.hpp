@@ -19,7 +19,7 @@ struct SawRecording {
     std::size_t loop_end = 0;
     double density = 0.0;  ///< of the bone, kg/m³; 0: unknown
 
-    /// The samples to use. Throws Error when there are none, or a value is not positive and finite.
+    /// Returns the samples to use. Throws Error if there are none, or if a value is not positive and finite.
     std::span<const float> part() const;
 };
 

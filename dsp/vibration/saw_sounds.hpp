@@ -10,10 +10,10 @@
 namespace tactus::vibration {
 
 /// Continuous in rate, load and density. Linear in the load, then in the density, then in the logarithm of the rate;
-/// before that, orders are scaled by the square of the rate, as the acceleration of a constant stroke is, and the
-/// residual by the rate. Below the lowest recorded load, cutting becomes free air as the load falls to 0; outside of the
-/// recorded densities, and above the highest load, the nearest is used; above the highest rate the level stays, below the
-/// lowest it falls as scaled.
+/// before interpolation, orders are scaled by the square of the rate, like the acceleration of a constant stroke, and
+/// the residual by the rate. Below the lowest recorded load, cutting becomes free air as the load falls to 0; outside
+/// of the recorded densities, and above the highest load, the nearest is used; above the highest rate the level stays,
+/// below the lowest it falls as scaled.
 class SawSounds {
 public:
     SawSounds() = default;
@@ -24,10 +24,11 @@ public:
     /// `rate` in Hz, `load` in N, `density` in kg/m³ (0: unknown, the middle of the recorded ones). Does not allocate.
     SawSound at(bool cutting, double rate, double load, double density) const noexcept;
 
-    /// Whether a condition lies between recorded ones in load, density and rate, so that nothing is extrapolated.
+    /// Returns whether a condition lies between recorded ones in load, density and rate, so that nothing is
+    /// extrapolated.
     bool covers(bool cutting, double rate, double load, double density) const noexcept;
 
-    /// The part x of `b` and 1 − x of `a`.
+    /// Returns the mixture with the fraction x of `b` and 1 − x of `a`.
     static SawSound blend(const SawSound& a, const SawSound& b, double x) noexcept;
 
 private:

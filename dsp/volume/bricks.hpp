@@ -4,8 +4,8 @@
 //
 // A brick holds the 9 × 9 × 9 samples at the corners of 8 × 8 × 8 cells. Samples on the border between bricks are
 // stored in each of them (the apron), so that every interpolation reads one brick only. Copy on write: a brick is
-// copied at its first write after a publication; a snapshot is a table of pointers to bricks that nobody writes any
-// more.
+// copied at its first write after a publication; a snapshot is a table of pointers to bricks that are no longer
+// written.
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -49,7 +49,7 @@ extern const BoneRoot empty_bone;
 struct Sample {
     double value = 0.0;  ///< m, negative inside the bone
     Vec3 gradient{0.0, 0.0, 0.0};  ///< m/m; points out of the bone
-    bool inside = false;  ///< false: nothing is stored near, value = far, gradient 0
+    bool inside = false;  ///< false: nothing is stored nearby; value = far, gradient 0
 };
 
 /// Handle of one version, the value on wires. Reading is wait-free.
@@ -60,12 +60,12 @@ struct BoneSnapshot {
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;  ///< over all changes up to this version
 
-    /// Outside of the grid the distance goes on from its border, up to `far`, as if the surface lay straight inwards: a tool
-    /// may be thicker than the air around the bone.
+    /// Outside of the grid the distance is extrapolated from its border, up to `far`, as if the surface lay straight
+    /// inwards. This is needed because a tool may be thicker than the air around the bone.
     Sample sample(const Vec3& position) const noexcept;
     double value(const Vec3& position) const noexcept;
-    /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so forces made of it do not jump
-    /// at cell faces. It smooths curvature: a surface of curvature κ moves by about κ·spacing²/4.
+    /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so that forces derived from it
+    /// do not jump at cell faces. It smooths curvature: a surface of curvature κ moves by about κ·spacing²/4.
     Sample smooth_sample(const Vec3& position) const noexcept;
     /// kg/m³, 0 where nothing is stored.
     double density(const Vec3& position) const noexcept;
@@ -91,8 +91,8 @@ public:
 
     /// Distance at a sample with all edits; `far` where no brick is stored.
     float get(int i, int j, int k) const noexcept;
-    /// Writes a sample to every brick that holds it. False, without writing, when no brick does or when the budget of
-    /// changed bricks would be exceeded.
+    /// Writes a sample to every brick that holds it. Returns false, without writing, if no brick does or if the budget
+    /// of changed bricks would be exceeded.
     bool set(int i, int j, int k, float value) noexcept;
     /// Distance and density with all edits, before publication.
     BoneSnapshot working() const noexcept { return {&working_, version_, hash_.state}; }
@@ -106,9 +106,9 @@ public:
     /// Bricks that the last publication changed, ascending.
     std::span<const std::uint32_t> changed_bricks() const noexcept { return changed_; }
 
-    /// Versions before `oldest_readable` have no readers left: frees bricks that only they hold.
+    /// Call when versions before `oldest_readable` have no readers: frees bricks that only they use.
     void reclaim(std::int64_t oldest_readable) noexcept;
-    /// That version was published and then dropped: it has no readers.
+    /// Call when that version was published and then dropped: it has no readers.
     void forget(std::int64_t version) noexcept;
 
     /// Free bricks, for tests and telemetry.
@@ -144,7 +144,7 @@ private:
     BoneSnapshot current_;
 };
 
-/// The distance of a version as a dense grid, for files and pictures.
+/// Returns the distance of a version as a dense grid, for files and images.
 Grid to_grid(const BoneSnapshot& bone);
 
 }  // namespace tactus::volume

@@ -18,7 +18,7 @@ struct SampleRun {
     std::int32_t part = 0;  ///< rank of its component; 0 is the largest
 };
 
-/// Run-length encoding of the samples in question, row by row.
+/// Run-length encoding of a set of samples, row by row.
 struct RunRows {
     std::array<int, 3> size{0, 0, 0};
     std::vector<std::size_t> start{0};  ///< first run of each row (y fastest), and of the next row
@@ -47,12 +47,12 @@ struct Components {
 Components components_of(RunRows rows);
 Components components_above(const Grid& grey, float iso);
 
-/// Hollows: samples outside of the `keep` largest components (0: of all) that are not 6-connected to the
+/// Returns the hollows: samples outside of the `keep` largest components (0: of all) that are not 6-connected to the
 /// border.
 RunRows hollows_of(const Components& components, std::size_t keep);
 
 /// Removes all components but the `keep` largest from `grey` by mirroring their samples about iso. Samples below iso
-/// stay, so the surface of what is kept does not move. `grey` may be some layers only, from `first` on.
+/// stay, so that the surface of the kept components does not move. `grey` may be some layers only, from `first` on.
 void keep_largest(Grid& grey, float iso, const Components& components, std::size_t keep, int first = 0);
 
 /// Fills hollows by mirroring their samples about iso. The outer surface does not move.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of a grid.
+// Extraction of a part of a grid.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -9,7 +9,7 @@
 
 namespace tactus::volume {
 
-/// All layers; along x and y the samples from `low` to `high` (inclusive).
+/// Returns all layers, restricted along x and y to the samples from `low` to `high` (inclusive).
 inline Grid window_of(const Grid& grid, const std::array<int, 2>& low, const std::array<int, 2>& high) {
     Grid out{
         {high[0] - low[0] + 1, high[1] - low[1] + 1, grid.size[2]}, grid.position(low[0], low[1], 0), grid.spacing, {}};

@@ -18,7 +18,8 @@ struct Histogram {
     double middle(std::size_t bin) const { return low + (static_cast<double>(bin) + 0.5) * width(); }
 };
 Histogram histogram_of(std::span<const float> values, std::size_t bins);
-/// Bins between `low` and `high`, to be filled by add_values; values beyond count in the first and last bin.
+/// Returns empty bins between `low` and `high`, to be filled by add_values; values beyond count in the first or last
+/// bin.
 Histogram empty_histogram(double low, double high, std::size_t bins);
 void add_values(Histogram& histogram, std::span<const float> values);
 

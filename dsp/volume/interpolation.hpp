@@ -18,7 +18,8 @@ struct GridCell {
     bool inside = false;  ///< false: the position is outside of the grid or not finite
 };
 
-/// `size` samples per axis from `origin` on; positions on the last plane belong to the last cell.
+/// Finds the cell of a position. `size` samples per axis from `origin` on; positions on the last plane belong to the
+/// last cell.
 inline GridCell find_grid_cell(const Vec3& origin, const Vec3& spacing, const std::array<int, 3>& size,
                                const Vec3& position) noexcept {
     const double x = (position.x - origin.x) / spacing.x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outside of a bone, without the hollows that a threshold leaves.
+// The outer surface of a bone, without the hollows left by a threshold.
 #pragma once
 
 #include "dsp/core/jobs.hpp"

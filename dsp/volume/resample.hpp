@@ -7,10 +7,10 @@
 
 namespace tactus::volume {
 
-/// Values of `grid` at the samples of `layout`, axis by axis with Catmull–Rom cubics (border repeated), within the range
-/// of the samples that they interpolate. Along an axis
-/// where `layout` is coarser the cubic is widened to it, against aliasing. Samples that both grids share along all axes
-/// keep their bits, and the memory when all of them do.
+/// Returns the values of `grid` at the samples of `layout`, axis by axis with Catmull–Rom cubics (border repeated),
+/// limited to the range of the interpolated samples. Along an axis where `layout` is coarser, the cubic is widened
+/// accordingly, against aliasing. Samples common to both grids along all axes keep their bits, and the memory is reused
+/// if all of them do.
 Grid resampled(const Grid& grid, const Grid& layout);
 Grid resampled(Grid&& grid, const Grid& layout);
 
@@ -19,11 +19,11 @@ struct LayerRange {
     int first, count;
 };
 
-/// The layers of `from` that resampled_layers needs for those of `layout`.
+/// Returns the layers of `from` that resampled_layers needs for those of `layout`.
 LayerRange layers_for(const Grid& from, const Grid& layout, LayerRange wanted);
 
 /// The same for some layers, with the same bits: `grid` holds the layers that layers_for returns. The values of `from`
-/// and `layout` are not read.
+/// and `layout` are not used.
 Grid resampled_layers(Grid grid, const Grid& from, const Grid& layout, LayerRange wanted,
                       const RunJobs& run = run_in_turn);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds a place on any bone where a saw blade can start a cut and go through.
+// Finds a position on any bone where a saw blade can start a cut and complete it.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -14,7 +14,7 @@ struct SiteRequest {
     double blade_height = 10e-3;   ///< behind the teeth
     double travel = 10e-3;  ///< of the hand to either side, along the blade
     double least_gap = 0.8e-3;  ///< between the blade's middle plane and other bone
-    double best_depth = 12e-3;  ///< preferred thickness of the bone: long enough to feel, short enough to finish
+    double best_depth = 12e-3;  ///< preferred thickness of the bone: long enough to perceive, short enough to finish
 };
 
 /// A site for a cut: the middle of the tooth line starts at `point` and moves along `feed`, while the blade strokes
@@ -50,8 +50,8 @@ std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, co
 /// most 60 mm more.
 double resting_clearance(const Grid& distance, const SawSite& site, double clearance, const SiteRequest& request = {});
 
-/// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there; the density up to the surface
-/// is that of the bone (extend_density). Throws Error when that is more than 40 million samples.
+/// Both grids around a site with samples `spacing` m apart, over the reach of a blade there; up to the surface the
+/// density is that of the bone (extend_density). Throws Error for more than 40 million samples.
 struct SiteVolume {
     Grid distance, density;
 };

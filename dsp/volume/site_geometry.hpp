@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the search for a site and its refinement share.
+// Code common to the search for a site and its refinement.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -11,7 +11,7 @@
 
 namespace tactus::volume {
 
-inline constexpr double deepest_site = 40e-3;  ///< m: a bone's thickness is not followed further
+inline constexpr double deepest_site = 40e-3;  ///< m: a larger thickness of the bone is not measured
 inline constexpr int site_directions = 8;  ///< of the blade about the feed
 
 /// Interpolated value; `outside` beyond the grid.

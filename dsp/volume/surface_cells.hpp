@@ -36,7 +36,7 @@ private:
     std::vector<std::int32_t> triangles_;
 };
 
-/// The cells (between eight samples) that contain a piece of the surface. Cell n has a surface point at[n], the nearest
+/// The cells (between eight samples) that contain a part of the surface. Cell n has a surface point at[n], the nearest
 /// to its middle (in samples from the origin), and the triangles triangle[start[n]] … triangle[start[n + 1] − 1], the
 /// first of which contains that point.
 struct SurfaceCells {

@@ -6,9 +6,10 @@
 
 namespace tactus::volume {
 
-/// Gives samples outside of the bone, up to two voxels from its surface, the mean density of their neighbours in the bone
-/// (26, then of those). Interpolated with what is outside, air or soft tissue, the density would fall to it over the last
-/// voxel before the surface, so that bone in coarse voxels would be cut more easily. Both grids have the same samples.
+/// Sets samples outside of the bone, up to two voxels from its surface, to the mean density of their neighbours in the
+/// bone (of the 26, then of those set before). Otherwise interpolation with air or soft tissue would lower the density
+/// over the last voxel before the surface, so that bone in coarse voxels would be cut more easily. Both grids have the
+/// same samples.
 void extend_density(const Grid& distance, Grid& density);
 
 }  // namespace tactus::volume

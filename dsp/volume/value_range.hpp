@@ -12,7 +12,7 @@ struct ValueRange {
     std::size_t zeros = 0;
     bool finite = true, whole = true;  ///< all finite; all integers of magnitude up to two billion
 };
-/// Of at least one value.
+/// Returns the range of at least one value.
 ValueRange range_of(std::span<const float> values);
 
 }  // namespace tactus::volume

@@ -17,18 +17,18 @@ class Arrangement {
 public:
     static constexpr int none = -1;
 
-    /// A fit is void when one of both has moved farther from the other than this, in the partner's frame.
+    /// A fit becomes void when one fragment moves farther than this from its fitted pose in the partner's frame.
     static constexpr double void_distance = 0.05e-3;  ///< m, of the origin of the fragment's file
     static constexpr double void_angle = 0.05 * std::numbers::pi / 180.0;  ///< rad
 
     struct Place {
         Pose pose;
         int group = none;
-        int fitted_to = none;  ///< the fragment that it was fitted to last
+        int fitted_to = none;  ///< the fragment to which it was fitted last
         Pose beside;  ///< its pose in that fragment's frame when it was fitted
         bool locked = false, hidden = false;
     };
-    /// How far a fragment has moved from where it was fitted, in its partner's frame: m and rad.
+    /// Displacement of a fragment from its fitted pose, in its partner's frame: m and rad.
     struct Departure {
         double distance = 0.0, angle = 0.0;
     };
@@ -43,13 +43,13 @@ public:
     const Pose& pose(int fragment) const noexcept { return at(fragment).pose; }
     bool is_locked(int fragment) const noexcept { return at(fragment).locked; }
     bool is_hidden(int fragment) const noexcept { return at(fragment).hidden; }
-    /// The fragment that it fits: it was fitted there, and neither has moved from the other since. Else `none`.
+    /// Returns the partner of the fragment's fit, if neither has moved from the other since; otherwise `none`.
     int fitted_to(int fragment) const noexcept;
-    /// The fragment that it was fitted to last, also when that fit is void.
+    /// Returns the partner of the last fit, even if that fit is void.
     int was_fitted_to(int fragment) const noexcept { return at(fragment).fitted_to; }
-    /// Since it was fitted; zero when it never was.
+    /// Displacement since it was fitted; zero if it never was.
     Departure departure(int fragment) const noexcept;
-    /// Innermost group of a fragment; parent of a group; `none` when there is none.
+    /// Returns the innermost group of a fragment, or the parent of a group; `none` if there is none.
     int group_of(int fragment) const noexcept { return at(fragment).group; }
     int parent_of(int group) const noexcept { return groups_[static_cast<std::size_t>(group)].parent; }
     bool exists(int group) const noexcept;
@@ -58,25 +58,26 @@ public:
     int outermost(int fragment) const noexcept;
     /// True for the fragment itself and all members of its outermost group.
     bool move_together(int a, int b) const noexcept;
-    /// A locked fragment locks everything that moves with it.
+    /// Returns false if a locked fragment moves together with this one.
     bool can_move(int fragment) const noexcept;
 
-    /// Places one fragment without its group: replays a recorded step.
+    /// Places one fragment without its group, to replay a recorded step.
     void place(int fragment, const Pose& pose) noexcept { at(fragment).pose = pose; }
-    /// Records that the fragment fits this one as both lie now; `none`: it fits none.
+    /// Records that the fragment fits this partner at their current poses; `none` removes the fit.
     void fit(int fragment, int partner) noexcept;
     /// Moves a fragment to `pose` and everything that moves with it by the same motion; ignores an invalid pose and
-    /// locked fragments. Fits to fragments that do not move along become void. Returns whether it moved.
+    /// locked fragments. Fits to fragments outside of this motion become void. Returns whether the fragment moved.
     bool move(int fragment, const Pose& pose) noexcept;
 
     /// Makes a group of these fragments and all that move with them: their groups become nested groups. Returns its
     /// number, or `none` for fewer than two members.
     int join(std::span<const int> fragments) noexcept;
-    /// Adds a fragment, or its outermost group, to a group. False when it is already in it.
+    /// Adds a fragment, or its outermost group, to a group. Returns false if it is already a member.
     bool add(int group, int fragment) noexcept;
-    /// Removes a fragment from all groups. A group with one part left is dissolved. False when it was in none.
+    /// Removes a fragment from all groups. Dissolves a group with one member left. Returns false if the fragment was in
+    /// no group.
     bool remove(int fragment) noexcept;
-    /// Dissolves a group: its parts move to the group above, or become independent.
+    /// Dissolves a group: its members move to the parent group, or become independent.
     bool dissolve(int group) noexcept;
 
     void lock(int fragment, bool locked) noexcept { at(fragment).locked = locked; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which fragments of an arrangement hang together by fits.
+// Connected components of an arrangement's fragments, connected by fits.
 #pragma once
 
 #include "dsp/fit/arrangement/arrangement.hpp"
@@ -8,13 +8,13 @@
 
 namespace tactus::fit {
 
-/// The shown fragments in parts that are connected by fits which hold, chains of fits included: the largest part first,
-/// then in order of their first fragment. A fragment without a fit is a part of its own. Groups do not connect.
+/// Returns the components of the shown fragments that are connected by valid fits or chains of them: the largest first,
+/// then in order of their first fragment. A fragment without a fit is a component of its own. Groups do not connect.
 std::vector<std::vector<int>> assemblies(const Arrangement& arrangement);
 
-/// One per fragment: whether it belongs to what a moving fragment is brought to. That is everything connected to a
-/// locked fragment or, when none is locked, the largest connected part of two or more. What moves with `moving` is left
-/// out, and so are the connections through it. All zero when nothing stands.
+/// Returns one flag per fragment: whether it is a fixed partner for a fragment that is being moved. Fixed partners are
+/// all fragments connected to a locked fragment or, if none is locked, the largest component of two or more. Fragments
+/// that move with `moving` are excluded, and so are connections through them. All zero if there is no fixed partner.
 std::vector<char> standing(const Arrangement& arrangement, int moving);
 
 }  // namespace tactus::fit

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Undo history as a tree: every step knows its predecessor.
+// Undo history as a tree: every step stores its predecessor.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct HistoryPlace {
     int head = -1, tip = -1;
 };
 
-/// The place after a new step at the head: the previous redo branch is left.
+/// Returns the position after a new step at the head, which abandons the previous redo branch.
 constexpr HistoryPlace after_step(int step) { return {step, step}; }
 
 // Below, before[n] is the predecessor of step n and smaller than n; -1 for a first step.
@@ -34,14 +34,14 @@ inline HistoryPlace redone(std::span<const int> before, HistoryPlace at) {
     return {next, at.tip};
 }
 
-/// The steps from the first to `head`, in order.
+/// Returns the steps from the first to `head`, in order.
 inline std::vector<int> steps_to(std::span<const int> before, int head) {
     std::vector<int> steps;
     for (int n = head; n >= 0; n = before[static_cast<std::size_t>(n)]) steps.push_back(n);
     return {steps.rbegin(), steps.rend()};
 }
 
-/// Whether `step` is on the branch from the root to `tip`; always true for -1.
+/// Returns whether `step` is on the branch from the root to `tip`; always true for -1.
 inline bool is_on_way(std::span<const int> before, int step, int tip) {
     while (tip > step) tip = before[static_cast<std::size_t>(tip)];
     return tip == step;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Undo tree of an arrangement for use in a tick: each step stores what it changed, so undo costs as much as the step.
+// Undo tree of an arrangement for use in a tick. Each step stores only its changes, so that undo costs as much as the
+// step.
 #pragma once
 
 #include "dsp/fit/arrangement/arrangement.hpp"
@@ -10,8 +11,8 @@
 
 namespace tactus::fit {
 
-/// The tree of history.hpp with the changes of each step. Allocates in the constructor only: a run with more steps than
-/// its capacity can no longer undo the oldest ones, and goes on counting.
+/// The tree of history.hpp with the changes of each step. Allocates in the constructor only: when a run exceeds the
+/// capacity, its oldest steps can no longer be undone, but the step count remains correct.
 class StepTree {
 public:
     /// Capacity for `most` steps besides the `known` ones, which must be added first.
@@ -24,14 +25,15 @@ public:
 
     /// Adds a step at the head. Its number is the previous `count`.
     void add(const Arrangement& from, const Arrangement& to) noexcept;
-    /// Undoes or redoes one step in `now`, the arrangement at the head. False at the end of the branch.
+    /// Undoes or redoes one step in `now`, the arrangement at the head. Returns false at the end of the branch.
     bool undo(Arrangement& now) noexcept;
     bool redo(Arrangement& now) noexcept;
 
     /// The current place, as numbers of steps.
     HistoryPlace place() const noexcept;
-    /// Goes to another place, by undoing back to the last step in common and doing the others; in time proportional to
-    /// their number. `now`: the arrangement at the head. False, without a change, for a step that is no longer stored.
+    /// Moves to another position: undoes to the last common step and redoes from there, in time proportional to the
+    /// number of steps. `now`: the arrangement at the head. Returns false, without a change, for a step that is no
+    /// longer stored.
     bool go(HistoryPlace to, Arrangement& now) noexcept;
 
     int count() const noexcept { return first_ + static_cast<int>(steps_.size()); }
@@ -52,12 +54,12 @@ private:
     };
     Step changes(const Arrangement& from, const Arrangement& to) noexcept;
     void forget() noexcept;
-    /// State before or after the step of what it changed.
+    /// State before or after the step, of the changed fragments and groups only.
     template <class Side>
     void restore(const Step& step, Arrangement& now, Side side) const noexcept;
 
     std::vector<int> before_;  // indices within this object, see history.hpp
-    std::vector<int> way_;  // of `go`
+    std::vector<int> way_;  // scratch memory of `go`
     std::vector<Step> steps_;
     std::vector<Change<Arrangement::Place>> places_;
     std::vector<Change<Arrangement::Group>> groups_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The healthy side in the same fit as the faces: the outside of a fragment is pulled onto it, weakly, so that it decides
-// along directions in which the faces do not hold. The two sides of a body differ by a millimetre; faces do not.
+// Adds the healthy side to the fit of the faces: the outside of a fragment is pulled weakly onto it. So it determines
+// only directions that the faces leave free. The weight is low because the two sides of a body differ by a millimetre,
+// unlike two faces.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -13,22 +14,22 @@
 namespace tactus::fit {
 
 struct HealthyPullSettings {
-    const RegistrationTarget* side = nullptr;  ///< in the frame of the poses; outlives the matcher; null: none
-    double scale = 1e-3;  ///< m, of the robust kernel: what is farther away has little weight
+    const RegistrationTarget* side = nullptr;  ///< in the frame of the poses; must outlive the matcher; null: none
+    double scale = 1e-3;  ///< m, of the robust kernel: points farther away have little weight
     double weight = 0.05;  ///< of all points together, relative to the leading face
-    std::size_t most_points = 500;  ///< of a fragment
+    std::size_t most_points = 500;  ///< maximum per fragment
 };
 
 /// The outside of one fragment.
 class HealthyPull {
 public:
-    /// Chooses points without `fracture` paint, evenly from the list. Allocates here only.
+    /// Selects points without `fracture` paint, evenly from the list. Only this constructor allocates.
     HealthyPull(std::span<const contact::SurfacePoint> points, const HealthyPullSettings& settings);
 
-    /// Partners and weights at this pose of the fragment.
+    /// Updates partners and weights for this pose of the fragment.
     void look(const Pose& body) noexcept;
-    /// Adds energy, gradient and stiffness (both triangles) about `origin`, with those partners; `strength`: N/m of all
-    /// points.
+    /// Adds energy, gradient and stiffness (both triangles) about `origin`, with those partners; `strength`: sum over
+    /// all points, N/m.
     void add(contact::ContactSum& sum, const Pose& body, const Vec3& origin, double strength) const noexcept;
 
 private:

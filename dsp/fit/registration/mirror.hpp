@@ -9,7 +9,7 @@
 
 namespace tactus::fit {
 
-/// n·x = offset, n of unit length, m.
+/// The plane n·x = offset, n of unit length, m.
 struct MirrorPlane {
     Vec3 normal{1.0, 0.0, 0.0};
     double offset = 0.0;
@@ -18,19 +18,19 @@ struct MirrorPlane {
     Vec3 reflect_direction(const Vec3& d) const { return d - 2.0 * glm::dot(normal, d) * normal; }
 };
 
-/// Mirrored points with outward normals, then moved by `pose`.
+/// Returns mirrored points with outward normals, then moved by `pose`.
 std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane,
                                             const Pose& pose = {});
 
 struct MirrorFit {
     MirrorPlane plane;  ///< symmetry plane of the body, in the frame of both
-    Pose pose;  ///< residual motion after the mirror: asymmetry of the body and its pose in the scanner
+    Pose pose;  ///< residual motion after the reflection: asymmetry of the body and its pose in the scanner
     double rotation = 0.0, glide = 0.0;  ///< rad and m of that pose
     Registration registration;       ///< of the broken side's points to the mirrored healthy side
 };
 
-/// Mirrors the healthy side and registers it to the main part of the broken one: p ↦ pose(reflect(p)). The plane is
-/// estimated from the data: it minimises the residual motion. Throws Error without points.
+/// Mirrors the healthy side and registers it to the main part of the broken one: p ↦ pose(reflect(p)). The plane is the
+/// one that minimises the residual motion. Throws Error without points.
 MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<const contact::SurfacePoint> broken,
                      const RegistrationSettings& settings = {});
 

@@ -8,15 +8,15 @@
 
 namespace tactus::fit {
 
-/// Result of plain ICP: residuals are distances of points, not of surfaces.
+/// Result of plain ICP; the residuals are distances of points, not of surfaces.
 struct PointRegistration {
     Pose pose;
     double to_points = 0.0, to_surface = 0.0;  ///< m, medians over the moving points
     int steps = 0;
 };
 
-/// Point-to-point ICP with the nearest `share` of the pairs. Along smooth surfaces it converges too early: every point
-/// is near some other one before it is at its own. Throws Error without points. Deterministic.
+/// Point-to-point ICP with the nearest fraction `share` of the pairs. Along smooth surfaces it converges too early,
+/// because every point has some near neighbour before it reaches its own. Throws Error without points. Deterministic.
 PointRegistration register_points(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                                   const Pose& start, double share = 0.8);
 

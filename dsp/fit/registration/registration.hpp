@@ -15,29 +15,30 @@ namespace tactus::fit {
 struct RegistrationSettings {
     double widest = 20e-3, finest = 1e-3;  ///< m, scale of the robust kernel: points far beyond it have little weight
     int stages = 60;
-    std::size_t most_points = 4000;  ///< maximum number of points of the moving surface, evenly chosen from the list
+    std::size_t most_points = 4000;  ///< maximum number of moving points, selected evenly from the list
     bool by_parts = false;  ///< a large part may be displaced: finds the pose that most of the surface supports
 };
 
 struct Registration {
     Pose pose;  ///< of the moving surface in the fixed one's frame
     double median = 0.0, p90 = 0.0;  ///< m, distances of the moving points from the fixed surface
-    double before = 0.0;  ///< m, the median where it started
-    double covered = 0.0;  ///< share of the moving points within twice the finest scale
+    double before = 0.0;  ///< m, the median at the start
+    double covered = 0.0;  ///< fraction of the moving points within twice the finest scale
 };
 
-/// Target of a registration. Distances are to the tangent plane of the nearest point, because points are sparse.
+/// Target of a registration. Distances refer to the tangent plane of the nearest point, because points are sparse.
 class RegistrationTarget {
 public:
     /// Throws Error without points.
     explicit RegistrationTarget(std::span<const contact::SurfacePoint> points);
 
     std::size_t nearest(const Vec3& place) const noexcept { return tree_.nearest(place); }
-    /// The same, faster when the point `guess` is near.
+    /// The same, faster if the point `guess` is near.
     std::size_t nearest(const Vec3& place, std::size_t guess) const noexcept { return tree_.nearest(place, guess); }
     const Vec3& position(std::size_t n) const noexcept { return positions_[n]; }
     const Vec3& normal(std::size_t n) const noexcept { return normals_[n]; }
-    /// m, distance of a position from the surface: to the nearest point's plane, or to the point when it is far away.
+    /// Returns the distance in m of a position from the surface: to the nearest point's plane, or to the point if it is
+    /// far away.
     double distance(const Vec3& place) const noexcept;
 
 private:
@@ -45,16 +46,17 @@ private:
     geometry::PointTree tree_;
 };
 
-/// m, median distance of the points at `pose` from the fixed surface. Throws Error without points.
+/// Returns the median distance in m of the points at `pose` from the fixed surface. Throws Error without points.
 double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                        const Pose& pose);
 
 /// Robust point-to-plane ICP with a narrowing scale, from `start`. Uses only points whose normal is within 60 degrees
-/// of that of their target. Throws Error without points. Deterministic.
+/// of their target's normal. Throws Error without points. Deterministic.
 Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                               const Pose& start, const RegistrationSettings& settings = {});
 
-/// The best of registrations from 24 starts: centroids together, principal axes aligned in all ways, and between these.
+/// Returns the best of registrations from 24 starts: centroids aligned, with all alignments of the principal axes and
+/// rotations in between.
 Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
                                     std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings = {});
@@ -73,13 +75,14 @@ struct JudgedRegistration {
         Pose pose;
         double score = 0.0;  ///< m
     };
-    std::vector<Rival> rivals;  ///< other poses, best first; of an ambiguous result those that fit about as well
+    std::vector<Rival> rivals;  ///< other poses, best first; for an ambiguous result those of similar quality
 };
 
-/// Searches from 24 starts as register_from_anywhere, and from `start` if it is not null, and compares the best pose with
-/// the best of those that are more than 20 degrees or a quarter of the size away. The comparison is relative, because the
-/// surface of another person never fits exactly: a fit is at least a quarter better than any other pose. Of poses that fit
-/// equally well, the one from `start` is returned. Where one surface is a part of the other, only its distances count.
+/// Searches from 24 starts as register_from_anywhere, and from `start` if it is not null, and compares the best pose
+/// with the best of those more than 20 degrees or a quarter of the size away. The comparison is relative, because the
+/// surface of another person never matches exactly: a fit must be at least a quarter better than any other pose. Among
+/// poses of equal quality, the one from `start` is returned. If one surface is a part of the other, only its distances
+/// count.
 JudgedRegistration search_registration(std::span<const contact::SurfacePoint> moving,
                                        std::span<const contact::SurfacePoint> fixed_points,
                                        const RegistrationTarget& fixed, const Pose* start,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vibration exposure of the hand: the daily figures of ISO 5349-1 and of directive 2002/44/EC. Accelerations in m/s²,
+// Vibration exposure of the hand: the daily values of ISO 5349-1 and of directive 2002/44/EC. Accelerations in m/s²,
 // weighted by Wh, times in s.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace tactus::signal {
 
 inline constexpr double reference_day = 8.0 * 3600.0;  ///< s
 
-/// Values of directive 2002/44/EC: employers must act above the first, the second is never to be exceeded.
+/// Values of directive 2002/44/EC: employers must act above the first; the second must never be exceeded.
 struct ExposureLimits {
     double action, limit;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frequency weightings of human vibration (ISO 8041-1:2017, table 3), and what a weighted record amounts to: rms, peak,
+// Frequency weightings of human vibration (ISO 8041-1:2017, table 3), and the measures of a weighted record: rms, peak,
 // running rms and dose. Accelerations in m/s², frequencies in Hz, times in s.
 #pragma once
 
@@ -56,12 +56,13 @@ private:
     std::array<Biquad, 4> sections_;
 };
 
-/// Root mean square of a weighted record, in two ways that agree: the filter above, with zero state at the start of each
-/// piece, and the Fourier transform of the pieces with the definition. Both contain how the weighting rings on after the
-/// end. The transform takes at most 2^21 samples at a time. Peak, running rms and dose are those of the filter.
+/// Root mean square of a weighted record, by two methods that agree: the filter above, with zero state at the start of
+/// each piece, and the Fourier transform of the pieces with the definition. Both include the decay of the weighting
+/// after the end. The transform processes at most 2^21 samples at a time. Peak, running rms and dose come from the
+/// filter.
 class WeightedRecord {
 public:
-    /// `mean`: of the whole record; it is no vibration, and its onset would excite the weighting.
+    /// `mean`: of the whole record. It is removed, because it is no vibration and its onset would excite the weighting.
     WeightedRecord(const Weighting& weighting, double rate, double mean);
 
     void push(std::span<const double> samples);
@@ -70,8 +71,8 @@ public:
     double by_transform() const;
     double by_filter() const;
     double peak() const { return peak_; }
-    /// Maximum transient vibration value, MTVV: the greatest rms over 1 s (ISO 2631-1, formulas 2 and 4); of a shorter
-    /// piece over all of it.
+    /// Maximum transient vibration value, MTVV: the largest rms over 1 s (ISO 2631-1, formulas 2 and 4); for a shorter
+    /// piece, the rms of all of it.
     double max_running_rms() const { return max_running_; }
     /// Vibration dose value, VDV = (∫ a⁴ dt)^¼ in m/s^1.75 (ISO 2631-1, formula 5).
     double dose() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vibration exposure of the whole body: axes and the crest-factor rule of ISO 2631-1, comfort in trains of ISO 2631-4, and
-// the daily figures of directive 2002/44/EC. Accelerations in m/s², doses in m/s^1.75, times in s.
+// Vibration exposure of the whole body: axes and the crest-factor rule of ISO 2631-1, comfort in trains of ISO 2631-4,
+// and the daily values of directive 2002/44/EC. Accelerations in m/s², doses in m/s^1.75, times in s.
 #pragma once
 
 #include "dsp/signal/exposure/hand_arm.hpp"
@@ -27,20 +27,20 @@ constexpr double body_factor(BodyJudgement judgement, BodyAxis axis) {
     return judgement == BodyJudgement::health && axis != BodyAxis::z ? 1.4 : 1.0;
 }
 
-/// What one axis of a record amounts to, weighted, without the factor.
+/// Measures of one axis of a record, weighted, without the factor.
 struct BodyAxisVibration {
     double rms = 0.0;  ///< a_w
     double peak = 0.0;  ///< of the weighted acceleration
     double running = 0.0;  ///< MTVV
     double dose = 0.0;  ///< VDV of the measurement
-    double seconds = 0.0;  ///< of measurement
+    double seconds = 0.0;  ///< duration of the measurement
 
     double crest() const;
-    /// MTVV / a_w and VDV / (a_w T^¼): above 1.5 and 1.75 the dose or the MTVV are to be stated beside the rms.
+    /// MTVV / a_w and VDV / (a_w T^¼): above 1.5 or 1.75, the MTVV or the dose must be reported in addition to the rms.
     double running_ratio() const;
     double dose_ratio() const;
-    /// ISO 2631-1, 6.2.1 and 6.3.3: the rms alone underestimates this vibration, as its crest factor is above 9 or one
-    /// of the ratios above its limit.
+    /// ISO 2631-1, 6.2.1 and 6.3.3: true if the rms alone underestimates this vibration, because its crest factor is
+    /// above 9 or one of the ratios above its limit.
     bool has_shocks() const;
     /// VDV of an exposure of this duration (s): the dose grows with the fourth root of time.
     double dose_of(double duration) const;

@@ -20,7 +20,7 @@ public:
     /// Of the next sample, in [0, 1).
     double phase() const noexcept { return phase_; }
 
-    /// The next sample, within ±1 but for the corrections. Frequency in Hz; `width`: share of a pulse that is high.
+    /// Returns the next sample, within ±1 except for the corrections. Frequency in Hz; `width`: duty cycle of a pulse.
     double operator()(Shape shape, double frequency, double width) noexcept {
         const double step = std::clamp(frequency / rate_, 0.0, 0.25);
         const double p = phase_;
@@ -43,7 +43,7 @@ private:
         const double t = x - std::floor(x);
         return t < 1.0 ? t : 0.0;
     }
-    /// Residue of a step of height 2 at phase 0: what the band-limited step has less or more than the sharp one.
+    /// Residue of a step of height 2 at phase 0: the band-limited step minus the sharp one.
     static double blep(double p, double step) noexcept {
         if (p < step) {
             const double t = p / step - 1.0;

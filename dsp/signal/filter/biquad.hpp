@@ -27,7 +27,7 @@ inline constexpr double butterworth_q = std::numbers::sqrt2 / 2.0;
 namespace detail {
 struct Warped {
     double cosine, alpha;
-    /// Clamps frequencies to what the rate can carry, so that a live parameter cannot make the filter unstable.
+    /// Clamps frequencies to the range of the rate, so that a live parameter cannot make the filter unstable.
     Warped(double frequency, double rate, double q) noexcept {
         const double w = 2.0 * std::numbers::pi * std::clamp(frequency / rate, 1e-7, 0.4999);
         cosine = std::cos(w);

@@ -10,16 +10,17 @@
 
 namespace tactus::signal {
 
-/// No sample is infinite or NaN.
+/// Returns true if no sample is infinite or NaN.
 inline bool are_finite(const float* samples, int count) noexcept {
-    // The top bit of the sum is set where all bits of the exponent are.
+    // The top bit of the sum is set if all bits of an exponent are set.
     std::uint32_t any = 0;
     for (int i = 0; i < count; ++i) any |= (std::bit_cast<std::uint32_t>(samples[i]) & 0x7fff'ffffu) + 0x0080'0000u;
     return (any >> 31) == 0;
 }
 
-/// One section, y = b0 x + b1 x' + b2 x'' − a1 y' − a2 y'', summed so that y' comes in last: a sample waits for the one
-/// before through a product and a difference only. New coefficients may be set at any time; the state stays.
+/// One section, y = b0 x + b1 x' + b2 x'' − a1 y' − a2 y'', summed so that y' comes last: the dependency between
+/// consecutive samples is then only a product and a difference. New coefficients may be set at any time; the state
+/// stays.
 struct BlockBiquad {
     BiquadCoefficients coefficients;
     double ahead = 0.0;  ///< b1 x' + b2 x'' − a2 y'' for the next sample
@@ -34,8 +35,8 @@ struct BlockBiquad {
         return last = y;
     }
 
-    /// The bits of to_sample(…(finite_or_zero(in[i]))), but looks at the whole block for what is not finite. The samples
-    /// of input and output must not overlap.
+    /// Gives the bits of to_sample(…(finite_or_zero(in[i]))), but tests the whole block for values that are not finite.
+    /// The samples of input and output must not overlap.
     void run(const float* in, float* out, int count) noexcept {
         if (are_finite(in, count)) {
             BlockBiquad section = *this;
@@ -51,7 +52,8 @@ struct BlockBiquad {
     }
 
 private:
-    /// A band-pass: b1 is 0 and b2 is −b0. The same bits in fewer operations, with the sums ahead in the other sign.
+    /// For a band-pass: b1 is 0 and b2 is −b0. The same bits in fewer operations, with the opposite sign of `ahead` and
+    /// `further`.
     void run_band(const float* in, float* out, int count) noexcept {
         const double b0 = coefficients.b0, a1 = coefficients.a1, a2 = coefficients.a2;
         double less = -ahead, less_further = -further, y = last;

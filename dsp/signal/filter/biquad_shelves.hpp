@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Biquads with a gain of their own, and the all-pass: R. Bristow-Johnson, "Cookbook formulae for audio equalizer biquad
+// Biquads with a gain parameter, and the all-pass: R. Bristow-Johnson, "Cookbook formulae for audio equalizer biquad
 // filter coefficients" (W3C note 2021).
 #pragma once
 
@@ -41,7 +41,7 @@ inline BiquadCoefficients high_shelf(double frequency, double rate, double q, do
                               2.0 * (a - 1.0 - (a + 1.0) * c), a + 1.0 - (a - 1.0) * c - s);
 }
 
-/// Gain 1 everywhere; the phase turns by 180° at `frequency`.
+/// Gain 1 everywhere; the phase shift is 180° at `frequency`.
 inline BiquadCoefficients allpass(double frequency, double rate, double q) noexcept {
     const detail::Warped w(frequency, rate, q);
     return detail::normalised(1.0 - w.alpha, -2.0 * w.cosine, 1.0 + w.alpha, 1.0 + w.alpha, -2.0 * w.cosine,

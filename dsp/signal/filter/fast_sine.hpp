@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sine waves whose loops take several samples at once.
+// Sine waves with vectorisable loops.
 #pragma once
 
 #include <algorithm>

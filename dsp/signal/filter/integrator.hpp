@@ -12,14 +12,15 @@ namespace tactus::signal {
 
 /// One integration: s/(s² + √2 ω0 s + ω0²), which is 1/s with a Butterworth high-pass of second order, so that no offset
 /// accumulates. The integral over a sample is that of the band-limited interpolation (33 taps): gain within 0.05 % of
-/// 1/(2π f) from 20 times the high-pass to 0.45 times the rate, where the trapezium rule is 70 % low. 16 samples late.
+/// 1/(2π f) from 20 times the high-pass to 0.45 times the rate, where the trapezium rule is 70 % too low. Latency: 16
+/// samples.
 class Integrator {
 public:
     /// Frequencies in Hz. Throws Error unless 0 < high_pass < rate / 20.
     Integrator(double high_pass, double rate);
     double operator()(double x) noexcept;
     std::complex<double> response(double frequency) const;
-    /// Forgets the past.
+    /// Resets the state to 0.
     void reset() noexcept;
 
 private:

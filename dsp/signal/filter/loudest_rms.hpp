@@ -20,7 +20,7 @@ public:
         squares_ = 0.0;
         held_ = 0;
     }
-    /// Of whole sections; 0 before the first.
+    /// Over whole sections; 0 before the first.
     double value() const noexcept { return std::sqrt(most_ / static_cast<double>(section_)); }
 
 private:

@@ -36,14 +36,14 @@ struct FilteredBand {
     double deviation_db = 0.0;  ///< standard deviation of the level, of noise
 };
 
-/// Filters a record into bands of one octave or a third, and averages their squares over all of it. Bands begin at 1 Hz,
-/// or where bandwidth times duration is at least 4, and end at `OctaveFilter::highest_edge`.
+/// Filters a record into bands of one octave or a third, and averages the squares over the whole record. Bands begin at
+/// 1 Hz, or where bandwidth times duration is at least 4, and end at `OctaveFilter::highest_edge`.
 class OctaveBank {
 public:
     /// `per_octave`: 1 or 3. Allocates. Throws Error for a rate that is not above 0.
     OctaveBank(int per_octave, double rate, std::size_t frames);
     void push(std::span<const double> samples);
-    /// Call before a gap: no filter rings on over it.
+    /// Call before a gap, so that no filter state carries over.
     void gap();
     std::vector<FilteredBand> bands() const;
 

@@ -9,12 +9,12 @@
 
 namespace tactus::signal {
 
-/// tan(π f / rate), for frequencies that the rate can carry.
+/// Returns tan(π f / rate), with f clamped to the range of the rate.
 inline double warped_gain(double frequency, double rate) noexcept {
     return std::tan(std::numbers::pi * std::clamp(frequency / rate, 1e-9, 0.4999));
 }
 
-/// First-order low-pass; the high-pass is what it leaves.
+/// First-order low-pass; the high-pass is the remainder.
 struct TrapezoidalOnePole {
     double g = 1.0;  ///< of `warped_gain`
     double state = 0.0;

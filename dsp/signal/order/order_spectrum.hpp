@@ -16,7 +16,7 @@ struct OrderLevel {
     double order = 0.0;
     double amplitude = 0.0;  ///< peak, in the record's unit
     double snr_db = 0.0;  ///< over the median between the orders
-    bool above_nyquist = false;  ///< at the highest rate it is above half the sample rate: it has no level
+    bool above_nyquist = false;  ///< at the highest rate it is above half the sample rate: no level
 };
 
 struct OrderSpectrum {
@@ -40,7 +40,7 @@ public:
     /// Call when all samples were pushed.
     OrderSpectrum spectrum();
 
-    /// The values at even angles that the last call made: `per_turn` of each turn, from `first_turn` on.
+    /// The values at even angles from the last call: `per_turn` per turn, starting at `first_turn`.
     std::span<const double> turned() const { return turned_; }
     std::size_t per_turn() const { return per_turn_; }
     std::size_t turns() const { return turns_; }

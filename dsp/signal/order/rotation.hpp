@@ -52,7 +52,8 @@ struct Ridge {
     Rotation rotation(double seconds) const;
 };
 
-/// `track_ridge` for a record that comes in pieces: paths are chosen minute by minute, each from where the last may end.
+/// `track_ridge` for a record that comes in pieces: the path is chosen minute by minute, each continuing the previous
+/// one.
 class RidgeStream {
 public:
     /// Throws Error for settings that are invalid.

@@ -9,15 +9,15 @@
 namespace tactus::signal {
 
 /// Reflection coefficients k₁ … kₚ by Burg's method (Burg 1975; Kay, Modern Spectral Estimation, 1988, 7.5), each below
-/// 1 in size, so the filter is stable. Throws Error when the record is not longer than twice the order. A silent record
-/// gives zeros. Allocates.
+/// 1 in magnitude, so that the filter is stable. Throws Error when the record is not longer than twice the order. A
+/// silent record gives zeros. Allocates.
 std::vector<double> burg(std::span<const double> record, std::size_t order);
 
-/// a₁ … aₚ of reflection coefficients (Levinson's recursion). `predictor` has their length. Does not allocate.
+/// Returns a₁ … aₚ for reflection coefficients (Levinson's recursion). `predictor` has their length. Does not allocate.
 void predictor_of(std::span<const double> reflection, std::span<double> predictor) noexcept;
 
-/// Reflection coefficients of a₁ … aₚ (the recursion backwards), in place. False when the filter is not stable; the
-/// values are then not usable. Does not allocate for orders up to 64, the highest.
+/// Converts a₁ … aₚ to reflection coefficients (the recursion backwards), in place. Returns false if the filter is not
+/// stable; the values are then invalid. Does not allocate for orders up to 64, the maximum.
 bool reflection_of(std::span<double> predictor) noexcept;
 
 /// Mean square of the filter's output for white noise of mean square 1: ∏ 1 / (1 − k²).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Line spectral frequencies of a predictor (Itakura 1975). Means of the line frequencies of stable filters belong to
-// a stable filter again; means of predictors need not.
+// Line spectral frequencies of a predictor (Itakura 1975). The mean of the line frequencies of stable filters gives a
+// stable filter; the mean of predictors may not.
 #pragma once
 
 #include <span>

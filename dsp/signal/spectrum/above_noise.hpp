@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two vibrations have in common above their noise: without it, a comparison would compare noise floors.
+// The components common to two vibrations above their noise; without this restriction, a comparison would compare noise
+// floors.
 #pragma once
 
 #include "dsp/signal/spectrum/bands.hpp"
@@ -9,9 +10,9 @@
 
 namespace tactus::signal {
 
-/// Third-octave bands between `lowest` and `highest` Hz whose density stands at least 6 dB above the mean level of
-/// the bands one octave below and above (the last band there is, near a limit). White noise has none, and neither has
-/// noise whose density follows a power of the frequency.
+/// Third-octave bands between `lowest` and `highest` Hz whose density is at least 6 dB above the mean level of the
+/// bands one octave below and above (near a limit, of the last band). White noise has none, and neither has noise whose
+/// density follows a power of the frequency.
 std::vector<Band> bands_above_noise(const Spectrum& density, double lowest, double highest);
 
 struct AboveNoise {

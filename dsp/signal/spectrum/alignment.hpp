@@ -8,7 +8,7 @@
 namespace tactus::signal {
 
 struct Alignment {
-    bool significant = false;  ///< the takes belong together; the other members are valid only then
+    bool significant = false;  ///< the takes are simultaneous; the other members are valid only then
     double delay = 0.0;         ///< s by which the output lags the reference
     double correlation = 0.0;  ///< of the waveforms at that delay, −1 to 1; negative: opposite polarity
     double significance = 0.0;  ///< height of the whitened correlation's peak in standard deviations of chance
@@ -23,9 +23,9 @@ struct Alignment {
 Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
                       double highest, double longest);
 
-/// Index in `loop`, which repeats, from which on it is most like `part`, which is not longer: the peak of the circular
-/// correlation in the band from `lowest` to `highest` Hz, with half the whitening of `align_takes`, so that neither one
-/// line nor noise decides. Both at `rate` Hz. Allocates.
+/// Returns the index in the periodic `loop` at which it is most similar to `part`, which must not be longer: the peak
+/// of the circular correlation in the band from `lowest` to `highest` Hz. It uses half the whitening of `align_takes`,
+/// so that neither a single line nor noise dominates. Both at `rate` Hz. Allocates.
 std::size_t stretch_of_loop(std::span<const double> loop, std::span<const double> part, double rate, double lowest,
                             double highest);
 

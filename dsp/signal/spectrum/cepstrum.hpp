@@ -16,8 +16,8 @@ struct Cepstrum {
 };
 
 /// Real cepstrum, the inverse Fourier transform of the natural logarithm of a power spectrum (Bogert, Healy and Tukey
-/// 1963). Taken of an averaged spectrum, so that noise does not hide weak families. Bins below 1e-20 of the strongest
-/// count as that. Allocates.
+/// 1963). Use an averaged spectrum, so that noise does not hide weak families. Bins below 1e-20 of the strongest count
+/// as that. Allocates.
 Cepstrum real_cepstrum(const Spectrum& spectrum);
 
 struct CepstralPeak {

@@ -26,30 +26,30 @@ struct Take {
     double rate = 48000.0;    ///< Hz
     std::size_t frames = 0;   ///< samples in all
     std::function<Blocks()> open;
-    double usable = 0.45 * rate;  ///< Hz: frequency up to which it can be trusted
+    double usable = 0.45 * rate;  ///< Hz: upper limit of the valid frequency range
 
     Take(double sample_rate, std::size_t count, std::function<Blocks()> opener)
         : rate(sample_rate), frames(count), open(std::move(opener)) {}
-    /// From samples in memory, which must outlive it.
+    /// Makes a take from samples in memory, which must outlive it.
     Take(std::span<const float> samples, double sample_rate);
     Take(std::span<const double> samples, double sample_rate);
 };
 
 struct ComparisonOptions {
     ThresholdUnit touch = ThresholdUnit::displacement;
-    /// s, greatest delay or advance of the output; as far as at least 1 s and a quarter overlap.
+    /// Largest delay or advance of the output, s; limited to an overlap of at least 1 s and a quarter.
     double longest_delay = std::numeric_limits<double>::infinity();
     /// The other axes of both takes, sampled together with them: spectra are then sums of the powers of all axes.
     std::vector<Take> reference_axes{}, output_axes{};
 };
 
-/// The band of scores, Hz: from `least_frequency` to what both takes can be trusted in, at most to `most_frequency`.
-/// Below `narrowest_band` there is too little left to compare.
+/// The band of scores, Hz: from `least_frequency` to the upper limit of both takes, at most `most_frequency`. A band
+/// that ends below `narrowest_band` is too narrow to compare.
 inline constexpr double least_frequency = 40.0, most_frequency = 1000.0, touch_end = 500.0, narrowest_band = 80.0;
 
 struct Comparison {
     Alignment alignment;
-    double lowest = least_frequency, highest = most_frequency;  ///< Hz: the band that both takes can be trusted in
+    double lowest = least_frequency, highest = most_frequency;  ///< Hz: the valid band of both takes
     /// Hz: end of the band of `lsd_db` and `cosine_500`.
     double touched() const { return std::min(touch_end, highest); }
     double gain_db = 0.0;  ///< gain that gives the output the reference's power in the band
@@ -64,7 +64,7 @@ struct Comparison {
     std::optional<double> st_sim, spqi, signal_to_noise_db;  ///< for aligned takes only, trusted up to 1 kHz
     std::optional<double> coherence_mean;                    ///< for aligned takes only
     double touch_cosine = 0.0;  ///< cosine_1000 with perceptual weights
-    double touch_gap_db = 0.0;  ///< how much stronger the output feels at equal power
+    double touch_gap_db = 0.0;  ///< by how much the output is perceived as stronger at equal power
     /// Of aligned takes, dB: rms difference of their levels over time; see `course_difference_db`.
     std::optional<double> course_db;
     /// Of separate takes of at least 1 s: their statistics over time.
@@ -82,9 +82,9 @@ struct Comparison {
 };
 
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.
-/// Their loudest minute decides whether they belong together. Takes that do not are compared by their spectra only;
-/// when both are one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when a take
-/// is too short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
+/// Their loudest minute decides whether they belong together. Other takes are compared by their spectra only; if both
+/// are of one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when a take is too
+/// short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});
 
 }  // namespace tactus::signal

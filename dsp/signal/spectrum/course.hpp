@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The course of a vibration over time, and its statistics: mean spectra are equal for an impact and a noise with random phases.
+// The level of a vibration over time, and its statistics, which distinguish an impact from a noise with random phases
+// and an equal mean spectrum.
 #pragma once
 
 #include "dsp/signal/filter/biquad.hpp"
@@ -45,11 +46,12 @@ struct CourseStatistics {
 };
 
 struct StatisticsDifference {
-    double deviation = 0.0;  ///< the worst difference in units of what it may be
+    double deviation = 0.0;  ///< the largest difference relative to its tolerance
     std::string worst;       ///< name of that statistic
 };
 
-/// Difference of two separate takes. A statistic may differ by a tolerance plus twice the distance of the halves of the steadier take. None for a take below 1 s.
+/// Difference of two separate takes. Tolerance of a statistic: a constant plus twice the difference between the halves
+/// of the steadier take. Empty for a take below 1 s.
 std::optional<StatisticsDifference> statistics_difference(std::span<const Course::Frame> reference,
                                                           std::span<const Course::Frame> output);
 

@@ -15,14 +15,15 @@
 
 namespace tactus::signal {
 
-/// Hz: the range that is searched unless a caller knows better.
+/// Default search range, Hz.
 inline constexpr double lowest_fundamental = 5.0, highest_fundamental = 1000.0;
 
 struct FundamentalEstimate {
     double frequency = 0.0;  ///< Hz; 0: not periodic
-    /// 0 … 1. Of a steady rate, the probability that it is right; of a path, the mean score of its sections.
+    /// 0 … 1. For a steady rate, the probability that it is correct; for a path, the mean score of its sections.
     double confidence = 0.0;
-    /// Wrong for at most about 1 % of machines. A rate whose half the record does not resolve is never certain.
+    /// True only if the error rate is at most about 1 % of machines. Never true if the record does not resolve half of
+    /// the rate.
     bool certain = false;
     bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
     double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path
@@ -32,8 +33,8 @@ struct FundamentalEstimate {
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
     static constexpr double sure = 0.97;  ///< min confidence of a certain steady rate
-    /// Min confidence of a certain path of at least four sections; and of a path that moves by more than 10 %, and whose
-    /// straightened record has the same rate.
+    /// Min confidence of a certain path of at least four sections; and of a path that varies by more than 10 % and
+    /// whose straightened record has the same rate.
     static constexpr double path = 0.32, wide_path = 0.25;
     static constexpr double heard = 0.16;  ///< below it, there is no fundamental
     bool is_certain() const { return frequency > 0.0 && certain; }

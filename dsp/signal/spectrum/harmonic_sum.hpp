@@ -25,7 +25,7 @@ std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, 
 /// Confidence, 0 … 1, in the best of the sums of one spectrum: its score, halved when a rival is as good.
 double confidence_in(std::span<const HarmonicSum> sums) noexcept;
 
-/// The same sums in memory of its own, for a thread with a deadline.
+/// The same sums with preallocated memory, for a thread with a deadline.
 class HarmonicSummer {
 public:
     /// For spectra of at most `bins` bins. Allocates.

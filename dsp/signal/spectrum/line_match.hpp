@@ -14,7 +14,7 @@ double level_db(const SpectralLine& line);
 /// Level of its root mean square, 3.01 dB less.
 double rms_db(const SpectralLine& line);
 
-/// Greatest deviation of the orders' level differences from their mean, dB: orders of the two fundamentals up to
+/// Largest deviation of the orders' level differences from their mean, dB: orders of the two fundamentals up to
 /// `highest` that are 6 dB above their neighbourhood in the reference and within 40 dB of its strongest. None with
 /// fewer than 2 of them.
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,

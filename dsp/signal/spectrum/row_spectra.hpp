@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spectra of a record piece by piece: the rows of a waterfall.
+// Spectra of consecutive sections of a record: the rows of a waterfall plot.
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::signal {
 
-/// Rows half over each other, a segment each; of a long record, rows of several segments that follow each other, so that
+/// Each row is one segment, overlapping by half. For a long record, rows are averages of consecutive segments, so that
 /// there are never more than `most_rows`.
 class RowSpectra {
 public:

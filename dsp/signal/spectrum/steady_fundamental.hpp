@@ -14,22 +14,22 @@ namespace tactus::signal {
 struct SteadyFundamental {
     double frequency = 0.0;  ///< Hz; 0: no line
     double deviation = 0.0;  ///< Hz, standard deviation: the Cramér–Rao bound of the orders in the measured noise
-    double periods = 0.0;  ///< of the record, or of the segment where the lines are smeared beyond it
-    std::size_t lines = 0;  ///< orders that are present
+    double periods = 0.0;  ///< in the record, or in the segment beyond which the lines are smeared
+    std::size_t lines = 0;  ///< number of orders found
     int highest_order = 0;
-    double score = 0.0;  ///< log-likelihood that the lines are orders by more than chance
+    double score = 0.0;  ///< log-likelihood that the lines are orders, relative to chance
     double rival = 0.0;  ///< Hz: the best other rate; 0: none
     double rival_score = 0.0;
     double explained = 0.0;  ///< fraction of the power of all lines
     double between = 0.0;  ///< log-likelihood ratio of the strongest bin at an order of a half, third, … of the rate
-    double foreign = 0.0;  ///< log-likelihood ratio to noise of the strongest other line that is no hum
-    double margin_db = 0.0;  ///< level of the strongest order above the weakest line that would be found beside it
+    double foreign = 0.0;  ///< log-likelihood ratio to noise of the strongest other line that is not hum
+    double margin_db = 0.0;  ///< level of the strongest order above the weakest detectable line
     double persistence = 0.0;  ///< 1: the strongest order is equally strong throughout; 1/8: in one eighth only
     double lowest = 0.0;  ///< Hz: lower rates are not resolved
-    /// Nothing excludes that the rate is an order of the mains, or that it only joins hum to the orders of a machine.
+    /// The rate may be an order of the mains, or may only combine hum with the orders of a machine.
     bool may_be_hum = false;
     bool is_sharp = false;  ///< the lines are as narrow as the longest segment resolves
-    /// Probability that the rate is right, and no multiple or fraction of it; see `FundamentalEstimate`.
+    /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`.
     double confidence = 0.0;
 };
 
@@ -43,9 +43,9 @@ public:
     /// Marks a gap: no segment spans it.
     void gap();
     SteadyFundamental estimate() const;
-    /// The lines of the kept samples on a time axis on which a rate that moves along `course` stands still at its mean:
-    /// `course` holds the rate (Hz, > 0) at the middle of each `interval` s; linear in between. Order tracking: a line
-    /// test after it separates a rate from its half as well as for a steady machine. Allocates.
+    /// Estimates from the lines of the kept samples on a time axis on which a rate that varies along `course` is
+    /// constant at its mean: `course` holds the rate (Hz, > 0) at the middle of each `interval` s; linear in between.
+    /// Order tracking: a line test after it separates a rate from its half as well as for a steady machine. Allocates.
     SteadyFundamental estimate_along(std::span<const double> course, double interval) const;
 
 private:

@@ -39,7 +39,7 @@ struct VibrationReport {
     std::vector<FilteredBand> filtered;  ///< by octave filters, on request
     std::vector<SpectralLine> peaks;  ///< the strongest 20, by frequency
     std::vector<HumLine> hum;
-    std::vector<Band> bands;  ///< of all samples alike: their sum is the mean square, but for what is outside of them
+    std::vector<Band> bands;  ///< of all samples; their sum is the mean square within them
     std::optional<Spectrum> envelope_spectrum;  ///< density, Hann, mean, of the envelope
     std::vector<SpectralLine> envelope;  ///< lines of the envelope's spectrum, the strongest 20
     std::optional<Spectrogram> spectrogram;
@@ -50,7 +50,7 @@ public:
     /// `frames`: length of the record. Throws Error when the settings are invalid.
     VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames);
 
-    /// Of the whole record, before the first `push`; bands and moments are of what is left without it.
+    /// Sets the mean of the whole record, before the first `push`; bands and moments exclude it.
     void set_mean(double mean) { mean_ = mean; }
     void push(std::span<const double> samples);
     /// Marks a gap: no segment spans it.
