@@ -11,7 +11,7 @@ namespace tactus::bone {
 /// Density in kg/m³ from the signed distance: cortex to 2 mm depth, then falling smoothly to the core at 3 mm
 /// (smoothstep); 0 outside. This is an assumption, not a measurement.
 volume::Grid assumed_density(const volume::Grid& distance);
-/// The same in words.
+/// The same law as text.
 std::string assumed_density_law();
 
 }  // namespace tactus::bone

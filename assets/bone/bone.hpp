@@ -14,12 +14,12 @@
 
 namespace tactus::bone {
 
-/// A bone ready for contact, carving and pictures. Both grids have the same size, origin and spacing.
+/// A bone ready for contact, carving and images. Both grids have the same size, origin and spacing.
 struct Bone {
     volume::Grid distance;  ///< signed distance to the surface, m, negative inside; frame LPS, metres
     volume::Grid density;  ///< mass density, kg/m³, ≥ 0
     std::string name;  ///< shown to users, e.g. "mandible"
-    Vec3 colour{0.90, 0.86, 0.76};  ///< sRGB, 0 to 1; default colour in pictures
+    Vec3 colour{0.90, 0.86, 0.76};  ///< sRGB, 0 to 1; default colour in images
 
     /// Provenance as text: source, hash, options, calibration, frame ("LPS"), hu ("calibrated", "masked", ...).
     std::map<std::string, std::string> provenance;
@@ -27,31 +27,31 @@ struct Bone {
     /// Surface points for contact, with outward normals, areas and labels, in the frame of the grids. May be empty.
     std::vector<contact::SurfacePoint> points;
 
-    /// Where its label touched others in the scan, in the frame of the grids. See surface_points.hpp.
+    /// The border with other labels in the scan, in the frame of the grids. See surface_points.hpp.
     contact::ScannedBorder border;
 };
 
 /// Writes one OpenVDB file. A single bone's float grids are called "distance" and "density", those of several
 /// "NAME.distance" and "NAME.density"; colour, provenance, surface points and scanned border are metadata of the distance
 /// grid. All bones of a file share one frame; their grids may differ. The same bones give the same bytes. A checksum
-/// follows the OpenVDB data; other programs ignore it. The file is written atomically. Throws Error when a bone's grids do
-/// not match, when two bones have the same name, when there is none, or when the file cannot be written.
+/// follows the OpenVDB data; other programs ignore it. The file is written atomically. Throws Error if a bone's grids
+/// do not match, if two bones have the same name, if there are no bones, or if the file cannot be written.
 void save_bones(std::span<const Bone> bones, const std::filesystem::path& path);
 void save_bone(const Bone& bone, const std::filesystem::path& path);
 
 /// Reads a file of save_bones: the same bits in the same order. Grids of other types are ignored. Throws Error for a
-/// file that is damaged, was written by another program or has a later format, before it allocates the memory that the
-/// header claims.
+/// file that is damaged, was written by another program or has a later format, before it allocates the memory stated in
+/// the header.
 std::vector<Bone> load_bones(const std::filesystem::path& path);
 
-/// The only bone of a file, or the bone that "FILE.vdb#NAME" names. Throws Error as load_bones does, and for a name
-/// that is missing or not in the file; it then lists the names.
+/// Loads the only bone of a file, or the bone that "FILE.vdb#NAME" names. Throws Error as load_bones does; for a
+/// missing or unknown name the message lists the names.
 Bone load_bone(const std::filesystem::path& path);
 
 /// The path without "#NAME", unless a file of the full name exists.
 std::filesystem::path file_of_bone(const std::filesystem::path& path);
 
-/// Whether two paths, each perhaps with "#NAME", name the same bone of the same file.
+/// Returns whether two paths, either of which may have a "#NAME", name the same bone of the same file.
 bool name_one_bone(const std::filesystem::path& one, const std::filesystem::path& other);
 
 }  // namespace tactus::bone

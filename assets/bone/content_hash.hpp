@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bone it is, whatever its file is called.
+// Identity of a bone, independent of its file name.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -8,7 +8,8 @@
 
 namespace tactus::bone {
 
-/// 16 hexadecimal digits of grid, distance and density; name, colour and provenance do not count.
+/// Returns 16 hexadecimal digits computed from grid, distance and density; name, colour and provenance are not
+/// included.
 std::string content_hash(const Bone& bone);
 
 }  // namespace tactus::bone

@@ -8,7 +8,7 @@
 
 namespace tactus::bone {
 
-/// The quantity that a volume holds.
+/// The quantity in a volume.
 enum class BoneQuantity {
     hu,  ///< HU from density, the inverse of the import, so that the import's threshold gives the same surface
     density,  ///< kg/m³ inside of the surface, 0 outside
@@ -16,7 +16,7 @@ enum class BoneQuantity {
 };
 
 /// One volume of all bones on a common lattice: at each sample the highest HU or density, or the smallest distance. Air
-/// is -1000 HU; outside all grids the distance is 1000 mm. Throws Error when the grids of the bones do not share one
+/// is -1000 HU; outside all grids the distance is 1000 mm. Throws Error if the grids of the bones have no common
 /// lattice.
 volume::Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity);
 

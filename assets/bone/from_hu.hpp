@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a CT volume in HU to a bone.
+// Converts a CT volume in HU to a bone.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -14,17 +14,19 @@
 
 namespace tactus::bone {
 
-/// How the bone surface is extracted from CT values.
+/// Settings of the surface extraction from CT values.
 struct BoneSurface {
     float threshold = 300.0f;  ///< HU; samples at or above it are bone
     std::size_t keep = 1;      ///< number of components to keep, largest first; 0 keeps all
     bool fill = true;          ///< closed hollows and marrow (marrow_of) count as bone; they keep their low density
 };
 
-/// Above it lies no bone (enamel reaches 2900 to 3000 kg/m³): fillings, implants, or artefacts beside them. kg/m³.
+/// Upper limit of bone density, kg/m³ (enamel reaches 2900 to 3000): higher values are fillings, implants, or artefacts
+/// beside them.
 inline constexpr double max_bone_density = 3000.0;
 
-/// Density in kg/m³ from HU by the default linear relation, at least 0. No density phantom was in the scan.
+/// Density in kg/m³ from HU by the default linear relation, at least 0. It assumes a typical scanner, because the scan
+/// contains no density phantom.
 float density_of_hu(float hu);
 /// The inverse of density_of_hu for densities above 0, HU.
 float hu_of_density(float density);
@@ -53,7 +55,7 @@ struct SparseHuBone {
     SparseBone bone;
     std::map<std::string, std::string> provenance;
     std::size_t components = 0;  ///< found above the threshold, before selection
-    std::size_t voxels_above = 0, voxels_kept = 0;  ///< that reach the threshold: all, and of the kept components
+    std::size_t voxels_above = 0, voxels_kept = 0;  ///< samples at or above the threshold: all, and in kept components
     std::size_t voxels_hollow = 0, voxels_marrow = 0;  ///< that count as bone because bone encloses them: wholly; with leaks
 };
 
@@ -61,7 +63,7 @@ struct SparseHuBone {
 /// samples. Outside the volume it adds four layers of air: a bone cut by the border of the scan ends in a flat face
 /// half a voxel outside the last samples. Grey values are smoothed to about 0.3 mm; coarser voxels are not smoothed,
 /// because any scanner blurs more than that. Distances outside the bone are clamped to 5 mm or six voxels. Throws Error
-/// when no sample reaches the threshold. Memory: about 25 bytes per sample of the layers in process, 20 per run of
+/// if no sample reaches the threshold. Memory: about 25 bytes per sample of the layers in process, 20 per run of
 /// neighbouring samples above the threshold, 24 per cell that the surface crosses, and the blocks of the result.
 /// Samples that are not bone need no memory beyond that.
 SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface, const RunJobs& run = run_in_turn,

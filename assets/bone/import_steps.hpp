@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps shared by the imports of CTs, meshes and label maps.
+// Steps common to the imports of CTs, meshes and label maps.
 #pragma once
 
 #include "assets/bone/import.hpp"
@@ -35,38 +35,37 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
 /// Throws Error for options that are invalid for every file.
 void check_options(const ImportOptions& options);
 
-/// Throws Error when `out` is one of the sources or cannot be written. Called first: an import takes minutes, and must
-/// never overwrite a patient's file.
+/// Throws Error if `out` is one of the sources or cannot be written. Called first, because an import takes minutes and
+/// must never overwrite a patient's file.
 void check_output(const ImportOptions& options, const std::filesystem::path& out);
 
-/// Number of components to keep for "largest", "all" or a number; 0 for all; `otherwise` for "". Throws Error for anything
-/// else.
+/// Returns the number of components to keep for "largest", "all" or a number; 0 for all; `otherwise` for "". Throws
+/// Error for other text.
 std::size_t parse_component(const std::string& text, std::size_t otherwise = 1);
 
 /// Throws Error for more voxels than `most`.
 void check_layout(const volume::Grid& layout, double most);
 
-/// Opens a CT or label map. Throws Error when its unit of length must be asked for, and for options of meshes.
+/// Opens a CT or label map. Throws Error if its unit of length must be given, and for options of meshes.
 std::unique_ptr<volume::SliceReader> open_scan(const std::filesystem::path& path, const ImportOptions& options,
                                                const std::string& series);
 
-/// Applies the linear calibration to scanner values. Throws Error when the values are not HU and no calibration is
-/// given.
+/// Applies the linear calibration to scanner values. Throws Error if the values are not HU and no calibration is given.
 void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options,
                 const std::filesystem::path& file);
 
-/// Fills in frame, size, volume, area and densities. Throws Error for a bone that has no sample inside.
+/// Sets frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
 void measure(const Bone& bone, ImportSummary& summary);
 void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run);
 
-/// Samples the surface points when the options ask for them.
+/// Samples the surface points if the options request them.
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary);
 
 /// Sets the provenance of a bone.
 void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found,
                     const std::string& source_hash);
 
-/// Hash of a file, or of all files of a folder in the order of their names; 16 hexadecimal digits.
+/// Returns a hash of a file, or of all files of a folder in the order of their names; 16 hexadecimal digits.
 std::string hash_of_source(const std::filesystem::path& path);
 
 }  // namespace tactus::bone

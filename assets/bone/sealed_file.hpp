@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bone file on disk: the data of OpenVDB, followed by a mark and a checksum (the seal).
+// A bone file on disk: the data of OpenVDB, followed by a magic number and a checksum (the seal).
 #pragma once
 
 #include "assets/file/part_lock.hpp"
@@ -15,8 +15,8 @@
 namespace tactus::bone {
 
 /// A stream buffer for OpenVDB that writes to `path` + ".part" in blocks, so that a large bone is not copied in memory.
-/// It replaces the identifier (36 characters) and appends the seal. seal() gives the file its name; without seal() the
-/// part is removed. Throws Error when it cannot be written.
+/// It replaces the identifier (36 characters) and appends the seal. seal() renames the file to `path`; without seal()
+/// the part is removed. Throws Error when it cannot be written.
 class SealedFile final : public std::streambuf {
 public:
     SealedFile(const std::filesystem::path& path, std::string identifier);
@@ -45,11 +45,11 @@ private:
     bool sealed_ = false;
 };
 
-/// The same as adding them at once; in between it looks whether they are still wanted.
+/// Adds the bytes in chunks and checks for cancellation between chunks.
 void add_in_pieces(Hash& hash, std::string_view bytes);
 
-/// The content before the seal. OpenVDB trusts the sizes that it reads, so it only gets verified bytes. Throws Error
-/// when the seal is missing or the checksum differs.
+/// Returns the content before the seal. OpenVDB trusts the sizes in a file, so it must only receive verified bytes.
+/// Throws Error if the seal is missing or the checksum differs.
 std::string read_sealed(const std::filesystem::path& path);
 
 }  // namespace tactus::bone

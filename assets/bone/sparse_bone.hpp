@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sparse bone: only blocks near the bone are stored. Import produces it, and bone files hold it.
+// A sparse bone: only blocks near the bone are stored. It is the result of an import and the content of bone files.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -23,7 +23,7 @@ struct SparseBone {
     };
 
     volume::Grid layout;  ///< size, origin and spacing; no values
-    float outside = 0.0f;  ///< m: distance where no block is stored, and the greatest distance. The density there is 0
+    float outside = 0.0f;  ///< m: distance where no block is stored, and the largest distance. The density there is 0
     std::vector<std::unique_ptr<Block>> blocks;  ///< x fastest
 
     explicit SparseBone(volume::Grid size_and_place = {}, float outside_of_blocks = 0.0f);
@@ -53,7 +53,7 @@ volume::Grid dense_distance_of(const SparseBone& sparse);
 /// Volume (m³) and area (m²) of the surface, and statistics of the density inside.
 struct BoneMeasures {
     double volume = 0.0, area = 0.0, least = 0.0, most = 0.0, mean = 0.0;
-    std::size_t inside = 0, metal = 0;  ///< samples of bone, and denser ones, which the densities leave out
+    std::size_t inside = 0, metal = 0;  ///< samples of bone; and denser ones, excluded from the densities
 };
 BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run = run_in_turn);
 

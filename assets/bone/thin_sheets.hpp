@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheets of bone about as thin as a voxel, in the mask of a label.
+// Repairs sheets of bone about as thin as a voxel in the mask of a label.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -9,14 +9,14 @@
 
 namespace tactus::bone {
 
-/// Whether the sample (i, j, k) of a mask has no label at all.
+/// Returns whether the sample (i, j, k) of a mask has no label.
 using IsBackground = std::function<bool(int i, int j, int k)>;
 
-/// Closes the sheets that hold together across edges or corners of voxels only: samples between are added, so that no
-/// line between two neighbours of a sample leads through, also along a diagonal (a 26-separating sheet; Cohen-Or and
-/// Kaufman 1995). A sample of another label is never added. Labelled samples end at least two samples from the border of
-/// the mask (1: labelled, 0: not). Per sample of the mask: 1 for one that was added, or that lies between two of
-/// background along an axis.
+/// Closes sheets that are connected only across edges or corners of voxels. It adds samples until no line between two
+/// neighbours of a sample passes through, also along a diagonal (a 26-separating sheet; Cohen-Or and Kaufman 1995).
+/// Samples of other labels are never added. `mask` is 1 for labelled samples and 0 otherwise; labelled samples must be
+/// at least two samples from its border. The result is 1 for samples that were added, or that lie between two
+/// background samples along an axis.
 std::vector<char> close_thin_sheets(volume::Grid& mask, const IsBackground& is_background);
 
 }  // namespace tactus::bone

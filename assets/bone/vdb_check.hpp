@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks an OpenVDB file before OpenVDB reads it, because OpenVDB trusts the sizes and counts in a file. The seal of a
-// bone file detects damage, but not a hostile file, whose author can compute the seal.
+// bone file detects damage, but not a malicious file, whose author can compute the seal.
 #pragma once
 
 #include <string>

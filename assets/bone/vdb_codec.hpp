@@ -19,7 +19,7 @@ namespace tactus::bone {
 /// same time.
 class VdbCodec {
 public:
-    /// Settings of the program. The module links its own copies of the functions that read them.
+    /// Settings of the program. They are passed because the module has its own copies of the functions that read them.
     struct Call {
         IsStopped is_stopped;
         std::uint64_t memory_limit;  ///< bytes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Breaks a bone into pieces along rough surfaces and simulates CT scans of them: fractures with ground truth.
+// Breaks a bone along rough surfaces and simulates CT scans of the fragments: fractures with ground truth.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -15,12 +15,12 @@ struct BreakOptions {
     std::uint64_t seed = 1;
     double roughness = 0.8e-3;   ///< m, root mean square of a fracture's height about its plane
     double tilt = 0.45;          ///< rad, greatest angle between a fracture's normal and the bone's axis
-    double chips = 0.0;          ///< share of each fracture's area with bone chipped off one side
+    double chips = 0.0;          ///< fraction of each fracture's area with bone chipped off one side
     double chip_depth = 1.5e-3;  ///< m, of the deepest
     double kerf = 0.0;           ///< m, width of the bone lost along the fracture
 };
 
-/// Breaks {distance < 0} and returns the pieces in place, each as a signed distance (m, negative inside, first order
+/// Breaks {distance < 0} and returns the fragments in place, each as a signed distance (m, negative inside, first order
 /// near the surface) on the lattice of the bone. Repeatedly breaks the largest piece within its middle third.
 /// Deterministic. Throws Error when nothing is inside, for invalid options, and when a piece cannot be broken further.
 std::vector<volume::Grid> break_bone(const volume::Grid& distance, const BreakOptions& options);

@@ -14,14 +14,14 @@
 namespace tactus::cases {
 
 /// Loads a bone file ("FILE.vdb#NAME" for one of several), or imports a mesh or a CT. Throws Error.
-/// Imported meshes are kept (kept_bone.hpp).
+/// Imported meshes are cached (kept_bone.hpp).
 bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run = run_in_turn,
                           Contents contents = Contents::all);
 
-/// The key of the points that are sampled on the surface of a file and kept (kept_points.hpp).
+/// The key of points that are sampled on the surface of a file and cached (kept_points.hpp).
 ResultKey key_of_points(const std::filesystem::path& path);
 
-/// When the file has no paint, paint is proposed.
+/// `or_proposed`: proposes paint if the file has none.
 enum class Paint { as_filed, or_proposed };
 
 struct FragmentBone {
@@ -29,7 +29,7 @@ struct FragmentBone {
     bool was_painted = false;  ///< the paint comes from the file
 };
 
-/// The bone of a fragment. Throws Error naming the fragment.
+/// Loads the bone of a fragment. Throws Error naming the fragment.
 FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint,
                            const RunJobs& run = run_in_turn, Contents contents = Contents::all);
 

@@ -30,7 +30,7 @@ struct PlanFragment {
     Vec3 colour{0.90, 0.86, 0.76};
 };
 
-/// The healthy side, mirrored and registered to the case: the target, as far as the body is symmetric.
+/// The healthy side, mirrored and registered to the case: the target for its fragments, assuming a symmetric body.
 struct MirrorTarget {
     std::string file;
     std::uint64_t hash = 0;
@@ -85,8 +85,8 @@ struct PlanStep {
     std::optional<MirrorTarget> mirror;
     /// The whole reconstruction of a jaw; `fragments` are its pieces.
     std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};
-    std::optional<HashedFile> painted{};  ///< for `repaint`: the file of the one fragment from here on
-    /// All vessels of the case from here on, where they were scanned.
+    std::optional<HashedFile> painted{};  ///< for `repaint`: the file of the fragment from this step on
+    /// All vessels of the case from this step on, at their scanned positions.
     std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 };
 
@@ -115,31 +115,31 @@ struct PlanState {
     std::vector<std::string> group_names;  ///< per group of the arrangement, "" for an unnamed one
     std::vector<std::optional<PlanFit>> fits;  ///< per fragment: its last fit, which may be void
     std::optional<MirrorTarget> mirror;
-    std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the last one; null: none
+    std::shared_ptr<const reconstruct::Reconstruction> reconstruction{};  ///< the latest one; null: none
     std::vector<int> pieces{};  ///< the fragments of the reconstruction
     std::vector<HashedFile> files{};  ///< per fragment: the plan's, or that of the last `repaint`
-    /// Of the case, in the frame of the scan; null: none. Those of a reconstruction are its own.
+    /// The vessels of the case, in the frame of the scan; null: none. A reconstruction has its own vessels.
     std::shared_ptr<const std::vector<reconstruct::FlapVessel>> vessels{};
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;
-    /// Whether the fragment still lies as it was fitted: neither it nor its partner has moved from the other.
+    /// Returns whether the fragment's fit holds: neither it nor its partner has moved from the other since.
     bool holds(int fragment) const { return arrangement.fitted_to(fragment) != fit::Arrangement::none; }
 };
-/// State after the step `head` (-1: as scanned), or at the head of the current alternative. Poses have the same bits as
-/// in the steps.
+/// State after the step `head` (-1: as scanned), or at the head of the current alternative. Poses are bit-identical to
+/// those in the steps.
 PlanState state_of(const CasePlan& plan, int head);
 PlanState state_of(const CasePlan& plan);
 
-/// Applies a step to `state`. The first step `reconstruct` of pieces hides those of all other reconstructions of the plan,
-/// which belong to other alternatives. Throws Error when the step is not valid there.
+/// Applies a step to `state`. The first step `reconstruct` with pieces hides those of all other reconstructions of the
+/// plan, which belong to other alternatives. Throws Error if the step is not valid in this state.
 void apply(const CasePlan& plan, const PlanStep& step, PlanState& state);
 
 /// Calls visit(number, from, to) for every step of the tree, with the states before and after it; a step comes after
 /// its predecessor. Throws Error for the first step that cannot be applied.
 void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanState&, const PlanState&)>& visit);
 
-/// Checks a step, appends it to the current head and moves the head. Throws Error and then does not change the plan.
+/// Checks a step, appends it to the current head and moves the head. If it throws Error, the plan is unchanged.
 void add_step(CasePlan& plan, PlanStep step);
 /// The same with the state at the head, which it updates: avoids replaying all earlier steps for each new one.
 void add_step(CasePlan& plan, PlanState& state, PlanStep step);
@@ -168,8 +168,8 @@ std::filesystem::path file_of(const std::string& file, const std::filesystem::pa
 /// Paths of all files that the current state of a plan needs.
 std::vector<std::filesystem::path> files_of(const CasePlan& plan, const std::filesystem::path& folder);
 
-/// Problems of the files at the head of the current alternative, one sentence each: missing, or changed since the plan
-/// was made.
+/// Returns problems of the files at the head of the current alternative, one sentence each: missing, or changed since
+/// the plan was made.
 std::vector<std::string> changed_files(const CasePlan& plan, const std::filesystem::path& folder);
 
 }  // namespace tactus::cases

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of long computations on files, kept in the user's cache folder (assets/file/cache.hpp).
+// Cache of the results of long computations on files, in the user's cache folder (assets/file/cache.hpp).
 //
-// A result is a list of numbers. Its key is a text with all it depends on: hashes of the files, options, and the
-// version of the algorithm. It is read only when the key is the same text and its checksum is right.
+// A result is a list of numbers. Its key is a text with everything that determines it: hashes of the files, options,
+// and the version of the algorithm. A cached result is used only if its key is equal and its checksum is correct.
 #pragma once
 
 #include <filesystem>
@@ -15,16 +15,16 @@ namespace tactus::cases {
 
 class ResultKey {
 public:
-    /// `what` is computed; `version` counts changes of the algorithm that change its result.
+    /// `what`: name of the computation; `version`: incremented when a change of the algorithm changes its result.
     ResultKey(const std::string& what, int version);
 
-    /// A file by the hash of its bytes ("FILE.vdb#NAME": also by the name). A file that refers to other files has no
-    /// key: results with it are not kept. Throws Error for a file that cannot be read.
+    /// Adds a file by the hash of its bytes ("FILE.vdb#NAME": also by the name). A file that refers to other files has
+    /// no key, so that results with it are not cached. Throws Error for a file that cannot be read.
     ResultKey& add_file(const std::filesystem::path& path);
     ResultKey& add(const std::string& name, double number);
     ResultKey& add_text(const std::string& name, const std::string& value);
 
-    /// Empty when results are not kept.
+    /// Empty if results are not cached.
     std::string text() const { return is_complete_ ? text_ : std::string(); }
 
 private:
@@ -32,20 +32,20 @@ private:
     bool is_complete_ = true;
 };
 
-/// The kept result of a key. `note` gets a sentence when there is a file and it is not a result of this key.
+/// Returns the cached result of a key. `note` receives a sentence if the file exists but is not a result of this key.
 std::optional<std::vector<double>> kept_result(const ResultKey& key, std::string& note);
 
-/// Keeps a result. The file is complete or does not exist; without room or right to write, nothing is kept.
+/// Caches a result. The file is complete or does not exist; without disk space or permission, nothing is written.
 void keep_result(const ResultKey& key, const std::vector<double>& numbers) noexcept;
 
 /// The same for a result that is a text.
 std::optional<std::string> kept_text(const ResultKey& key, std::string& note);
 void keep_text(const ResultKey& key, const std::string& text) noexcept;
 
-/// The file that keeps a result; empty without a folder or a key.
+/// Returns the cache file of a result; empty without a folder or a key.
 std::filesystem::path file_of_result(const ResultKey& key);
 
-/// Kept numbers of `count` (any number when none), or those that `make` returns, which are then kept.
+/// Returns `count` cached numbers (any number if empty), or those that `make` returns, which are then cached.
 std::vector<double> result_of(const ResultKey& key, std::optional<std::size_t> count, std::string& note,
                               const std::function<std::vector<double>()>& make);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unit of a plan's files, which state none.
+// Default unit of a plan's files, which usually state none.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace tactus::cases {
 
-/// "mm", unless a mesh states its unit or is far too small or too large for that: none, and import decides or refuses.
+/// Returns "mm", or nothing if a mesh states its unit or has an implausible size for mm; then the import decides or
+/// rejects the file.
 std::optional<std::string> unit_of_file(const std::filesystem::path& path);
 
 }  // namespace tactus::cases

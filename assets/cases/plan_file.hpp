@@ -16,8 +16,8 @@ inline constexpr int plan_file_version = 1;
 /// needs.
 std::string plan_text(const CasePlan& plan);
 
-/// Parses a plan; `file` is its name in messages. Throws Error with the position for text that is not a plan, is cut
-/// short, has another version, duplicate fragment names, steps without predecessor or that cannot be applied, or
+/// Parses a plan; `file` is its name in messages. Throws Error with the position for text that is not a plan, is
+/// truncated, has another version, duplicate fragment names, steps without predecessor or that cannot be applied, or
 /// invalid poses.
 CasePlan read_plan_text(std::string_view text, const std::string& file);
 

@@ -21,13 +21,13 @@ public:
     PlanKeeper(CasePlan plan, std::filesystem::path file);
 
     void add(const StepRow& row, double second);
-    /// Saves all steps. On failure the file keeps its content and Error is thrown; it may be called again.
+    /// Saves all steps. On failure the file keeps its content and Error is thrown; the call may be repeated.
     void save();
     /// The last `save`. If the file still cannot be written, the plan is saved to the temporary folder and the Error
-    /// names the path.
+    /// contains that path.
     void finish();
 
-    /// Rows that were not valid steps and were left out; empty: none.
+    /// Describes rows that were not valid steps and were skipped; empty: none.
     const std::string& trouble() const { return trouble_; }
 
 private:

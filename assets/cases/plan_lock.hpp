@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lock: one program at a time changes a plan.
+// A lock that lets only one program at a time change a plan.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 namespace tactus::cases {
 
 /// Held from reading a plan to writing it, or during a run that adds to it. Locks the file ".NAME.lock" beside the
-/// plan; the system releases it when the holder dies.
+/// plan; the system releases it when the holding process ends.
 class PlanLock {
 public:
     /// Waits for other holders up to a limit. Throws Error after that, and when the folder is not writable.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proposes the fracture surface of a fragment, for correction by hand.
+// Proposes the fracture surface of a fragment, for manual correction.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -16,7 +16,7 @@ struct ProposalOptions {
     double near = 1.5e-3;      ///< m: radius for the roughness of a point
     double smooth = 3.0e-3;    ///< m: radius for the median over neighbours
     double roughness = 0.06;   ///< threshold of roughness (mean of 1 − cos of the angle between normals)
-    double least_area = 20e-6;  ///< m², smaller patches are left out
+    double least_area = 20e-6;  ///< m², smaller patches are dropped
 };
 
 /// Labels rough patches: broken bone is rougher at the scale of 1 to 2 mm than natural bone surface, which curves over
@@ -25,23 +25,23 @@ struct ProposalOptions {
 std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const ProposalOptions& options = {});
 
 struct FacingOptions {
-    double reach = 10e-3;      ///< m: greatest distance to the other fragment, as scanned
-    double least_area = 20e-6;  ///< m², smaller patches are left out
+    double reach = 10e-3;      ///< m: largest distance to the other fragment, as scanned
+    double least_area = 20e-6;  ///< m², smaller patches are dropped
 };
 
-/// Labels the points that face points of another fragment at a small distance: fragments in one scan are not far from
-/// their place, and natural surfaces rarely face each other that closely. For smooth or coarse scans, where roughness
-/// does not show the fracture. Removes other labels. Returns the number of labelled points. Throws Error when `other`
-/// has no points.
+/// Labels the points that face points of another fragment at a small distance. This works because fragments in one scan
+/// are not far from their original position, and natural surfaces rarely face each other that closely. For smooth or
+/// coarse scans, in which roughness does not reveal the fracture. Removes other labels. Returns the number of labelled
+/// points. Throws Error if `other` has no points.
 std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                            const FacingOptions& options = {});
 
 struct IntactOptions {
     double deep = 2e-3;  ///< m: points deeper in the unbroken bone are broken
-    double askew = 0.7e-3;  ///< m: so are points deeper than this whose normal differs from the bone's,
-    double looks_along = 0.3;  ///< when the cosine between the normals is below this
+    double askew = 0.7e-3;  ///< m: points deeper than this are also broken if their normal differs from the bone's,
+    double looks_along = 0.3;  ///< that is, if the cosine between the normals is below this
     double smooth = 3e-3;  ///< m: radius for the median over neighbours
-    double least_area = 50e-6;  ///< m², smaller patches are left out
+    double least_area = 50e-6;  ///< m², smaller patches are dropped
 };
 
 /// Labels the points well inside the unbroken bone (the mirrored healthy side, or an earlier scan) registered to the
@@ -50,15 +50,16 @@ struct IntactOptions {
 std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
                            const Pose& place, const IntactOptions& options = {});
 
-/// The same in two steps: which points are broken (1 or 0 each), whatever the least area, and the patches of them.
+/// The same in two steps: a flag per point (1: broken), regardless of the smallest area, and the patches of these
+/// points.
 std::vector<std::uint8_t> broken_inside(std::span<const contact::SurfacePoint> points,
                                         const fit::RegistrationTarget& intact, const Pose& place,
                                         const IntactOptions& options = {});
 std::size_t label_broken(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken,
                          double least_area);
 
-/// Removes the label of patches that have no point within `reach` (m) of the other fragment, as scanned. Returns the
-/// number of points that stay labelled. Throws Error when `other` has no points.
+/// Removes the label of patches without a point within `reach` (m) of the other fragment, as scanned. Returns the
+/// number of points that keep their label. Throws Error if `other` has no points.
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                               double reach);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated fracture surface: its relief about a plane.
+// A simulated fracture surface: its height over a plane.
 #pragma once
 
 #include "dsp/core/random.hpp"

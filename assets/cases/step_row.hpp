@@ -14,9 +14,9 @@ namespace tactus::cases {
 
 /// Row kind for a move in the history (undo, redo, alternative), which is not a step.
 inline constexpr int row_goes_to = 100;
-/// Row kinds for alternatives; `after` is a place in the plan's list of alternatives. To switch to one, or with the
-/// number of alternatives to begin another at the current state; to drop one; to bring back the one dropped last of those
-/// that are still dropped. Of more than `most_dropped` the oldest no longer come back.
+/// Row kinds for alternatives; `after` is an index in the plan's list of alternatives. row_alternative: switches to it,
+/// or, with the number of alternatives, starts another one at the current state. row_drop: removes it. row_undrop:
+/// restores the one removed last; of more than `most_dropped` the oldest cannot be restored.
 inline constexpr int row_alternative = 101, row_drop = 102, row_undrop = 103;
 inline constexpr std::size_t most_dropped = 32;
 
@@ -51,7 +51,7 @@ public:
     explicit RunSteps(CasePlan plan);
 
     /// Adds a row; `second` is the time since the start of the run. The step is added to the plan with its last row.
-    /// Throws Error for an invalid step, which is left out.
+    /// Throws Error for an invalid step, which is skipped.
     void add(const StepRow& row, double second);
 
     const CasePlan& plan() const { return plan_; }

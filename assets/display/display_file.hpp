@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Display files: where screens, mirror and haptic device stand in the world of the viewer, and which eye each
-// screen is for. `tactus calibrate` writes one; people write and change them by hand.
+// Display files: poses of screens, mirror and haptic device in the world of the viewer, and the eye for which each
+// screen is. `tactus calibrate` writes them; they can also be written and edited by hand.
 #pragma once
 
 #include "dsp/display/screen.hpp"
@@ -13,17 +13,17 @@
 
 namespace tactus::display {
 
-/// The eyes that see a screen.
+/// The eyes for which a screen is.
 enum class ScreenEyes : std::uint8_t { both, left, right, middle };
 inline constexpr std::array<std::string_view, 4> screen_eye_names{"both", "left", "right", "middle"};
 
-/// How one screen is driven.
+/// Output of one screen.
 struct ScreenSettings {
     std::string name;
     ScreenEyes eyes = ScreenEyes::both;
-    std::optional<Vec3> eye;  ///< m, a fixed eye in place of the head: one direction of a multi-view display
-    std::optional<StereoMode> stereo;  ///< none: as --stereo says
-    int monitor = 0;  ///< from 1, a full screen there; 0: none
+    std::optional<Vec3> eye;  ///< m, a fixed eye instead of the head: one direction of a multi-view display
+    std::optional<StereoMode> stereo;  ///< none: as given by --stereo
+    int monitor = 0;  ///< from 1, full screen on it; 0: none
     std::array<int, 4> window{};  ///< x, y from the upper left of the desktop, width, height in pixels; 0: none
 };
 

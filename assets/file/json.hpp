@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A JSON value. The JSON library is compiled in json.cpp alone: its header costs a file two seconds.
+// A JSON value. The JSON library is compiled in json.cpp alone, because its header adds two seconds to the compilation
+// of a file.
 //
 //     Json row{{"name", "mandible"}, {"size_mm", {x, y, z}}};
 //     row["hash"] = hash;
@@ -29,8 +30,8 @@ struct JsonSyntaxError : Error {
     std::size_t byte;  ///< counts from 1; one past the end for text that ends too early
 };
 
-/// Null, a truth value, a number, a string, a list, or an object, which keeps the order of its members.
-/// Reading a value as another kind throws Error.
+/// Null, a boolean, a number, a string, a list, or an object, which keeps the order of its members. Reading a value as
+/// another kind throws Error.
 class Json {
 public:
     using Member = std::pair<std::string, Json>;
@@ -48,11 +49,11 @@ public:
     Json(const char* text);
     Json(std::string_view text);
     Json(std::string text) noexcept;
-    /// No pointer is a truth value.
+    /// Deleted, because a pointer would convert to a boolean.
     Json(const void*) = delete;
-    /// An object when each element is a list of a string and a value, otherwise a list.
+    /// Creates an object if each element is a list of a string and a value, otherwise a list.
     Json(std::initializer_list<Json> elements);
-    /// A list of the elements of a container; a map makes an object.
+    /// Creates a list of the elements of a container; a map becomes an object.
     template <class Range>
         requires requires(const Range& r) { std::begin(r) != std::end(r); } &&
                  (!std::is_same_v<Range, Json> && !std::is_convertible_v<const Range&, std::string_view>)
@@ -78,10 +79,11 @@ public:
     /// Throws JsonSyntaxError for text that is not JSON, or nests more than 100 values deep; Error for a number that is
     /// too large.
     static Json parse(std::string_view text);
-    /// Null for such text.
+    /// Returns null for such text.
     static Json parse_or_null(std::string_view text);
 
-    /// On one line, or indented by that many spaces. Numbers that are not finite are null. Throws for text that is not UTF-8.
+    /// On one line, or indented by that many spaces. Numbers that are not finite become null. Throws for text that is
+    /// not UTF-8.
     std::string dump(int indent = -1) const;
 
     bool is_null() const;
@@ -93,7 +95,7 @@ public:
     bool is_array() const;
     bool is_object() const;
 
-    /// A number as any type of number, a truth value as bool, a string, or a list as std::vector.
+    /// Converts a number to any arithmetic type, a boolean to bool, a string, or a list to std::vector.
     template <class T>
     T get() const {
         if constexpr (std::is_same_v<T, bool>) {
@@ -112,46 +114,46 @@ public:
     }
     const std::string& as_text() const;
 
-    /// Elements of a list, members of an object; 0 for anything else.
+    /// Number of elements of a list or members of an object; 0 for other kinds.
     std::size_t size() const;
     bool empty() const { return size() == 0; }
 
-    /// Elements of a list; none for anything else.
+    /// Elements of a list; empty for other kinds.
     const Json* begin() const;
     const Json* end() const;
     Json* begin();
     Json* end();
-    /// Throws Error when this is no list, or has no element `index`.
+    /// Throws Error if this is not a list or has no element `index`.
     const Json& operator[](std::size_t index) const;
     Json& operator[](std::size_t index);
     Json& back();
     /// Null becomes a list.
     void push_back(Json element);
 
-    /// Members of an object. Throws Error for anything else.
+    /// Members of an object. Throws Error for other kinds.
     const std::vector<Member>& items() const;
     bool contains(std::string_view key) const { return find(key) != nullptr; }
-    /// Null when this is no object, or has no such member.
+    /// Returns null if this is not an object or has no such member.
     const Json* find(std::string_view key) const;
-    /// Throws Error when there is no such member.
+    /// Throws Error if there is no such member.
     const Json& operator[](std::string_view key) const;
-    /// `otherwise` when there is no such member.
+    /// Returns `otherwise` if there is no such member.
     template <class T>
     T value(std::string_view key, T otherwise) const {
         const Json* found = find(key);
         return found ? found->get<T>() : otherwise;
     }
-    /// Adds a member when there is none. Null becomes an object.
+    /// Adds the member if there is none. Null becomes an object.
     Json& operator[](std::string_view key);
     /// Sets all members of `other`.
     void update(const Json& other);
 
-    /// The line of a parsed text, from 1, on which the name of this member stands, or on which this list or object in a list
-    /// begins. 0: unknown, as of a value that was not parsed.
+    /// Line of a parsed text, from 1, of the name of this member or of the beginning of this list or object in a list.
+    /// 0: unknown, as for a value that was not parsed.
     int line() const { return line_; }
     void set_line(int line) { line_ = line; }
 
-    /// Numbers are equal by value, whatever their type.
+    /// Numbers are equal by value, regardless of their type.
     friend bool operator==(const Json& a, const Json& b);
 
 private:
@@ -168,13 +170,13 @@ private:
     int line_ = 0;
 };
 
-/// As Json::parse, for files that a person writes: errors have the place, "file:line:column: not valid JSON: ...".
+/// As Json::parse, for hand-written files: errors contain the position, "file:line:column: not valid JSON: ...".
 Json parse_json(std::string_view text, const std::string& file);
 
-/// Throws Error for the first member of `object` whose name is not in `names`, with its line and the name that is meant
-/// perhaps. A misspelt name would otherwise be a default that nobody asked for. `where` begins the message: the file, and
-/// the place in it. Every reader of JSON that a person writes calls this for each of its objects; readers of TOML have
-/// TomlFile::know and readers of tables NumberTable::know.
+/// Throws Error for the first member of `object` whose name is not in `names`, with its line and a similar name.
+/// Otherwise a misspelt name would silently select a default. `where` begins the message: the file, and the position in
+/// it. Every reader of hand-written JSON calls this for each of its objects; readers of TOML use TomlFile::know, and
+/// readers of tables NumberTable::know.
 void refuse_unknown(const Json& object, const std::string& where, std::span<const std::string> names);
 
 }  // namespace tactus::file

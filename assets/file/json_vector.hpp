@@ -13,7 +13,7 @@ namespace tactus::file {
 
 inline Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-/// A list of three numbers whose magnitude is at most `farthest`; none for anything else.
+/// Reads a list of three numbers whose magnitude is at most `farthest`; nothing for other values.
 inline std::optional<Vec3> vector_of(const Json& json, double farthest) {
     if (!json.is_array() || json.size() != 3) return {};
     Vec3 v;

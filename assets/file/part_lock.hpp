@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lock: one program at a time writes a file that is renamed when it is complete.
+// A lock that lets only one program at a time write a file that is renamed when it is complete.
 #pragma once
 
 #include <filesystem>
 
 namespace tactus::file {
 
-/// Creates `part` if missing and locks it until destroyed; the system releases the lock when the holder dies. Without
-/// it two programs could write one part file, and the first to finish would rename a mixture of both.
+/// Creates `part` if missing and locks it until destroyed; the system releases the lock when the holding process ends.
+/// Without it two programs could write one part file, and the first to finish would rename a mixture of both.
 class PartLock {
 public:
     /// Messages name `path`. Throws Error when another program holds the part, or when it cannot be created.

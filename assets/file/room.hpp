@@ -21,7 +21,7 @@ private:
     std::string message_;
 };
 
-/// Greatest size of one file in memory, bytes; default: half of the machine's memory. Any thread may read it; set it
+/// Maximum size of one file in memory, bytes; default: half of the machine's memory. Any thread may read it; set it
 /// before other threads read files.
 std::uint64_t memory_limit();
 void set_memory_limit(std::uint64_t bytes);
@@ -32,7 +32,7 @@ std::uint64_t parse_memory_size(const std::string& text);
 /// Throws NoRoom when `what` of `file` needs more than memory_limit() bytes.
 void require_room(double bytes, const std::filesystem::path& file, std::string_view what);
 
-/// Throws Error when the header of `file` claims more than the file can hold: `claimed` > `most`, in the same unit, as
+/// Throws Error if the header of `file` states more than the file can contain: `claimed` > `most`, in the same unit, as
 /// in require_possible(frames, 8192.0 * bytes, file, "samples").
 void require_possible(double claimed, double most, const std::filesystem::path& file, std::string_view what);
 

@@ -8,7 +8,7 @@
 
 namespace tactus::file {
 
-/// Greatest number of dots in a key. Our files need at most two, as in [nodes.hand].
+/// Maximum number of dots in a key. The file formats of this program need at most two, as in [nodes.hand].
 inline constexpr int most_dots_in_key = 32;
 
 /// Offset of the first dot beyond the limit, if any. Dots in strings and comments do not count.

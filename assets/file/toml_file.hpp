@@ -42,7 +42,7 @@ public:
     const toml::table& root() const { return *root_; }
     [[noreturn]] void fail(const toml::node& node, const std::string& message) const;
     const toml::table& as_table(const toml::node& node) const;
-    /// Fails at the first key that is not in `names`.
+    /// Throws Error at the first key that is not in `names`.
     void know(const toml::table& table, const std::vector<std::string>& names) const;
     std::string word(const toml::node& node) const;
 

@@ -21,8 +21,8 @@ std::string read_whole_file(const std::filesystem::path& path);
 /// Adds the bytes of a file to `hash`, in blocks. Throws Error.
 void add_file(Hash& hash, const std::filesystem::path& path);
 
-/// Writes `bytes` to `path` + ".part" and renames it; permissions of a file that is replaced stay. On failure it
-/// removes the part and throws Error.
+/// Writes `bytes` to `path` + ".part" and renames it; a replaced file keeps its permissions. On failure it removes the
+/// part and throws Error.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The same, synced to disk: after a power failure the old or the new file exists.

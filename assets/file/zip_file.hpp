@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the files in a zip into memory, one at a time. Nothing is unpacked to disk, and no name in it becomes a path.
+// Reads the files in a zip into memory, one at a time. Nothing is unpacked to disk, and no name in the zip is used as a
+// path.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@
 
 namespace tactus::file {
 
-/// True for files that begin with the mark of a zip.
+/// True for files that begin with the magic number of a zip.
 bool is_zip_file(const std::filesystem::path& path);
 
 class ZipFile {
@@ -24,11 +25,11 @@ public:
         std::uint64_t index = 0;
     };
 
-    /// Reads the list of files. Throws Error for a damaged zip, more than 100000 files, files that share their packed
+    /// Reads the list of files. Throws Error for a damaged zip, more than 100000 files, files with overlapping packed
     /// bytes, a compression other than deflate, passwords, and for sizes that deflate cannot reach.
     explicit ZipFile(const std::filesystem::path& path);
 
-    /// The files; folders and empty files are left out.
+    /// The files, without folders and empty files.
     const std::vector<Entry>& entries() const { return entries_; }
 
     /// The bytes of a file, or its first `most`. Throws Error when they are damaged, and NoRoom when they need more than

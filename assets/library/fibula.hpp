@@ -15,7 +15,7 @@ volume::Grid fibula_hu();
 /// The same as a bone, made by the CT import. Deterministic.
 bone::Bone make_fibula();
 
-/// A label map (1) of what stands for the peroneal vessels: a tube of 3 mm diameter along the shaft on its medial side,
+/// A label map (1) that represents the peroneal vessels: a tube of 3 mm diameter along the shaft on its medial side,
 /// about 2 mm from the bone.
 volume::Grid fibula_vessels();
 

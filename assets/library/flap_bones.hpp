@@ -26,7 +26,7 @@ geometry::TriangleSurface make_fibula_surface();
 /// A tumour in that jaw: an ellipsoid of 20 by 13 by 15 mm, the longest along the arch, in the left body. Closed.
 geometry::TriangleSurface make_tumour_surface();
 
-/// The mirror image at x = 0, with triangles that look outwards again.
+/// The mirror image at x = 0, with triangles that face outwards.
 geometry::TriangleSurface mirrored(geometry::TriangleSurface surface);
 
 }  // namespace tactus::library

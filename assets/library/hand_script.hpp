@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The script of a hand.
+// Builds the script of a hand.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -14,7 +14,7 @@
 
 namespace tactus::library {
 
-/// Lines in order of time, for the driver 'scripted': where the hand is, and the buttons that it holds until then.
+/// Lines in order of time, for the driver 'scripted': the pose of the hand, and the buttons held until then.
 class HandScript {
 public:
     void go(double seconds, const Pose& to, const char* held) {
@@ -28,7 +28,7 @@ public:
     const std::string& text() const { return text_; }
 
 private:
-    /// About the fixed axes x, then y, then z.
+    /// Rotations about the fixed axes x, then y, then z.
     static std::string turns(const Quat& q) {
         const Mat3 m = glm::mat3_cast(q);
         const double y = std::asin(std::clamp(-m[0][2], -1.0, 1.0)), x = std::atan2(m[1][2], m[2][2]),

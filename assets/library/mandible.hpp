@@ -15,7 +15,7 @@ volume::Grid mandible_hu();
 /// The same as a bone, made by the CT import. Deterministic.
 bone::Bone make_mandible();
 
-/// A label map (1) of its mandibular canal, which stands for the inferior alveolar nerve.
+/// A label map (1) of its mandibular canal, which represents the inferior alveolar nerve.
 volume::Grid mandible_canal();
 
 }  // namespace tactus::library

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Markups of 3D Slicer (.mrk.json): named points, lines, angles, curves and planes.
 //
-// What the reader of Slicer requires is written down here from its source, Modules/Loadable/Markups/MRML, files
-// vtkMRMLMarkupsJsonStorageNode.cxx, vtkMRMLMarkupsPlaneJsonStorageNode.cxx and vtkMRMLMarkupsPlaneNode.cxx, and from its
-// schema, Resources/Schema/markups-schema-v1.0.3.json:
+// The requirements of Slicer's reader below are taken from its source, Modules/Loadable/Markups/MRML, files
+// vtkMRMLMarkupsJsonStorageNode.cxx, vtkMRMLMarkupsPlaneJsonStorageNode.cxx and vtkMRMLMarkupsPlaneNode.cxx, and from
+// its schema, Resources/Schema/markups-schema-v1.0.3.json:
 //
 // - `@schema` ends with markups-schema-v1.N.N.json; `type` is Fiducial, Line, Angle, Curve, ClosedCurve, Plane or ROI.
 // - `position` has three numbers and `orientation`, if present, nine; `positionStatus` is undefined, preview or defined.
@@ -39,32 +39,32 @@ struct ControlPoint {
 struct Markup {
     Kind kind = Kind::fiducial;
     std::string name;
-    std::vector<ControlPoint> points;  ///< of a plane one, its origin
+    std::vector<ControlPoint> points;  ///< for a plane one, its origin
     bool is_locked = false;
     bool has_fixed_count = false;  ///< points can be moved, not added or removed
     std::optional<Vec3> colour;  ///< sRGB, 0 to 1
     Vec3 normal{0.0, 0.0, 1.0};  ///< of a plane, LPS, unit length
-    double side = 40e-3;  ///< m, of the square that is drawn for a plane
+    double side = 40e-3;  ///< m, of the square drawn for a plane
 };
 
 /// The text of a file with these markups, in mm and LPS. A plane has all members that Slicer writes, so that programs
-/// that read `center` and `normal` find the same plane as those that read the matrices. The turn of the square about the
-/// normal is arbitrary: a plane of a cut has none.
+/// that read `center` and `normal` find the same plane as those that read the matrices. The rotation of the square
+/// about the normal is arbitrary, because the plane of a cut has none.
 std::string text_of(std::span<const Markup> markups);
 
 struct ReadPoints {
     std::vector<ControlPoint> points;
-    std::vector<std::string> notes;  ///< one line each: points that were left out because they have no position
+    std::vector<std::string> notes;  ///< one line each: points that were skipped because they have no position
 };
 
 /// The control points of all markups of a .mrk.json, in LPS or RAS and mm. Those whose status is `undefined` or `preview`
-/// have no position yet: they are left out and named in the notes. `file` is the name in messages. Throws Error for what
-/// is no such file, other units, an unknown status, and a defined point without a position.
+/// have no position yet: they are skipped and listed in the notes. `file` is the name in messages. Throws Error for
+/// other text, other units, an unknown status, and a defined point without a position.
 ReadPoints points_of_text(std::string_view text, const std::string& file);
 
 /// The same from a point list of Slicer before 4.13 (.fcsv): comments that state the coordinate system (LPS or 1, RAS or
-/// 0), then a line per point, `id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID`. Throws Error when the system
-/// is not stated, because left and right are unknown then.
+/// 0), then a line per point, `id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID`. Throws Error if the
+/// system is not stated, because then left and right are unknown.
 ReadPoints points_of_fcsv(std::string_view text, const std::string& file);
 
 /// Either, by the extension: .fcsv, otherwise JSON.

@@ -24,23 +24,23 @@ struct MeshOrigin {
     bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
     std::optional<double> unit;     ///< m, from "unit=mm", "unit=cm" or "unit=m" in a header or comment
     std::size_t without_area = 0;   ///< triangles dropped because two corners coincide
-    std::vector<std::string> notes{};  ///< what the file holds beside its triangles, and was not read
+    std::vector<std::string> notes{};  ///< contents besides triangles, which were ignored
 };
 
 /// STL (binary, text), PLY or OBJ. Coordinates in LPS, times `scale`, in double precision; equal points are joined,
-/// triangles without area dropped. Throws Error for damaged files, coordinates that are no numbers and files without
+/// triangles without area dropped. Throws Error for damaged files, coordinates that are not finite and files without
 /// triangles. `origin` may be null.
 Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
 /// Unit normal per vertex: the mean of those of its triangles, weighted by their areas.
 std::vector<Vec3> normals_of(const geometry::TriangleSurface& mesh);
 
-/// The zero surface of a signed distance (m, negative inside) with normals from its gradient; from the triangles where
-/// a wall is so thin that the gradient says nothing about its side.
+/// The zero surface of a signed distance (m, negative inside). Normals come from its gradient or, where a wall is so
+/// thin that the gradient does not define its side, from the triangles.
 Mesh surface_of(const volume::Grid& distance);
 
 double volume_of(
-    const geometry::TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
+    const geometry::TriangleSurface& mesh);  ///< m³, positive if triangles face outwards; mesh must be closed
 double area_of(const geometry::TriangleSurface& mesh);    ///< m²
 
 /// Topology of a mesh. Watertight: every edge has two triangles that traverse it in opposite directions.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of load_mesh, one per format: parse the bytes of a file into points and triangles.
+// The format readers of load_mesh: parse the bytes of a file into points and triangles.
 #pragma once
 
 #include "assets/volume/patient_frame.hpp"
@@ -17,7 +17,7 @@ struct MeshText {
     geometry::TriangleSurface surface;
     std::optional<volume::Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
     std::optional<double> unit;          ///< m, from "unit=mm" and the like
-    std::vector<std::string> notes{};    ///< what the file holds beside its triangles, and was not read
+    std::vector<std::string> notes{};    ///< contents besides triangles, which were ignored
 };
 
 MeshText read_stl(const std::string& bytes, const std::string& file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs meshes with small defects, so that inside and outside are defined.
+// Repairs meshes with small defects, so that their inside is defined.
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
@@ -24,7 +24,7 @@ struct MeshRepair {
 };
 
 /// Makes every edge traversed equally often in both directions, as winding numbers need. Throws Error with the numbers
-/// when the surface is not orientable, or when closing its holes would add more than 5 % to its area.
+/// if the surface is not orientable, or if closing its holes would add more than 5 % to its area.
 MeshRepair repair(geometry::TriangleSurface& mesh, const std::string& file);
 
 }  // namespace tactus::mesh

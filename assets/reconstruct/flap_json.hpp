@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading members of JSON objects with lengths in one unit.
+// Reads members of JSON objects with lengths in one unit.
 #pragma once
 
 #include "assets/file/json.hpp"
@@ -21,18 +21,18 @@ struct LengthUnit {
 };
 inline constexpr LengthUnit in_metres{"m", 1.0}, in_millimetres{"mm", 1e-3};
 
-/// A JSON object; messages begin with its place.
+/// A JSON object; messages begin with its position.
 class Members {
 public:
-    /// Throws Error when it is no object.
+    /// Throws Error if it is not an object.
     Members(const file::Json& json, std::string where, LengthUnit unit);
 
     [[noreturn]] void fail(const std::string& what) const;
-    /// Fails at the first member that is none of these; `lengths` are without the unit.
+    /// Throws Error at the first other member; `lengths` are without the unit.
     void know(std::initializer_list<const char*> names, std::initializer_list<const char*> lengths) const;
     bool has(std::string_view key) const { return json_.contains(key); }
     const file::Json& at(std::string_view key) const;
-    std::string text(std::string_view key) const;  ///< of one line
+    std::string text(std::string_view key) const;  ///< must be one line
     std::string name() const;  ///< of the member "name", not empty
     bool truth(std::string_view key) const;
     double number(std::string_view key) const;
@@ -41,11 +41,11 @@ public:
     double length(std::string_view key, double otherwise) const;
     double positive(std::string_view key, double otherwise) const;
     Vec3 place(std::string_view key) const;
-    Vec3 direction(std::string_view key) const;  ///< any length but 0; kept when it is 1 already
+    Vec3 direction(std::string_view key) const;  ///< any length except 0; unchanged if the length is already 1
     std::vector<Vec3> places(std::string_view key, std::size_t most) const;
     std::vector<Vec3> directions(std::string_view key, std::size_t most) const;
     std::vector<double> lengths(std::string_view key, std::size_t most) const;
-    /// The objects of a list; none when it is missing.
+    /// The objects of a list; empty if it is missing.
     std::vector<Members> list(std::string_view key, std::size_t most) const;
     std::optional<Members> object(std::string_view key) const;
     LengthUnit unit() const { return unit_; }
@@ -60,14 +60,14 @@ private:
     LengthUnit unit_;
 };
 
-/// The members of a flap, all of which may be missing.
+/// Reads the members of a flap, all of which are optional.
 Flap flap_of(const Members& all);
-/// The vessels of a flap alone.
+/// Reads the vessels of a flap only.
 std::vector<FlapVessel> vessels_in(const Members& all);
-/// The same of an object with a list "vessels", in m; `where` begins messages. Throws Error, also without the list.
+/// Reads the list "vessels" of an object, in m; `where` begins messages. Throws Error, also without the list.
 std::vector<FlapVessel> vessels_of(const file::Json& json, const std::string& where);
 file::Json json_of(const std::vector<FlapVessel>& vessels);
-/// Adds them, in m.
+/// Adds the members of a flap, in m.
 void add_members(file::Json& json, const Flap& flap);
 
 }  // namespace tactus::reconstruct

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole reconstruction of a jaw, as a plan keeps it.
+// A whole reconstruction of a jaw, as stored in a plan.
 #pragma once
 
 #include "assets/file/json.hpp"
@@ -12,32 +12,32 @@
 
 namespace tactus::reconstruct {
 
-/// A mesh that is named by a plan.
+/// A mesh file that a plan refers to.
 struct MeshFile {
     std::string file;  ///< relative to the plan's folder, or absolute
     std::uint64_t hash = 0;  ///< of the file's bytes
 };
 
 struct Reconstruction {
-    FibulaInputs inputs;  ///< without surfaces: they are in the files
+    FibulaInputs inputs;  ///< without surfaces, which are in the files
     Flap flap;
     MeshFile donor;
     std::optional<MeshFile> jaw, tumour;
 };
 
-/// m, rad; numbers read back to the same bits.
+/// Converts to JSON in m and rad; numbers read back to the same bits.
 file::Json json_of(const Reconstruction& all);
-/// `where` begins messages. Throws Error for anything that json_of would not write: missing or unknown words, lists that
+/// `where` begins messages. Throws Error for content that json_of would not write: missing or unknown words, lists that
 /// are too long, numbers that are not finite or beyond 100 m, directions without unit length, names that are empty or
 /// taken.
 Reconstruction reconstruction_of(const file::Json& json, const std::string& where);
 
-/// What a file of inputs says of the flap, in mm: the members "vessels", "perforators", "sites", "plates", "implants",
-/// "paddle", "margin_mm", "limits", all of which may be missing.
+/// Reads the flap from a file of inputs, in mm: the members "vessels", "perforators", "sites", "plates", "implants",
+/// "paddle", "margin_mm", "limits", all of which are optional.
 Flap flap_of_inputs(const file::Json& json, const std::string& where);
 
-/// Throws Error when the flap holds what cannot be: names that are empty or taken, a vessel of one point, a direction
-/// without unit length, a size that is not positive, a number that is not finite or beyond 100 m.
+/// Throws Error for an invalid flap: names that are empty or not unique, a vessel of one point, a direction without
+/// unit length, a size that is not positive, a number that is not finite or beyond 100 m.
 void check(const Flap& flap, const std::string& where);
 
 }  // namespace tactus::reconstruct

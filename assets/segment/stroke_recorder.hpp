@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strokes of a brush in the hand, kept while they are painted.
+// Records the strokes of a haptic brush while they are painted.
 #pragma once
 
 #include "assets/segment/seeds_file.hpp"
@@ -10,28 +10,28 @@
 
 namespace tactus::segment {
 
-/// Keeps the points that the painting window would keep of the same path, so that both give the same seeds. Allocates in the
-/// constructor, and in label() alone.
+/// Records the same points of a path as the painting window would, so that both give the same seeds. Only the
+/// constructor and label() allocate.
 class StrokeRecorder {
 public:
     StrokeRecorder(std::size_t most_strokes, std::size_t most_points);
 
-    /// The brush is on the bone at `point`, m. Continues the open stroke, or begins one: also when the radius changes or when
-    /// the brush erases from now on. A place or radius that a seeds file cannot hold lifts the brush.
+    /// Reports that the brush is on the bone at `point`, m. Continues the open stroke or starts one; a change of the
+    /// radius or of `erases` also starts one. A position or radius that a seeds file cannot store lifts the brush.
     void touch(const Vec3& point, double radius, bool erases) noexcept;
     void lift() noexcept { is_open_ = false; }
 
     std::size_t strokes() const noexcept { return strokes_.size(); }
-    /// Of all strokes.
+    /// Number of points of all strokes.
     std::size_t points() const noexcept { return points_.size(); }
     bool is_open() const noexcept { return is_open_; }
-    /// What was kept last, once there are points.
+    /// The newest recorded point; requires points.
     const Vec3& newest_point() const noexcept { return points_.back(); }
     double newest_radius() const noexcept { return strokes_.back().radius; }
     bool newest_erases() const noexcept { return strokes_.back().erases; }
-    /// There was no room for everything.
+    /// True if some points were dropped for lack of room.
     bool is_full() const noexcept { return is_full_; }
-    /// What is left of the strokes where they were erased.
+    /// Returns the strokes after erasing.
     SeedLabel label(std::string name) const;
 
 private:

@@ -22,7 +22,7 @@ struct LogFacts {
     double lost_seconds = 0.0;
     double shortest_step = 0.0, longest_step = 0.0;  ///< s
     double step_deviation = 0.0;         ///< s, standard deviation of the steps without gaps
-    double clock_step = 0.0;             ///< s, of a coarse clock whose rounded times were taken as even; 0: none
+    double clock_step = 0.0;             ///< s, of a coarse clock whose times were made even; 0: none
     std::vector<signal::Level> levels;   ///< per channel, of the rows themselves, calibrated
     std::vector<std::size_t> at_limit;  ///< rows at the ends of 16 bits in a channel of whole numbers
     table::LogForm form;
@@ -41,10 +41,10 @@ struct RecordBlock {
 
 class RecordReader {
 public:
-    /// Opens .csv, .tsv, .txt, .log, .lvm, .asc and .dat as logs, .uff, .unv, .uf, .58, .bunv and .mat too, others as sound. Without a calibration the one that the
-    /// file states is used, and without that the values are not scaled. A sensitivity makes volts the quantity that the
-    /// sensor measured. Reads only `stretch`; all that is said of the record is then said of that. Throws Error when the
-    /// file cannot be used, or is shorter.
+    /// Opens .csv, .tsv, .txt, .log, .lvm, .asc and .dat as logs, also .uff, .unv, .uf, .58, .bunv and .mat, others as
+    /// sound. Without a calibration the one stated in the file is used; without that the values are not scaled. A
+    /// sensitivity converts volts to the quantity that the sensor measured. Only `stretch` is read, and all statistics
+    /// refer to it. Throws Error if the file cannot be used or is shorter.
     RecordReader(const std::filesystem::path& path, const table::LogSelection& selection,
                  const std::optional<Calibration>& calibration,
                  const std::optional<Sensitivity>& sensitivity = std::nullopt, const Stretch& stretch = {});
@@ -60,7 +60,7 @@ public:
 
     /// Reads at most 65536 values per channel; false at the end. Throws Error when the file is damaged.
     bool next(RecordBlock& block);
-    /// Returns to the start of the stretch. Throws Error when the file is gone.
+    /// Returns to the start of the stretch. Throws Error if the file no longer exists.
     void rewind();
 
 private:

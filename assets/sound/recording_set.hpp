@@ -81,8 +81,8 @@ void cut(Recording& recording, const Stretch& stretch);
 
 /// Refers to the samples of `recording`.
 vibration::SawRecording saw_recording(const Recording& recording);
-/// m/s² rms: what the strongest recording of an uncalibrated set is played as. Powered bone saws have 90 to 180 m/s²
-/// at the handle.
+/// m/s² rms: playback level of the strongest recording of an uncalibrated set. Powered bone saws have 90 to 180 m/s² at
+/// the handle.
 inline constexpr double assumed_vibration = 100.0;
 inline constexpr const char* uncalibrated_note =
     "the recordings are not calibrated: the strongest is played as 100 m/s^2 rms; 'full_scale' in a recording set "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model of a saw in a file: made by 'tactus model', played by the 'saw' node.
+// Files of saw models: written by 'tactus model', played by the 'saw' node.
 #pragma once
 
 #include "assets/file/toml_file.hpp"
@@ -13,7 +13,7 @@ namespace tactus::sound {
 struct SawModelTexts {
     std::string title, note, licence;
     bool synthesised = false;  ///< fitted to computed sounds, not to recordings
-    bool calibrated = false;   ///< levels are in m/s², else normalised
+    bool calibrated = false;   ///< levels are in m/s², otherwise normalised
 };
 
 /// Writes the whole file:

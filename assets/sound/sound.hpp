@@ -21,7 +21,7 @@ struct Sound {
 };
 
 /// Reads every format of libsndfile (WAV, FLAC, AIFF, Ogg and others). Throws Error when the file is missing, not a
-/// sound, cut short (a wave is read up to its end) or empty, contains NaN or infinity, or has more than 2^28 samples.
+/// sound, truncated (a wave is read up to its end) or empty, contains NaN or infinity, or has more than 2^28 samples.
 Sound load_sound(const std::filesystem::path& path);
 
 /// The mean of all channels.
@@ -36,22 +36,22 @@ enum class SoundFormat {
 /// the sound ends with the last complete frame. For offline work and threads without a deadline.
 class SoundWriter {
 public:
-    /// A WAV of so many bytes is completed as RF64 (EBU Tech 3306), which has 64-bit lengths: those of WAV end at 4 GiB, and
-    /// many programs read them as signed.
+    /// A WAV larger than this is completed as RF64 (EBU Tech 3306), which has 64-bit lengths. Lengths in WAV end at 4
+    /// GiB, and many programs read them as signed, hence 2 GiB.
     static constexpr std::uint64_t max_wav_bytes = std::uint64_t{1} << 31;
 
-    /// `rate` in Hz; `comment` is kept in the file's metadata. `rf64_from`: bytes of a file from which on it is RF64, at most
-    /// max_wav_bytes. Throws Error when the file cannot be made.
+    /// `rate` in Hz; `comment` is stored in the file's metadata. `rf64_from`: size in bytes from which the file is
+    /// RF64, at most max_wav_bytes. Throws Error if the file cannot be created.
     SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format = SoundFormat::float_wav,
                 const std::string& comment = {}, std::uint64_t rf64_from = max_wav_bytes);
     ~SoundWriter();
     SoundWriter(SoundWriter&&) noexcept;
     SoundWriter& operator=(SoundWriter&&) noexcept;
 
-    /// `samples`: interleaved, frames × channels. Throws Error when the disk is full; nothing more may be written then.
+    /// `samples`: interleaved, frames × channels. Throws Error if the disk is full; nothing more may be written then.
     void write(const float* samples, std::size_t frames);
-    /// Completes the file and gives it its name, also after a failed `write`, with the samples written so far; without
-    /// samples no file is made. On failure throws Error and leaves the part. No writes may follow.
+    /// Completes the file and renames it, also after a failed `write`, with the samples written so far; without samples
+    /// no file is created. On failure throws Error and keeps the part file. No writes may follow.
     void finish();
 
 private:

@@ -22,7 +22,7 @@ public:
     double rate() const noexcept;  ///< Hz
     std::size_t channels() const noexcept;
     std::size_t frames() const noexcept;  ///< as stated in the header
-    /// What is wrong with the header of the file, if anything, one sentence.
+    /// Describes a defect of the file's header in one sentence; empty: none.
     const std::string& note() const noexcept;
     /// The comment of the file and the description of a broadcast wave; empty: none.
     std::string comment() const;
@@ -32,8 +32,8 @@ public:
     /// NaN or infinity.
     std::size_t read(double* samples, std::size_t frames);
 
-    /// Passes over frames from the start, without reading them where the format allows it. Throws Error when the file
-    /// is damaged.
+    /// Skips frames from the start, without reading them where the format allows it. Throws Error if the file is
+    /// damaged.
     void skip(std::size_t frames);
 
 private:

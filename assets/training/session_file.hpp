@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// session.json: the tasks of a training session and what was completed. docs/reference/task-file.md describes it.
+// session.json: the tasks of a training session and the completed attempts. docs/reference/task-file.md describes it.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct SessionFile {
     std::vector<SessionAttempt> attempts;  ///< completed, in the order of the tasks
 };
 
-/// Throws Error when the file is damaged, is of another format, or names a folder outside of the session.
+/// Throws Error if the file is damaged, has another format, or names a folder outside of the session.
 SessionFile load_session_file(const std::filesystem::path& path);
 
 /// Replaces the file as a whole, synced to disk. Throws Error.

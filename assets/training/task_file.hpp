@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Task files: what a trainee is to do on a bone, in TOML. The format is described in docs/reference/task-file.md.
+// Task files: the task of a trainee on a bone, in TOML. The format is described in docs/reference/task-file.md.
 #pragma once
 
 #include "dsp/training/planned_cut.hpp"
@@ -13,7 +13,7 @@
 
 namespace tactus::training {
 
-/// Of the key `format`.
+/// Value of the key `format`.
 inline constexpr int task_format = 1;
 
 /// A structure that must not be cut: a label of a label map.
@@ -21,11 +21,11 @@ struct SparedFile {
     std::string name;
     std::filesystem::path file;
     int label = 1;
-    double margin = 0.0;  ///< m; nearer is a warning
+    double margin = 0.0;  ///< m; a smaller distance is a warning
     int line = 0;         ///< in the task file
 };
 
-/// What an attempt should stay below. Empty: no limit.
+/// Limits that an attempt should not exceed. Empty: no limit.
 struct TaskLimits {
     std::optional<double> force;  ///< N, on the hand
     std::optional<double> time;   ///< s, from the first touch of the bone to the last
@@ -33,12 +33,12 @@ struct TaskLimits {
 };
 
 struct TaskFile {
-    std::filesystem::path file;  ///< where it was read, absolute
+    std::filesystem::path file;  ///< source file, absolute
     std::string title, about;
     std::filesystem::path bone;         ///< absolute; may end in "#NAME", as assets of a patch
-    std::string patch;                  ///< a path, or a name in the library; empty: the usual one
+    std::string patch;                  ///< a path, or a name in the library; empty: the default one
     std::vector<std::string> settings;  ///< NODE.PARAM=VALUE, for that patch
-    double length = 60.0;               ///< s: an attempt ends then
+    double length = 60.0;               ///< s: maximum duration of an attempt
     BladeSize blade;
     PlannedCut cut;
     bool is_guide = false;

@@ -10,14 +10,14 @@
 
 namespace tactus::transform {
 
-/// The text of a file that moves what it is applied to by `motion` (p_after = motion.apply(p_before), LPS). ITK stores
-/// the map from the space after the motion to the one before it, hence the inverse of the motion, in mm; Slicer inverts it
-/// when it loads the file. One AffineTransform_double_3_3: nine numbers of the matrix, row by row, then the translation.
+/// Returns the text of a file that applies `motion` (p_after = motion.apply(p_before), LPS). ITK stores the map from
+/// the space after the motion to the space before it, hence the inverse of the motion, in mm; Slicer inverts it when it
+/// loads the file. One AffineTransform_double_3_3: nine numbers of the matrix, row by row, then the translation.
 std::string text_of(const Pose& motion);
 
-/// The motion that a file describes. Reads one affine, matrix-offset, Euler, versor or quaternion transform of three
-/// dimensions, double or float, with a centre. Throws Error for other and composite transforms, and for a matrix that
-/// scales, shears or mirrors, since bones are rigid. `file` is the name in messages.
+/// Returns the motion that a file describes. Reads one affine, matrix-offset, Euler, versor or quaternion transform of
+/// three dimensions, double or float, with a centre. Throws Error for other and composite transforms, and for a matrix
+/// that scales, shears or mirrors, since bones are rigid. `file` is the name in messages.
 Pose motion_of_text(std::string_view text, const std::string& file);
 Pose read_motion(const std::filesystem::path& path);
 
