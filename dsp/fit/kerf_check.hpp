@@ -39,9 +39,9 @@ struct KerfEstimate {
     std::optional<double> told;  ///< m, mean width, as in FitSettings::kerf; the given kerf
     double kerf = 0.0, spread = 0.0;  ///< m, mean width
     ContourOpening contour;  ///< source of the estimate; no strips: the contour was not used, or none was found
-    /// True if the kerf from the contour would shift the halves by more than half a millimetre. If the contour locates
-    /// the opening only to more than 1 mm, the difference must also exceed two standard deviations; if no kerf was
-    /// given, half a standard deviation.
+    /// True if the contour contradicts the kerf: it would shift the halves by more than half a millimetre. A contour
+    /// with a standard deviation of 1 mm or more must give a shift of two standard deviations instead. Without a given
+    /// kerf, the shift must also exceed half a standard deviation.
     bool is_contradicted = false;
     /// True if no kerf was given and the contour does not exclude a loss of half a millimetre: its estimate plus half a
     /// standard deviation is larger. False without a contour.

@@ -24,8 +24,9 @@ public:
     /// `driven` lists the parameters of `plan` that wires drive. Both must outlive this object.
     Laws(const compile::Plan& plan, const DrivenParams& driven);
 
-    /// Returns nothing if the slope over an input that a hand reaches has no known bound: the node states none, a wire
-    /// drives a parameter, the units are unknown, or the node amplifies a value without changing its unit.
+    /// Returns nothing if the law has no known bound: the node states no slope over an input that a hand reaches, a
+    /// wire drives a parameter, a value is amplified, or the units are neither those of a spring or a damper nor
+    /// unchanged.
     std::optional<KnownLaw> of(std::size_t node, const std::vector<bool>& reached_by_hands) const;
 
 private:
