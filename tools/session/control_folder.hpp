@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of the control sockets. It may be in /tmp, where other users can create files and links, so it is checked
-// once and then accessed by its descriptor only.
+// The folder of the control sockets. It may be in /tmp, where other users can create files and links, so that it is
+// checked once and then accessed only by its descriptor.
 #pragma once
 
 #include <sys/un.h>
@@ -21,8 +21,8 @@ public:
         make,  ///< with access for the user only
         leave,
     };
-    /// Throws Error when it is a link, belongs to another user, or is accessible to others. A missing folder that is
-    /// not made has no names and no address.
+    /// Throws Error if it is a link, belongs to another user, or is accessible to others. A missing folder that is not
+    /// created has no names and no address.
     explicit ControlFolder(Missing missing);
     ~ControlFolder();
     ControlFolder(const ControlFolder&) = delete;
@@ -38,14 +38,14 @@ public:
     void remove_refusing() const;
     void remove(const std::string& name) const;
 
-    /// Locks the folder, so that one process at a time binds and cleans; waits at most 1 s. False: locked by another
-    /// one.
+    /// Locks the folder, so that only one process at a time binds and cleans; waits at most 1 s. Returns false if
+    /// another process holds the lock.
     bool lock() const;
     void unlock() const;
 
 private:
     std::vector<std::string> names() const;
-    /// The errno of connecting to that socket; 0: a process listens.
+    /// Returns the errno of connecting to that socket; 0: a process listens.
     int try_connection(const std::string& name) const;
 
     int folder_ = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hand felt in a run, as text.
+// Text about the forces on the hand in a run.
 #pragma once
 
 #include "graph/node/node.hpp"
@@ -8,11 +8,11 @@
 
 namespace tactus::session {
 
-/// A number of a report; `otherwise` when it has none.
+/// Returns a number of a report; `otherwise` if there is none.
 double number_in(const Report& report, const char* section, const char* key, double otherwise = 0.0);
 
-/// Lines on contact and force. A thrust is told only as far as the hand felt it: when forces were off, how much was felt
-/// and from when on they were off.
+/// Returns lines on contact and force. The thrust is reported as rendered: if forces were off, with the rendered
+/// fraction and the time from which they were off.
 std::string force_text(const Report& report);
 
 }  // namespace tactus::session

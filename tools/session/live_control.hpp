@@ -24,18 +24,18 @@ public:
     /// Called from LiveOptions::watch.
     void tend();
 
-    /// Also called from there: edits the run to this text, as if it had been saved.
+    /// Also called from there: edits the run to this text, as if the text had been saved.
     void edit(std::string text);
-    /// The patch was saved as another file, which is watched from now on; its relative paths start there.
+    /// Reports that the patch was saved as another file, which is watched from now on; its relative paths start there.
     void move_to(const std::filesystem::path& file);
-    /// Presses the button `node` by incrementing its parameter 'press'. Returns when it takes effect. Throws Error.
+    /// Presses the button `node` by incrementing its parameter 'press'. Returns the time of effect. Throws Error.
     Flicks press_button(const std::string& node);
     /// Handler of a saved file, in place of the default.
     std::function<void()> saved;
 
 private:
     void take_over_file();
-    /// `read` makes the patch, and is called on the thread that builds.
+    /// `read` creates the patch, and is called on the building thread.
     void edit_to(std::function<patch::Patch(patch::Problems&)> read);
     std::string answer(const std::string& line);
     /// Sets "NODE.PARAM=VALUE". Returns the answer for the caller. Throws Error.

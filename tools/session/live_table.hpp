@@ -14,19 +14,19 @@ namespace tactus::session {
 struct NodeTime {
     std::string node, group;
     double mean_us = 0.0, max_us = 0.0;
-    double share = 0.0;  ///< mean time relative to the group's period
+    double share = 0.0;  ///< mean time as a fraction of the group's period
 };
 
-/// At most `count` nodes, largest share first. For the control thread, or after the run.
+/// Returns at most `count` nodes, largest fraction first. For the control thread, or after the run.
 std::vector<NodeTime> slowest_nodes(const run::Engine& engine, std::size_t count);
 
-/// "3 skipped (2 woken late, 1 preempted)", or "" for none.
+/// Returns "3 skipped (2 woken late, 1 preempted)", or "" for none.
 std::string describe_lateness(const run::GroupRuntime& group);
 
 /// "+12 ppm, 0 underflows (0 frames of silence), 0 frames dropped, 0 left out".
 std::string describe_sound(const io::SoundCard& card);
 
-/// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
+/// Returns several lines without a final line end: time, force, faults, a row per group and the slowest nodes.
 std::string live_table(const run::Engine& engine, LetReturn way);
 
 }  // namespace tactus::session

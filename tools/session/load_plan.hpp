@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads a patch as the command line asks, up to a plan for the engine.
+// Loads a patch as specified on the command line and compiles it to a plan for the engine.
 #pragma once
 
 #include "engine/take/take_writer.hpp"
@@ -42,7 +42,7 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
 /// Reads and compiles, without assets. Problems are collected.
 std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems);
 
-/// Reads, compiles and loads assets. Throws when there are problems, as throw_problems() does.
+/// Reads, compiles and loads assets. Throws if there are problems, as throw_problems() does.
 compile::Plan load_plan(const PatchChoice& choice, compile::AssetCache& assets);
 
 /// The texts of the first twenty problems, and the number of the others.
@@ -51,11 +51,11 @@ std::vector<std::string> problem_lines(const patch::Problems& problems);
 /// Prints all lines but the last on standard error and throws the last; does nothing without problems.
 void throw_problems(const patch::Problems& problems);
 
-/// Starts a take of a run. Throws Error when the folder cannot be made or already has a take.
+/// Starts a take of a run. Throws Error if the folder cannot be created or already has a take.
 std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const std::filesystem::path& folder,
                                             double seconds, bool live);
 
-/// Makes `folder` and checks that it is writable. Throws Error.
+/// Creates `folder` and checks that it is writable. Throws Error.
 void make_output_folder(const std::filesystem::path& folder);
 
 }  // namespace tactus::session

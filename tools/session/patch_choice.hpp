@@ -12,14 +12,14 @@ namespace tactus::session {
 
 struct PatchChoice {
     std::string patch;  ///< a path, or a name in the library
-    std::optional<std::string> text;  ///< used in place of what the file holds; the file need not be there
+    std::optional<std::string> text;  ///< replaces the content of the file, which need not exist
     patch::PatchOverrides overrides;
     std::optional<std::uint64_t> seed;
 };
 
-/// The patch as given: its text, or the file's. Problems are collected. Throws Error when it cannot be read.
+/// Reads the given text or file. Problems are collected. Throws Error if it cannot be read.
 patch::Patch read_choice(const PatchChoice& choice, patch::Problems& problems);
-/// Where the patch is, or would be. Throws Error like find_patch().
+/// Path of the patch, even if the file does not exist. Throws Error like find_patch().
 std::filesystem::path file_of(const PatchChoice& choice);
 
 }  // namespace tactus::session

@@ -13,13 +13,13 @@
 namespace tactus::session {
 
 struct RenderedRun {
-    double seconds = 0.0;              ///< that were rendered
+    double seconds = 0.0;              ///< rendered duration
     std::string summary;               ///< as JSON
-    std::vector<std::string> losses;   ///< files that could not be written, and why
-    std::vector<std::string> faults;   ///< of devices, that were not recovered
+    std::vector<std::string> losses;   ///< files that could not be written, with the reason
+    std::vector<std::string> faults;   ///< device faults without recovery
 };
 
-/// Renders `choice.seconds` (required) into `choice.out`, and `choice.record` if it is named. Ends early when `stop` is
+/// Renders `choice.seconds` (required) into `choice.out`, and `choice.record` if it is given. Ends early when `stop` is
 /// set. Throws Error.
 RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, const std::atomic<bool>& stop,
                        const std::function<void(double done)>& progress);

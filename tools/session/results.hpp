@@ -15,8 +15,8 @@ struct WrittenFiles {
     std::vector<std::string> losses;  ///< reasons why files could not be written, with their names
 };
 
-/// Writes the cut bones of the report, one bone file each, and `with_pictures` a picture of each cut. Failures to draw
-/// are reported on standard error.
+/// Writes the cut bones of the report, one bone file each, and, `with_pictures`, an image of each cut. Errors in
+/// drawing are reported on standard error.
 WrittenFiles write_results(const Report& report, const std::filesystem::path& folder, bool with_pictures = true);
 
 }  // namespace tactus::session

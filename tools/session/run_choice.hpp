@@ -14,7 +14,7 @@ namespace tactus::session {
 struct RunChoice : PatchChoice {
     std::optional<double> seconds;
     double dilate = 1.0;
-    std::string audio;         ///< "", "file", "none", "default" or part of a card's name
+    std::string audio;         ///< "", "file", "none", "default" or a substring of a card's name
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
     bool overwrite = false;   ///< replace existing results

@@ -31,9 +31,9 @@ public:
     /// Called from Hooks::tend: starts or stops recording. The first start uses the given folder. Throws Error.
     void record(const std::filesystem::path& folder);
     void stop_recording() { engine_->record(false); }
-    /// Completes recordings and writes pictures, bones and the summary. Failed writes are added to the losses.
+    /// Completes recordings and writes images, bones and the summary. Failed writes are added to the losses.
     void finish();
-    /// Files that could not be completed, and why; grows during the run.
+    /// Files that could not be completed, with the reason; grows during the run.
     std::vector<std::string> losses() const;
 
     run::Engine& engine() { return *engine_; }
@@ -52,7 +52,7 @@ private:
     compile::AssetCache& assets_;
     std::unique_ptr<OutputFolder> folder_;
     std::vector<std::string> late_losses_;  // of files written after the run
-    bool is_journal_ = false;  // the take is only a journal so far
+    bool is_journal_ = false;  // the take contains only a journal so far
     std::unique_ptr<take::TakeWriter> take_;
     std::unique_ptr<run::Engine> engine_;
     std::unique_ptr<LiveControl> control_;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A blade's size stands in several places of a patch and its task: they must agree.
+// Checks that the sizes of a blade agree that a patch and its task specify in several nodes.
 #pragma once
 
 #include "graph/compile/plan.hpp"
 
 namespace tactus::session {
 
-/// Adds a problem where `carve` removes a narrower kerf than a saw or burr cuts, where `kerf_heat` has another stroke
-/// than the saw, where a task is for another blade, and where the bone of a task is too coarse for the kerf: `carve`
-/// would resample it at a site of its own, which scores cannot compare. Tasks count once their files are loaded.
+/// Adds a problem if `carve` removes a narrower kerf than a saw or burr cuts, if `kerf_heat` has another stroke than
+/// the saw, if a task specifies another blade, or if the bone of a task is too coarse for the kerf. In the last case
+/// `carve` would resample it at a site of its own, so that scores would not be comparable. Tasks are checked once their
+/// files are loaded.
 void check_saw(const compile::Plan& plan, patch::Problems& problems);
 
 }  // namespace tactus::session

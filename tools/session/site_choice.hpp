@@ -12,12 +12,12 @@
 namespace tactus::session {
 
 struct SiteText {
-    std::string site;      ///< "X,Y,Z" in mm, empty: the program finds a site
+    std::string site;      ///< "X,Y,Z" in mm; empty: the site is found automatically
     std::string approach;  ///< "X,Y,Z", a direction; empty: along the surface's normal
     std::string along;     ///< "X,Y,Z", a direction of the stroke; empty: over the narrowest width
 };
 
-/// A parameter of a node and its value, as people write it.
+/// A parameter of a node and its value as text.
 struct SiteSetting {
     std::string node, param, value;
 };
@@ -27,8 +27,8 @@ struct SiteSetting {
 std::vector<SiteSetting> site_settings(const patch::Patch& patch, const Vec3& site_mm, const Vec3& approach = Vec3(0.0),
                                        const Vec3& along = Vec3(0.0));
 
-/// Adds the site to the choice's settings, for each workspace with a bone and each carve node of the patch. Throws Error
-/// for text that is no three numbers, and for a patch without such nodes.
+/// Adds the site to the choice's settings, for each workspace with a bone and each carve node of the patch. Throws
+/// Error for text that is not three numbers, and for a patch without such nodes.
 void choose_site(PatchChoice& choice, const SiteText& text);
 
 }  // namespace tactus::session

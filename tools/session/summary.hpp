@@ -19,7 +19,7 @@ std::vector<std::string> unrecovered(const run::Engine& engine);
 std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,
                          const std::vector<std::string>& files, const std::vector<std::string>& losses);
 
-/// The summary as a few lines of text. `wall_seconds`: how long an offline run took; none: the run was live.
+/// Returns the summary as a few lines of text. `wall_seconds`: duration of an offline run; empty: the run was live.
 std::string summary_text(const run::Engine& engine, const Report& report, double seconds,
                          std::optional<double> wall_seconds);
 

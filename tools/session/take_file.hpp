@@ -15,7 +15,7 @@ struct TakeChoice {
     std::filesystem::path file;
     std::string role;      ///< "reference" or "output", for messages
     table::LogSelection log;
-    /// units per full scale, or per unit of a log; 1: as the file states, accelerations in m/s²
+    /// Units per full scale, or per unit of a log; 1: as stated in the file, accelerations in m/s².
     double scale = 1.0;
     int channel = 0;       ///< from 1; 0: the mean of all
     sound::Stretch stretch{};
@@ -41,12 +41,12 @@ public:
     double rate() const { return reader_->rate(); }  ///< Hz
     const sound::ReadStretch& stretch() const { return reader_->stretch(); }
     double peak() const { return peak_; }            ///< greatest absolute value, scaled
-    /// True when the values are in SI units, by what the file states.
+    /// True if the values are in SI units according to the file.
     bool is_calibrated() const { return is_calibrated_; }
     const std::vector<std::string>& notes() const { return notes_; }
 
 private:
-    /// Per frame the value of the channel, or the mean.
+    /// Computes the value of the channel, or the mean, per frame.
     void mix(const sound::RecordBlock& block, std::vector<double>& out) const;
 
     TakeChoice choice_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of a training session: tasks in order, one attempt at each, kept and resumed.
+// The folder of a training session: tasks in order with one attempt each; it is saved and can be resumed.
 //
 //   DIR/PSEUDONYM/1/session.json          trainee, tasks, attempts; replaced as a whole after each attempt
 //   DIR/PSEUDONYM/1/01-NAME/run, /take    results and take of the attempt at the first task
@@ -15,8 +15,8 @@
 
 namespace tactus::session {
 
-/// Throws Error unless `name` is 1 to 64 letters, digits, '-', '_' or '.', beginning with a letter or digit: it becomes
-/// the name of a folder.
+/// Throws Error unless `name` is 1 to 64 letters, digits, '-', '_' or '.', beginning with a letter or digit. The
+/// restriction is needed because it becomes the name of a folder.
 void check_pseudonym(const std::string& name);
 
 class TrainingSession {
@@ -25,11 +25,11 @@ public:
         std::string trainee;
         std::filesystem::path out;
         std::vector<training::SessionTask> tasks;
-        bool is_new = false;  ///< begin another session although the last one is not complete
+        bool is_new = false;  ///< start a new session although the last one is not complete
     };
-    /// Opens the trainee's last session when it is not complete, else begins the next one; locks it until destroyed.
-    /// Attempts that were cut off are put aside. Throws Error when the session to resume has other tasks, when another
-    /// program has it, or when the folder cannot be written.
+    /// Opens the trainee's last session if it is not complete, otherwise starts the next one; locks it until destroyed.
+    /// Moves interrupted attempts aside. Throws Error if the session to resume has other tasks, if another program has
+    /// locked it, or if the folder cannot be written.
     explicit TrainingSession(const Choice& choice);
     TrainingSession(const TrainingSession&) = delete;
     TrainingSession& operator=(const TrainingSession&) = delete;
@@ -40,13 +40,13 @@ public:
     std::size_t done() const { return file_.attempts.size(); }
     bool is_complete() const { return done() == count(); }
     std::size_t count() const { return file_.tasks.size(); }
-    /// Folder of the next attempt; made by this call.
+    /// Creates and returns the folder of the next attempt.
     std::filesystem::path begin_attempt() const;
-    /// The next attempt came to its end: from now on it is not repeated, whatever happens. Throws Error.
+    /// Marks the next attempt as completed, so that it is never repeated. Throws Error.
     void complete_attempt(double seconds, bool ended_early);
 
 private:
-    /// Of the session's folder; the system releases it when the program dies.
+    /// Lock of the session's folder; the system releases it when the process ends.
     struct Lock {
         int handle = -1;
         explicit Lock(int opened = -1) : handle(opened) {}
@@ -70,7 +70,7 @@ bool is_training_session(const std::filesystem::path& folder);
 /// Folders of the completed attempts of a session, in order. Throws Error when session.json is damaged.
 std::vector<std::filesystem::path> completed_attempts(const std::filesystem::path& session);
 
-/// The trainee of the session that an attempt's folder is in; empty when it is in none.
+/// Returns the trainee of the session that contains an attempt's folder; empty if there is none.
 std::string trainee_of_attempt(const std::filesystem::path& attempt);
 
 }  // namespace tactus::session

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computations beside the pictures of a window: they read, and nobody waits for one that is wanted no longer.
+// Background computations for a window: they only read, and a computation that is no longer wanted is not waited for.
 #pragma once
 
 #include <chrono>
@@ -15,25 +15,26 @@
 
 namespace tactus::study {
 
-/// This thread, and those that it makes from now on, get the priority of background work.
+/// Gives this thread, and those that it creates from now on, the priority of background work.
 void let_others_go_first() noexcept;
 
-/// Each lane has one thread of low priority and does one job after another: a bone of the scene does not wait for a study
-/// of a plan, and many bones do not take the processors from the forces.
+/// Each lane has one thread of low priority that executes one job after another. So a mesh of the scene does not wait
+/// for a study of a plan, and many bones do not take processor time from the forces.
 enum class Lane : std::uint8_t {
-    scene,  ///< meshes and sections: a second at most
+    scene,  ///< meshes and sections: at most a second
     studies,  ///< of a plan or a scan: many seconds
 };
 
-/// Does `job` after those that were given to the lane before. It must not throw.
+/// Queues `job` after the earlier jobs of the lane. It must not throw.
 void do_beside(Lane lane, std::function<void()> job);
-/// Of a lane: given and not begun.
+/// Number of queued jobs of a lane that have not started.
 std::size_t jobs_waiting(Lane lane);
-/// Drops what was not begun and waits for the rest; from then on nothing is begun. The end of the program calls this
-/// before what a job may use is gone.
+/// Drops queued jobs and waits for running ones; afterwards no job is started. Call it at the end of the program,
+/// before the data that jobs may use is destroyed.
 void end_beside();
 
-/// The result of one computation that only reads. Its end asks the computation to stop, and does not wait for it.
+/// The result of one computation that only reads. The destructor requests the computation to stop, without waiting for
+/// it.
 template <class T>
 class Beside {
 public:
@@ -48,7 +49,7 @@ public:
         return *this;
     }
 
-    /// In place of what was begun before. `work`: T() or T(std::stop_token); it owns what it reads.
+    /// Starts a computation instead of the previous one. `work`: T() or T(std::stop_token); it must own its input.
     template <class Work>
     void begin(Lane lane, Work work) {
         let_go();
@@ -67,13 +68,13 @@ public:
         });
     }
 
-    /// Begun, and not taken.
+    /// True if a computation was started and its result not taken.
     bool is_busy() const { return result_.valid(); }
-    /// Begun, and `take` does not wait.
+    /// True if the result is available, so that `take` does not wait.
     bool is_ready() const {
         return result_.valid() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     }
-    /// Waits for it. Throws what the computation threw.
+    /// Waits for the result and returns it. Rethrows an exception of the computation.
     T take() { return result_.get(); }
     void let_go() {
         stop_.request_stop();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work for Beside that is left when its result is let go.
+// Cancellation of background work when its result is discarded.
 #pragma once
 
 #include "dsp/core/stop.hpp"
@@ -9,7 +9,7 @@
 
 namespace tactus::study {
 
-/// The same work; what it calls looks whether it is to stop, see StopScope.
+/// Wraps the work so that the functions it calls check for cancellation, see StopScope.
 template <class Work>
 auto leaving(Work work) {
     return [work = std::move(work)](std::stop_token stop) mutable {

@@ -17,7 +17,7 @@ struct SawPath {
 };
 
 /// Fills in missing names: the only node of type 'saw'; the output recorded as handle.wav, otherwise that of the only
-/// actuator. Throws Error naming the options --saw and --out when this is ambiguous.
+/// actuator. Throws Error naming the options --saw and --out if this is ambiguous.
 SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out,
                       compile::Catalogue catalogue);
 

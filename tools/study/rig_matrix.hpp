@@ -18,7 +18,7 @@ struct RigObject {
     double stiffness = 0.0, damping = 0.0;      ///< N/m, N·s/m
 };
 
-/// An assumed option of a motor with its lower and upper limit, as written in a patch.
+/// An assumed option of a motor with its lower and upper limit, in the syntax of a patch.
 struct RigAssumption {
     std::string motor, option, low, high;
 };

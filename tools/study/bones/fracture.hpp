@@ -10,7 +10,7 @@
 namespace tactus::study {
 
 struct FractureSettings {
-    int pieces = 2, missing = 0;             ///< missing: number of the smallest pieces that are lost
+    int pieces = 2, missing = 0;             ///< missing: number of the smallest fragments to omit
     std::uint64_t seed = 1;
     double chips = 0.0;                      ///< fraction of the area
     double kerf = 0.0, roughness = 0.8e-3;   ///< m

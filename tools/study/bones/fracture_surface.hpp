@@ -14,7 +14,7 @@ namespace tactus::study {
 
 struct FractureSurfaceSettings {
     std::filesystem::path bone;        ///< bone file or closed mesh
-    std::filesystem::path paint;       ///< file of strokes in place of the proposal; empty: none
+    std::filesystem::path paint;       ///< file of strokes instead of the proposal; empty: none
     std::vector<std::filesystem::path>
         facing;      ///< other fragments of the same scan: proposes the surface that faces them; empty: none
     std::filesystem::path intact;      ///< the unbroken bone: proposes the surface inside of it; empty: none
@@ -24,7 +24,7 @@ struct FractureSurfaceSettings {
     std::optional<double> least_area;  ///< m²; none: the default of each method
     bool mirror = false;               ///< `intact` is from the other side of the body
     bool correct = false;              ///< apply `paint` on top of the proposal
-    bool whole = true;  ///< also loads the bone's volume, to be written
+    bool whole = true;  ///< also load the bone's volume, for writing
     bool keep = false;                 ///< keep the paint of the bone file; `facing` and `intact` add to it
 };
 
@@ -35,10 +35,10 @@ struct LaidIntact {
 };
 
 struct FractureSurface {
-    bone::Bone bone;  ///< its points are labelled; only they are there unless `whole`
+    bone::Bone bone;  ///< its points are labelled; it has only points unless `whole`
     std::optional<LaidIntact> intact;
-    double as_scanned = 0.0;  ///< m² that touch another fragment in the scan: no paint covers them
-    std::string note;  ///< about a kept result (see kept_result.hpp) that was no use; else empty
+    double as_scanned = 0.0;  ///< m² in contact with another fragment in the scan, which cannot be painted
+    std::string note;  ///< about an invalid cached result (kept_result.hpp); otherwise empty
 };
 
 /// Throws Error.

@@ -32,8 +32,8 @@ struct Inspection {
     std::array<double, 2> range{};     ///< range of the values: HU or scanner values, labels, or kg/m³ for a bone
     std::optional<double> threshold;   ///< for a CT: the one that import uses without --threshold
     std::string threshold_from;        ///< its method
-    std::string unit;                  ///< of a mesh: "mm", "cm" or "m"; "mm" for all else; "" when it must be asked
-    std::string unit_question;         ///< what to ask, one sentence; see volume::unit_question
+    std::string unit;                  ///< of a mesh: "mm", "cm" or "m"; otherwise "mm"; "" if it must be given
+    std::string unit_question;         ///< the question about the unit, one sentence; see volume::unit_question
     std::vector<InspectedPart> parts;  ///< largest first; labels and bones in file order
     std::size_t parts_in_all = 0;      ///< includes small parts of a CT that are not listed
     volume::Histogram histogram;               ///< 24 bins
@@ -50,7 +50,7 @@ struct Inspection {
     std::vector<std::vector<Painted>> painted;
 };
 
-/// How to read the file: as in bone::ImportOptions.
+/// Settings for reading the file, as in bone::ImportOptions.
 struct InspectionOptions {
     std::string series;
     std::optional<std::string> unit;

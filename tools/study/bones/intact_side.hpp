@@ -20,27 +20,27 @@ namespace tactus::study {
 /// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder);
 
-/// The same as a target, of the plan's state; none: it has no healthy side.
+/// The same as a registration target, for the plan's state; empty if it has no healthy side.
 std::optional<fit::RegistrationTarget> healthy_side(const cases::PlanState& state, const std::filesystem::path& folder);
 
-/// m, median. The two sides of a body, and two scans, differ by about a millimetre; a bone that lies wrongly, or another
-/// bone, is off by several.
+/// m, largest accepted median. The two sides of a body, and two scans, differ by about a millimetre; a misplaced or
+/// different bone differs by several.
 inline constexpr double most_intact_median = 2e-3;
 
-/// Numbers of a registration of the unbroken bone, see IntactBone.
+/// Count of the numbers of a registration of the unbroken bone, see IntactBone.
 inline constexpr std::size_t intact_numbers = 11 + 4 + 7;
 
-/// The unbroken bone of a file: a bone file, a CT or a mesh. Loaded when it is needed.
+/// The unbroken bone of a file: a bone file, a CT or a mesh. Loaded on demand.
 class IntactBone {
 public:
     IntactBone(std::filesystem::path file, bool mirror) : file_(std::move(file)), mirror_(mirror) {}
 
-    /// Registers it to a fragment from any position: the registration of the fragment's points to it, and how it lies
-    /// on the fragment. Throws Error for a file without surface.
+    /// Registers it to a fragment from any position. Returns the registration of the fragment's points to it, and its
+    /// pose on the fragment. Throws Error for a file without surface.
     std::vector<double> numbers_on(std::span<const contact::SurfacePoint> main);
-    /// About kept points that were no use; else empty.
+    /// Describes invalid cached points; otherwise empty.
     const std::string& note() const { return note_; }
-    /// Its points in the frame of the fragment, from these numbers after the registration.
+    /// Returns its points in the frame of the fragment, from the numbers after the registration.
     std::vector<contact::SurfacePoint> laid(NumberReader& numbers);
 
 private:

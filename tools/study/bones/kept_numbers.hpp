@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Registrations as lists of numbers, for kept results.
+// Registrations as lists of numbers, for cached results.
 #pragma once
 
 #include "assets/cases/kept_result.hpp"
@@ -17,7 +17,7 @@ void add_pose(cases::ResultKey& key, const Pose& pose);
 void add_registration(std::vector<double>& numbers, const fit::Registration& r);
 std::vector<double> numbers_of_mirror_fit(const fit::MirrorFit& fit);
 
-/// Reads what the functions above wrote, in the same order. Numbers that are missing are 0.
+/// Reads numbers written by the functions above, in the same order. Missing numbers are 0.
 class NumberReader {
 public:
     explicit NumberReader(std::vector<double> numbers) : numbers_(std::move(numbers)) {}

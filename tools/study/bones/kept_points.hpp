@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surface points of fragments, made once and kept (assets/cases/kept_points.hpp).
+// Surface points of fragments, computed once and cached (assets/cases/kept_points.hpp).
 #pragma once
 
 #include "assets/cases/kept_points.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::study {
 
-/// The surface of a fragment with its paint: the points in a bone file, else sampled as they are for fits.
+/// Returns the surface of a fragment with its paint: the points of a bone file, otherwise points sampled as for fits.
 /// Throws Error.
 std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::path& path, std::string& note);
 

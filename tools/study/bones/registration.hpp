@@ -16,7 +16,7 @@ struct RegisterSettings {
     std::filesystem::path moving, fixed;              ///< bone files or meshes, which need not be closed
     double away = 1.5e-3, gap = 3e-3, margin = 2e-3;  ///< m, for a displaced region
     bool mirror = false;                              ///< the moving surface is from the other side of the body
-    bool anywhere = false;  ///< the position in the files means nothing; false: it is preferred to one that fits equally well
+    bool anywhere = false;  ///< the positions in the files have no meaning; false: they decide between equal fits
     bool region = false;  ///< also find a displaced part
 };
 

@@ -16,7 +16,7 @@ namespace tactus::study {
 struct FragmentPaint {
     std::optional<std::filesystem::path> file;  ///< strokes of 'fracture-surface'
     std::vector<Vec3> strokes;                  ///< with `radius`: centres of brush strokes, m
-    std::optional<double> radius;  ///< m; none, and no file: the paint in the bone file, otherwise a proposal
+    std::optional<double> radius;  ///< m; none and no file: paint of the bone file, otherwise proposed
     std::string name;  ///< name of the strokes in the result
 };
 
@@ -31,7 +31,7 @@ struct SnapSettings {
 struct SnappedSide {
     std::string paint;  ///< source of the paint: "file", "proposed" or the name of strokes
     std::vector<double> areas;  ///< area of each face, m²
-    double as_scanned = 0.0;  ///< m² that touch another fragment in the scan and are left out
+    double as_scanned = 0.0;  ///< m² in contact with another fragment in the scan, which are excluded
 };
 
 struct Snapped {

@@ -16,7 +16,7 @@ namespace tactus::study {
 bool is_mesh(const std::filesystem::path& path);
 /// The surface in the frame of the file, m: triangles of a mesh, or the zero surface of a bone's `distance`.
 geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const volume::Grid& distance);
-/// The vertices of a mesh, or the surface points of a bone; `spacing`, m: of a bone without points. Meshes need not be
+/// The vertices of a mesh, or the surface points of a bone; `spacing`, m: for a bone without points. Meshes need not be
 /// closed. Throws Error.
 std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path, double spacing = 0.5e-3);
 

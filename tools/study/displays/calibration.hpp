@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a calibration, for the terminal and the window: what to touch, the fit, the display file.
+// The steps of a calibration for the terminal and the window: the touches, the fit, the display file.
 #pragma once
 
 #include "assets/display/display_file.hpp"
@@ -13,24 +13,24 @@
 
 namespace tactus::study {
 
-/// The touches to make, in order: first those for the pose of the device, which the others depend on. Throws Error when
-/// there are none.
+/// Returns the required touches in order: first those for the pose of the device, on which the others depend. Throws
+/// Error if there are none.
 std::vector<display::Touch> calibration_steps(const CalibrationSettings& settings);
 
-/// Throws Error when neither the settings nor the base file name a screen. Called before the first touch.
+/// Throws Error if neither the settings nor the base file name a screen. Call it before the first touch.
 void check_screens(const CalibrationSettings& settings, const display::DisplayFile& base);
 
 /// "touch screen 'left' at 10 % of its width from the left and 90 % of its height from below"
 std::string prompt_of(const display::Touch& step);
 
-/// Options of the fit; what is not touched comes from the base file. Throws Error.
+/// Returns the options of the fit; parts that are not touched come from the base file. Throws Error.
 display::DisplayFitOptions fit_options(const CalibrationSettings& settings, const display::DisplayFile& base);
 
 /// Residuals of all touches, m.
 struct TouchesOff {
     double rms = 0.0, worst = 0.0;
     std::size_t count = 0;
-    std::size_t worst_touch = 0;  ///< index of the touch with the greatest residual
+    std::size_t worst_touch = 0;  ///< index of the touch with the largest residual
 };
 TouchesOff touches_off(const display::DisplayFit& fit);
 

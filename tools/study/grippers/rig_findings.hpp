@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of two motors renders better, from their errors under all assumptions.
+// Compares the rendering errors of two motors under all assumptions.
 #pragma once
 
 #include "tools/study/grippers/rig_report.hpp"
@@ -17,7 +17,7 @@ using RigErrors = std::vector<std::vector<double>>;
 RigCrossover find_crossover(const std::vector<double>& rates, double stiffness, double amplitude, const RigErrors& slow,
                             const RigErrors& fast);
 
-/// For how many pairs of assumptions the error of `better` at the first rate is the smaller one.
+/// Counts the pairs of assumptions for which the error of `better` at the first rate is the smaller one.
 RigFinding count_cases(std::string claim, const RigErrors& better, const RigErrors& worse);
 
 }  // namespace tactus::study

@@ -19,14 +19,14 @@ struct RigCell {
     RigObject object;
     double rate = 1.0;        ///< Hz
     double amplitude = 0.025; ///< m, amplitude of the cord
-    std::optional<double> feed_forward;  ///< none: as in the patch
+    std::optional<double> feed_forward;  ///< empty: as in the patch
     std::vector<std::string> settings;   ///< further overrides, "devices.wqsm.lag=1 ms"
 };
 
 struct RigRow {
     RigCell cell;
     control::Fidelity fidelity;
-    std::string failure;  ///< why there is no result; empty: success
+    std::string failure;  ///< reason of a failure; empty: success
 };
 
 /// Names of the nodes that a rig study needs.
@@ -42,7 +42,7 @@ inline constexpr double rig_settle_s = 2.0;
 
 struct RigRun {
     control::RigSeries series;
-    double max_speed = 0.0;  ///< m/s, greatest speed of the motor
+    double max_speed = 0.0;  ///< m/s, largest speed of the motor
 };
 
 /// Throws Error.

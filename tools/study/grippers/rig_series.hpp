@@ -18,7 +18,7 @@ namespace tactus::study {
 std::vector<std::pair<RigCell, control::RigSeries>> load_rig_series(const std::filesystem::path& path,
                                                                     std::vector<std::string>& notes);
 
-/// One record of such a file, with the header when it is the first.
+/// Returns one record in the format of such a file, with the header if it is the first.
 std::string rig_series_csv(const RigCell& cell, const control::RigSeries& series, bool first);
 
 }  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masses thrown at every contact on devices as they are: how much of their energy comes back.
+// Throws masses at every contact, on simulated devices, and measures the returned energy.
 #pragma once
 
 #include <functional>
@@ -21,19 +21,19 @@ struct BounceRow {
     double stiffness = 0.0, speed = 0.0, mass = 0.0;  ///< N/m, m/s, kg
     double energy_ratio = 0.0;          ///< kinetic energy after the contact over that before
     double energy_ratio_without = 0.0;  ///< without the energy cap
-    double bound = 0.0;                 ///< of the first
+    double bound = 0.0;                 ///< of `energy_ratio`
     bool ok() const { return energy_ratio <= bound; }
 };
 
-/// Types that make a contact force, and couplings with their contact.
+/// Node types with a contact force, and couplings with their contact.
 const std::vector<std::string>& bounce_nodes();
-/// "ideal" and the simulated devices.
+/// Returns "ideal" and the simulated devices.
 const std::vector<std::string>& bounce_devices();
 
-/// 1.05 of the energy on a device whose steps are at most 20 µm, otherwise 1.10.
+/// Returns 1.05 for a device with a resolution of at most 20 µm, otherwise 1.10.
 double bounce_bound(const std::string& device);
 
-/// Runs the matrix, offline; `tell` gets each row as it is done. Throws Error for a name that does not exist.
+/// Runs the matrix, offline; `tell` receives each row when it is complete. Throws Error for a name that does not exist.
 std::vector<BounceRow> throw_at_contacts(const BounceMatrix& matrix, const std::function<void(const BounceRow&)>& tell);
 
 }  // namespace tactus::study

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that may be wrong with a plan, in one list: 'plan show', 'check', 'reach', 'report' and the window print this list and
-// no other, so that none of them can contradict another.
+// All warnings of a plan in one list. 'plan show', 'check', 'reach', 'report' and the window all print this list, so
+// that they cannot contradict each other.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -20,37 +20,38 @@ struct CaseWarning {
     /// reconstruct::PlanWarning and FlapTrouble.
     std::string code;
     std::string text;
-    std::string object, other;  ///< fragments, screws, vessels; "" when there is none
-    /// The plan is not finished or contradicts itself: 'plan check' exits with 1. Others are for a surgeon's judgement.
+    std::string object, other;  ///< fragments, screws, vessels; "" if there is none
+    /// True if the plan is unfinished or inconsistent: 'plan check' then exits with 1. Others are for a surgeon's
+    /// judgement.
     bool is_fault = false;
 };
 
 struct CaseWarnings {
     std::vector<CaseWarning> all;
-    /// False: overlaps, vessels and hardware were not measured for this version of the plan.
+    /// False if overlaps, vessels and hardware were not measured for this version of the plan.
     bool is_measured = true;
-    std::vector<std::string> notes;  ///< about kept results that were no use
+    std::vector<std::string> notes;  ///< about invalid cached results
 
     bool has_fault() const;
 };
 
-/// m and rad by which a piece may lie away from its planned place: poses in files have more digits.
+/// m and rad: tolerance of a piece's pose against the plan, for the rounding of poses.
 inline constexpr double max_away = 0.1e-3, max_turned = 0.1 * 3.14159265358979323846 / 180.0;
-/// m: between two faces that are planned to meet. A placeholder, not from a source.
+/// m: largest gap between two faces that are planned to touch. A placeholder, without a source.
 inline constexpr double max_joint_gap = 0.5e-3;
 
-/// The whole list for the head of the current alternative. What needs the surfaces of fragments is kept by the content of
-/// the plan and its files (kept_result.hpp), so that it is measured once per version of a plan. `folder`: of the plan.
-/// Throws Error.
+/// Returns the whole list for the head of the current alternative. Measurements on the surfaces of fragments are cached
+/// by the content of the plan and its files (kept_result.hpp), so that they run once per version of a plan. `folder`:
+/// of the plan. Throws Error.
 CaseWarnings case_warnings(const cases::CasePlan& plan, const std::filesystem::path& folder);
-/// The same without measuring: what needs no surface of a fragment, and the rest if it is kept. Never takes long.
+/// The same without new measurements: warnings that need no surface of a fragment, and others if they are cached. Fast.
 CaseWarnings known_warnings(const cases::CasePlan& plan, const std::filesystem::path& folder);
 
-/// Of the cuts and of a flap alone, as for a candidate that is no plan yet. Two things that come near each other are one
-/// warning.
+/// Returns the warnings of the cuts and of a flap only, as for a candidate that is not a plan yet. Two objects that are
+/// too close to each other give one warning.
 std::vector<CaseWarning> warnings_of(const reconstruct::FibulaPlan& fibula, const reconstruct::FlapMeasures& measures);
 
-/// A list of {code, text, object, other, fault}.
+/// Returns a list of {code, text, object, other, fault}.
 file::Json json_of(const std::vector<CaseWarning>& warnings);
 
 }  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A candidate of the ranking becomes an alternative of the plan.
+// Converts a candidate of the ranking to an alternative of the plan.
 #pragma once
 
 #include "dsp/reconstruct/ranking.hpp"
@@ -16,10 +16,10 @@ struct TakenCandidate {
     reconstruct::Candidate candidate;
 };
 
-/// Ranks the reconstruction of the plan's current state and makes the candidate of that `number` (from 1, best first)
-/// an alternative with pieces of its own, as make_reconstruction does. Of the mirrored leg the donor's surface is
-/// written to "NAME-ALTERNATIVE-donor.stl" beside the plan. Throws Error for a candidate that is excluded, for a file
-/// that exists, and as FlapStudy and make_reconstruction do; then nothing is left behind.
+/// Ranks the reconstruction of the plan's current state and makes candidate `number` (from 1, best first) an
+/// alternative with its own pieces, as make_reconstruction does. For the mirrored leg, the donor's surface is written
+/// to "NAME-ALTERNATIVE-donor.stl" beside the plan. Throws Error for an excluded candidate, for a file that exists, and
+/// as FlapStudy and make_reconstruction do; then no file is left.
 TakenCandidate take_candidate(const std::filesystem::path& plan, std::size_t number, const std::string& alternative);
 
 }  // namespace tactus::study

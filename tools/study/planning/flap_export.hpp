@@ -13,14 +13,14 @@
 namespace tactus::study {
 
 /// One file per markup, LPS, mm, schema 1.0.3: a Plane per cut of the jaw and per osteotomy of the donor (in the donor's
-/// frame), a Curve per vessel as it is placed and as it was in the leg (in the donor's frame) and per plate, a Line per
-/// screw and implant, and the sites. Of each curve of a vessel also a tube (`mesh_type`: .stl or .ply) and a .vtp line.
-/// Returns the names of the files. Throws Error.
+/// frame), a Curve per vessel as placed and as in the leg (in the donor's frame) and per plate, a Line per screw and
+/// implant, and the sites. For each curve of a vessel also a tube (`mesh_type`: .stl or .ply) and a .vtp line. Returns
+/// the names of the files. Throws Error.
 std::vector<std::string> export_flap(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
                                      const reconstruct::Flap& flap, const reconstruct::FlapMeasures& measures,
                                      const std::filesystem::path& out, const std::string& mesh_type);
 
-/// Characters that a file name must not contain are replaced.
+/// Returns the name with characters replaced that a file name must not contain.
 std::string file_name_of(const std::string& name);
 
 }  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reconstruction that a plan holds, with its surfaces: what is measured of it, and how it is changed.
+// Measures and changes the reconstruction in a plan, with its surfaces.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -19,7 +19,7 @@
 
 namespace tactus::study {
 
-/// Bone as paths of vessels see it: distances in a frame of its own.
+/// Bone as an obstacle for paths of vessels: distances in their own frame.
 struct BoneAsObstacle {
     contact::Voxmap map;
     rope::BoneField field;
@@ -29,12 +29,12 @@ struct BoneAsObstacle {
     BoneAsObstacle& operator=(const BoneAsObstacle&) = delete;
 };
 
-/// Loads the meshes that the plan names. Measures hold for the segments where the plan has them now, or where they are
-/// planned while one of them lies in the leg still; candidates for where the inputs place them.
+/// Loads the meshes that the plan names. Measurements use the current poses of the segments in the plan, or the planned
+/// ones if one of them still lies in the leg; candidates use the poses of the inputs.
 class FlapStudy {
 public:
-    /// `folder`: of the plan. Throws Error when the plan's state has no reconstruction, and for files that are missing,
-    /// have changed or are no meshes.
+    /// `folder`: of the plan. Throws Error if the plan's state has no reconstruction, and for files that are missing,
+    /// have changed or are not meshes.
     FlapStudy(const cases::CasePlan& plan, const cases::PlanState& state, const std::filesystem::path& folder);
 
     const reconstruct::FibulaInputs& inputs() const { return inputs_; }  ///< with surfaces
@@ -42,7 +42,7 @@ public:
     const reconstruct::Flap& flap() const { return all_.flap; }
     const reconstruct::Reconstruction& reconstruction() const { return all_; }
     const std::vector<Vec3>& tumour() const { return tumour_; }
-    /// Number of the fragment of each segment and its pose in the plan; empty when the plan does not have all segments.
+    /// Fragment and pose of each segment in the plan; empty if the plan does not have all segments.
     struct SegmentPlace {
         int fragment = 0;
         Pose pose;
@@ -75,18 +75,18 @@ private:
     std::vector<std::unique_ptr<BoneAsObstacle>> jaw_;
 };
 
-/// Of a piece of jaw or donor, a mesh or a bone file: m, in the frame of its file. Throws Error.
+/// Reads the surface of a piece of jaw or donor from a mesh or a bone file: m, in the frame of its file. Throws Error.
 geometry::TriangleSurface surface_of_piece(const std::filesystem::path& file);
 
-/// Whether a fragment's name is that of a segment, "segment-2" or "segment-2-ALTERNATIVE".
+/// Returns whether a fragment has the name of a segment, "segment-2" or "segment-2-ALTERNATIVE".
 bool is_segment(const std::string& name);
 
-/// Loads a plan, lets `change` alter its reconstruction and adds that as a step. Throws Error when there is none, when
-/// the result cannot be, and what `change` throws; then the plan stays as it was.
+/// Loads a plan, applies `change` to its reconstruction and adds the result as a step. Throws Error if there is no
+/// reconstruction or the result is invalid, and rethrows errors of `change`; then the plan is unchanged.
 void change_reconstruction(const std::filesystem::path& plan,
                            const std::function<void(reconstruct::Reconstruction&, const cases::CasePlan&)>& change);
 
-/// The file of a mesh as a plan names it.
+/// Returns a mesh file as a plan refers to it.
 reconstruct::MeshFile mesh_file(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace tactus::study

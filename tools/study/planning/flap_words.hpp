@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a flap's report and its listing say, in the same words.
+// Texts about a flap, common to its report and its listing.
 #pragma once
 
 #include "dsp/reconstruct/ranking.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a fragment was not placed, and what to do next.
+// Explains why a fragment was not placed, with the next step.
 #pragma once
 
 #include "tools/study/planning/plan_matching.hpp"
@@ -10,10 +10,10 @@ namespace tactus::study {
 
 enum class MatchWay : std::uint8_t { near, anywhere };
 
-/// Of a fragment without a painted face; `as_scanned`, m²: of its surface that touches another one in the scan.
+/// For a fragment without a painted face; `as_scanned`, m²: its surface in contact with another one in the scan.
 std::string no_fracture_words(double as_scanned);
 
-/// One sentence per cause, with the next step; empty when the fragment fits. `only`: the partner that was named, or
+/// One sentence per cause, with the next step; empty when the fragment fits. `only`: the given partner, or
 /// Arrangement::none.
 std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matching,
                            const fit::Arrangement& arrangement, const PlanMatch& found, int only, MatchWay way);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A surgeon's decision that a fragment is where it belongs.
+// A surgeon's decision that the pose of a fragment is correct.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -10,14 +10,14 @@
 
 namespace tactus::study {
 
-/// What the decision rests on, and the residual that is recorded with it.
+/// Basis of the decision, and the residual recorded with it.
 enum class AcceptedBy {
-    hand,    ///< the surgeon's eye; residual: median gap between the fragment and its partner
+    hand,    ///< visual judgement; residual: median gap between the fragment and its partner
     mirror,  ///< the mirrored healthy side; residual: median distance of the fragment from it
-    plan     ///< the planned place of a piece of a reconstruction; residual: how far it lies from there
+    plan     ///< the planned pose of a piece of a reconstruction; residual: distance from it
 };
 
-/// m: the sides of a healthy body differ by 1 to 2 mm, so a fragment that is farther from the mirrored side is not there.
+/// m: the sides of a healthy body differ by 1 to 2 mm, so that a fragment farther from the mirrored side is misplaced.
 inline constexpr double max_mirror_residual = 2e-3;
 
 struct Acceptance {
@@ -27,14 +27,15 @@ struct Acceptance {
     double facing = 0.0;  ///< m²
 };
 
-/// Measures a fragment where it is. `partner`: what it is placed beside; none: the first fragment of what stands, else of
-/// the other shown ones. The decision holds until either moves from the other, as a fit does. Throws Error for a hidden
-/// fragment or partner; for `mirror` when the plan has no healthy side or the fragment lies farther from it than
-/// max_mirror_residual; for `plan` when the fragment is no piece of a reconstruction or not at its place.
+/// Measures a fragment at its current pose. `partner`: the fragment beside it; none: the first fragment of the fixed
+/// part, otherwise of the other shown ones. The decision holds until either moves from the other, like a fit. Throws
+/// Error for a hidden fragment or partner; for `mirror` if the plan has no healthy side or the fragment is farther from
+/// it than max_mirror_residual; for `plan` if the fragment is not a piece of a reconstruction or not at its planned
+/// pose.
 Acceptance measure_acceptance(const cases::CasePlan& plan, const std::filesystem::path& folder, int fragment,
                               AcceptedBy by, std::optional<int> partner = {});
 
-/// The step that records it: the fragment stays where it is, and is connected to its partner.
+/// Returns the step that records it: the fragment keeps its pose and is connected to its partner.
 cases::PlanStep step_of(const cases::CasePlan& plan, int fragment, AcceptedBy by, const Acceptance& found);
 
 }  // namespace tactus::study

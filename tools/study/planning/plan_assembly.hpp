@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a whole case together: which fragment goes where, in which order, and what stays because nothing is sure.
+// Assembles a whole case: poses of fragments, their order, and the fragments without a reliable fit.
 #pragma once
 
 #include "tools/study/planning/plan_matching.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::study {
 
-/// What holds a fragment of an assembly, over all its faces that lie on others.
+/// Residual of a fragment in an assembly, over all its faces in contact with others.
 struct FragmentResidual {
     double rms = 0.0;  ///< m
     double area = 0.0;  ///< m² of its paint
@@ -19,28 +19,28 @@ struct FragmentResidual {
 
 struct PlanAssembly {
     std::vector<Pose> poses;  ///< of all fragments
-    /// Fits in the order of their steps: each fragment goes to a partner that is in its place by then. A fragment that
-    /// already lies there, by a fit that holds, has none.
+    /// Fits in the order of their steps: each fragment is placed on a partner that has already been placed. A fragment
+    /// that a valid fit already holds there has none.
     std::vector<PlanMatch> placed;
-    /// Shown fragments that stay and that no fit connects to the first part, each with the best that was refused; its
-    /// partner is none when nothing was near to a fit.
+    /// Shown fragments that were not placed and have no fit to the first part, each with its best rejected match; its
+    /// partner is none if no match was close to a fit.
     std::vector<PlanMatch> stays;
-    /// Per entry of `stays`: its faces may fit a part, and nothing was tried because both are locked.
+    /// Per entry of `stays`: its faces may fit a part, but nothing was tried because both are locked.
     std::vector<bool> is_locked_apart;
-    /// Of the shown fragments. The one that stands is first: what is locked, else the largest connected part of the
-    /// plan, else the most fragments, of which the largest.
+    /// The connected parts of the shown fragments. The fixed one is first: the locked fragments, otherwise the largest
+    /// connected part of the plan, otherwise the part with the most fragments, of which the largest.
     std::vector<std::vector<int>> parts;
     std::vector<FragmentResidual> residuals;  ///< per fragment
-    std::vector<PlanOverlap> overlaps;  ///< shown fragments that lie in each other in the end
+    std::vector<PlanOverlap> overlaps;  ///< shown fragments that overlap at the end
 };
 
-/// Every pair of faces of different fragments is tried with all rotations. The surest pairs connect first; a part that
-/// connects to a larger one moves to it, all its faces at once, when it fits, lies in no fragment of it, and no other
-/// place for the same face fits nearly as well. What was refused is tried again with the parts that were made; what was
-/// refused for a kerf that nobody told, when the contours of all pairs together exclude one (fit::CommonOpening). In the
-/// end all faces of a part are fitted together (dsp/fit/joint_refinement.hpp). In each part one fragment stays where it
-/// is: the locked ones; else one of the largest connected part of the plan; else the largest. `fits`: the plan's, per
-/// fragment; their connections stay. Deterministic.
+/// Tries every pair of faces of different fragments with all rotations. The most reliable pairs connect first. A part
+/// that connects to a larger one moves to it with all its faces, if it fits, overlaps no fragment of it, and no other
+/// pose for the same face fits nearly as well. Rejected pairs are tried again with the resulting parts. A pair rejected
+/// because of a possible kerf is accepted if no kerf was given and the contours of all pairs together exclude one
+/// (fit::CommonOpening). Finally all faces of a part are fitted together (dsp/fit/joint_refinement.hpp). In each part
+/// some fragments do not move: the locked ones; otherwise one of the largest connected part of the plan; otherwise the
+/// largest. `fits`: the plan's, per fragment; their connections are kept. Deterministic.
 PlanAssembly assemble(PlanMatching& matching, const fit::Arrangement& arrangement,
                       const std::vector<std::optional<cases::PlanFit>>& fits);
 

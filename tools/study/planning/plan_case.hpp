@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the studies of a plan: fragments from their files, and steps.
+// Common to the studies of a plan: loading fragments, and adding steps.
 #pragma once
 
 #include "assets/cases/case_bones.hpp"
@@ -13,8 +13,8 @@
 
 namespace tactus::study {
 
-/// A loaded fragment. It always has points. Its distances are in `map` only, and it has no density: a whole bone in fine
-/// voxels takes 100 MB for each.
+/// A loaded fragment. It always has points. Its distances are only in `map`, and it has no density, because a whole
+/// bone in fine voxels would need 100 MB for each.
 struct CaseFragment : cases::FragmentBone {
     contact::Voxmap map;
 };
@@ -26,7 +26,7 @@ CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::files
 std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                          cases::Paint paint = cases::Paint::as_filed);
 
-/// A fragment at a pose. It must outlive the result.
+/// Returns a fragment at a pose. The fragment must outlive the result.
 fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose);
 
 /// Millimetres with two decimals; never "-0.00".

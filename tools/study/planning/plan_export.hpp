@@ -17,13 +17,13 @@ struct ExportedFragment {
 };
 
 struct ExportedPlan {
-    /// Of the shown fragments. A reconstruction has an entry of that name, with its markups (flap_export.hpp); the vessels
-    /// of a case have one named "vessels", in the frame of the scan.
+    /// The exported shown fragments. A reconstruction has an entry of that name, with its markups (flap_export.hpp);
+    /// the vessels of a case have one named "vessels", in the frame of the scan.
     std::vector<ExportedFragment> written;
     std::vector<std::string> left_out;  ///< names of the hidden fragments
 };
 
-/// `folder`: of the plan; `out`: is made; `format`: "stl" or "ply". Throws Error, also when all fragments are hidden.
+/// `folder`: of the plan; `out`: is created; `format`: "stl" or "ply". Throws Error, also if all fragments are hidden.
 ExportedPlan export_plan(const cases::CasePlan& plan, const std::filesystem::path& folder,
                          const std::filesystem::path& out, const std::string& format);
 

@@ -16,64 +16,65 @@
 
 namespace tactus::study {
 
-/// The match of a fragment, with doubts.
+/// The match of a fragment, with possible doubts.
 struct PlanMatch {
-    fit::FragmentMatch match;      ///< the verdict is `ambiguous` when the fit only reproduces the scanned position
+    fit::FragmentMatch match;      ///< the verdict is `ambiguous` if the fit only reproduces the scanned position
     bool as_scanned = false;  ///< the fit only reproduces the scanned position
     Pose from;                ///< pose of the fragment before
     Motion moved;             ///< motion of its centre from there
     bool was_painted = false; ///< the paint comes from the file; false: it was proposed
-    int inside = fit::Arrangement::none;  ///< fragment that it would lie in; the verdict is `blocked`
-    double inside_volume = 0.0;  ///< m³ of both
-    std::optional<fit::KerfEstimate> kerf;  ///< where faces fit; a doubt is `ambiguous`
-    bool is_apart = false;  ///< it fits a fragment that is not connected to what stands, and nothing of that
+    int inside = fit::Arrangement::none;  ///< fragment that it would overlap; the verdict is `blocked`
+    double inside_volume = 0.0;  ///< m³ of the overlap
+    std::optional<fit::KerfEstimate> kerf;  ///< if faces fit; a doubt about it makes the verdict `ambiguous`
+    bool is_apart = false;  ///< its partner is not connected to the fixed part, which it does not fit
 };
 
-/// Possible partners of a fragment that moves: what stands (see fit::standing) and, when nothing of that fits, the other
-/// visible fragments; or all visible ones at once.
+/// Possible partners of a moving fragment: the fixed part (see fit::standing) and, if nothing of that fits, the other
+/// visible fragments; or all visible ones together.
 enum class Partners : std::uint8_t { standing_first, all };
 
-/// What fits take into account beside the faces.
+/// Inputs of fits besides the faces.
 struct FitWay {
     std::optional<double>
-        kerf;  ///< m, width of the bone that was lost along the faces, which fits leave open; 0: none was
+        kerf;  ///< m, width of bone lost along the faces, which fits leave open; 0: nothing was lost
     bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/registration/healthy_pull.hpp
 };
 
 /// The fragments of a plan and a matcher for them. Does not change the plan.
 class PlanMatching {
 public:
-    /// Throws Error for a file that is missing or has changed, and when a healthy side is asked for that the plan does
+    /// Throws Error for a file that is missing or has changed, and if a healthy side is requested that the plan does
     /// not have.
     PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder, const FitWay& way = {});
     explicit PlanMatching(std::vector<CaseFragment> fragments, const FitWay& way = {});
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
-    /// m² of its surface that touch another fragment in the scan, which no face covers.
+    /// Area in m² of its surface in contact with another fragment in the scan, which no face covers.
     double as_scanned_area(int fragment) const {
         return contact::as_scanned_area(this->fragment(fragment).bone.points);
     }
     const fit::MatcherSettings& settings() const { return matcher_->settings; }
     const CaseFragment& fragment(int n) const { return loaded_[static_cast<std::size_t>(n)]; }
     fit::FragmentMatcher& matcher() { return *matcher_; }
-    /// Whether two fragments lie in each other at these poses.
+    /// Returns whether two fragments overlap at these poses.
     bool lie_in_each_other(int a, const Pose& at, int b, const Pose& there) const;
-    /// m³ of both.
+    /// Returns the volume of their overlap, m³.
     double overlap_volume(int a, const Pose& at, int b, const Pose& there) const;
-    /// A match with doubts. `counts`: fragments that it must not lie in; empty: all that are shown. `case_opening`: what
-    /// the other pairs of the case say where nobody told a kerf.
+    /// Returns a match with doubts. `counts`: fragments that it must not overlap; empty: all shown ones.
+    /// `case_opening`: estimate from the other pairs of the case, used if no kerf was given.
     PlanMatch judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement,
                      const std::vector<char>& counts = {}, const fit::CommonOpening& case_opening = {}) const;
 
-    /// Fits a fragment from its current pose. Fragments that move along are no partners. `only`: one partner.
+    /// Fits a fragment from its current pose. Fragments that move with it are not partners. `only`: restricts it to one
+    /// partner.
     PlanMatch near(const fit::Arrangement& arrangement, int moving, Partners partners,
                    int only = fit::Arrangement::none);
-    /// Fits a fragment from any pose, to what stands first.
+    /// Fits a fragment from any pose, first to the fixed part.
     PlanMatch anywhere(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
 
 private:
-    /// None when no faces of the two lie on each other.
+    /// Empty if no faces of the two are in contact.
     std::optional<fit::KerfEstimate> estimate_kerf(const PlanMatch& found, const fit::Arrangement& arrangement) const;
     void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement, const std::vector<char>& counts) const;
 
@@ -89,14 +90,15 @@ private:
 /// The step that places a fragment at its fit. `by`: origin of the step.
 cases::PlanStep step_of(const cases::CasePlan& plan, const fit::FragmentMatch& match, const char* by);
 
-/// Median distances of a whole fragment to the healthy side, m, at two poses; none when the plan has no healthy side.
+/// Median distances of a whole fragment to the healthy side, m, at two poses; empty if the plan has no healthy side.
 struct TargetDistances {
     double before = 0.0, there = 0.0;
 };
 std::optional<TargetDistances> target_distances(const cases::PlanState& state, const std::filesystem::path& folder,
                                                 const CaseFragment& fragment, const Pose& from, const Pose& there);
 
-/// Of each fragment where it is planned, m; none for all when the plan has no healthy side. Throws Error.
+/// Returns the distance of each fragment at its planned pose, m; all empty if the plan has no healthy side. Throws
+/// Error.
 std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& state, const std::filesystem::path& folder,
                                                      const std::vector<CaseFragment>& fragments);
 
@@ -104,9 +106,9 @@ std::vector<std::optional<double>> healthy_residuals(const cases::PlanState& sta
 struct PlanGap {
     int first = 0, second = 0;
     fit::MutualGap gap;
-    double overlap = 0.0;  ///< m³; 0 where no point of either is deeper than 5 µm in the other
+    double overlap = 0.0;  ///< m³; 0 if no point of either is deeper than 5 µm in the other
 };
-/// Gaps of one pair, or of all visible pairs that face each other or lie in each other. Throws Error.
+/// Returns the gaps of one pair, or of all visible pairs that face each other or overlap. Throws Error.
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair);
 

@@ -31,8 +31,8 @@ struct MirrorComparison {
     FacesThere before, after;
 };
 
-/// The healthy side of a case on its main fragment. What it finds is kept (see kept_result.hpp): a file is only loaded
-/// when a result with it is not known.
+/// Registers the healthy side of a case to its main fragment. Results are cached (see kept_result.hpp): a file is
+/// loaded only if a result with it is not cached.
 class MirrorStudy {
 public:
     /// `healthy`: a bone file, a CT or a mesh. Throws Error, also for a file of the plan that has changed.
@@ -41,7 +41,7 @@ public:
 
     const fit::MirrorFit& fit() const { return fit_; }
     const cases::MirrorTarget& target() const { return target_; }  ///< as stored in the plan
-    const std::vector<std::string>& notes() const { return notes_; }  ///< about kept results that were no use
+    const std::vector<std::string>& notes() const { return notes_; }  ///< about invalid cached results
 
     /// Registers a fragment to the mirrored side from its pose `from`.
     MirrorComparison compare(int other, const Pose& from);
@@ -56,7 +56,7 @@ private:
         std::vector<contact::SurfacePoint> points;
         contact::Voxmap map;
     };
-    /// The main fragment around another one at these poses.
+    /// Returns the main fragment around another one at these poses.
     MainPart main_part(int other, std::span<const Pose> poses);
     FacesThere faces_there(int moving, const Pose& at, const MainPart& main);
     std::vector<double> known(const cases::ResultKey& key, std::size_t count,

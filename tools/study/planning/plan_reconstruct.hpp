@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the inputs of a fibula plan to the plan of a case: pieces of jaw and fibula as fragments, each segment placed.
+// Creates the plan of a case from the inputs of a fibula plan: pieces of jaw and fibula as fragments, each segment
+// placed.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -16,14 +17,14 @@ struct MadeReconstruction {
     reconstruct::FibulaPlan fibula;
 };
 
-/// Cuts the donor at the planned planes and the jaw, when there is one, at the first and last of its planes, writes the
-/// pieces into "NAME-pieces" beside the plan (STL, mm, LPS) and saves a plan with a step that holds the whole
-/// reconstruction, one that hides the resected piece and one per segment that places it. Bodies of the jaw of at most
-/// 2 cm³, such as teeth, go with the piece that is nearest to their middle; what is left of one that a plane cuts goes
-/// with the jaw on its side. With `alternative` the plan must exist: the pieces go to "NAME-ALTERNATIVE-pieces", their
-/// names end with the alternative's, and the steps begin at the plan as scanned.
-/// Throws Error when there is no donor, when the plan (without `alternative`), the alternative or the folder exists, and
-/// as plan_fibula, cut_between and load_fragment do; then nothing is left behind.
+/// Cuts the donor at the planned planes and the jaw, if there is one, at the first and last of its planes. Writes the
+/// pieces into "NAME-pieces" beside the plan (STL, mm, LPS) and saves a plan with these steps: one with the whole
+/// reconstruction, one that hides the resected piece, and one per segment that places it. Bodies of the jaw of at most
+/// 2 cm³, such as teeth, belong to the piece nearest to their centre; the rest of a body that a plane cuts belongs to
+/// the jaw on its side. With `alternative` the plan must exist: the pieces go to "NAME-ALTERNATIVE-pieces", their names
+/// end with the alternative's, and the steps begin at the plan as scanned.
+/// Throws Error if there is no donor, if the plan (without `alternative`), the alternative or the folder exists, and as
+/// plan_fibula, cut_between and load_fragment do; then no file is left.
 MadeReconstruction make_reconstruction(const reconstruct::ReconstructionInputs& inputs,
                                        const std::filesystem::path& plan, const std::string& alternative = "");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another file for a fragment of a plan: the same bone with corrected paint. Poses and steps stay.
+// Replaces the file of a fragment in a plan by the same bone with corrected paint. Poses and steps are kept.
 #pragma once
 
 #include "tools/study/planning/plan_case.hpp"
@@ -10,14 +10,14 @@
 namespace tactus::study {
 
 struct Repainted {
-    std::size_t faces = 0;  ///< painted faces of the file that is taken; 0: where a fit needs paint it is proposed
-    bool is_compared = false;  ///< with the surface of the file before; else that file is gone or has changed
-    cases::PlanStep step;  ///< for the caller to add
+    std::size_t faces = 0;  ///< painted faces of the new file; 0: fits that need paint use a proposal
+    bool is_compared = false;  ///< with the surface of the old file; false: that is missing or has changed
+    cases::PlanStep step;  ///< to be added by the caller
 };
 
-/// The step that makes `file` the file of a fragment. `folder`: of the plan. The surface must be that of
-/// the file before: at most 2 % of it, and of that, may lie farther than 0.5 mm (and than a voxel) from the other. When
-/// the file before is gone or has changed, nothing shows that, and `is_same_bone` must be said. Throws Error.
+/// Returns the step that makes `file` the file of a fragment. `folder`: of the plan. The surfaces of the old and the
+/// new file must be equal: at most 2 % of either may be farther than 0.5 mm (and than a voxel) from the other. If the
+/// old file is missing or has changed, this cannot be checked, and `is_same_bone` must be true. Throws Error.
 Repainted repaint(const cases::CasePlan& plan, const std::filesystem::path& folder, int fragment,
                   const std::filesystem::path& file, bool is_same_bone);
 

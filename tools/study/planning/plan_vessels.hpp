@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vessels of a plan: added and taken away by steps, and measured against its fragments.
+// Adds and removes vessels of a plan by steps, and measures them against its fragments.
 #pragma once
 
 #include "assets/reconstruct/reconstruction.hpp"
@@ -12,22 +12,23 @@
 
 namespace tactus::study {
 
-/// Loads a plan, lets `change` alter its vessels and adds that as a step. Those of a reconstruction, when the plan's state
-/// has one, in the frame of the donor; otherwise those of the case, in the frame of the scan. Throws Error when the result
-/// cannot be, and what `change` throws; then the plan stays as it was.
+/// Loads a plan, applies `change` to its vessels and adds the result as a step. If the plan's state has a
+/// reconstruction, these are its vessels, in the frame of the donor; otherwise those of the case, in the frame of the
+/// scan. Throws Error if the result is invalid, and rethrows errors of `change`; then the plan is unchanged.
 void change_vessels(const std::filesystem::path& plan,
                     const std::function<void(std::vector<reconstruct::FlapVessel>&)>& change);
 
-/// A vessel of the scan of a plan's case; where the current alternative has never had any, one of the others. What was
-/// removed or undone there is none. The vessel is part of `plan`. Throws Error when there is none of that name.
+/// Returns a vessel of the scan of a plan's case; if the current alternative has never had vessels, one of another
+/// alternative. Vessels that were removed or undone there do not count. The vessel is part of `plan`. Throws Error if
+/// there is none of that name.
 const reconstruct::FlapVessel& vessel_of_scan(const cases::CasePlan& plan, const std::string& name);
 
 double length_of(const reconstruct::FlapVessel& vessel);  ///< m
 
-/// The place `along` m from the first point of a vessel. Throws Error when it is not that long.
+/// Returns the position `along` m from the first point of a vessel. Throws Error if it is not that long.
 Vec3 place_along(const reconstruct::FlapVessel& vessel, double along);
 
-/// A vessel of the case against the fragments that are shown.
+/// Clearance between a vessel of the case and the shown fragments.
 struct VesselClearance {
     const reconstruct::FlapVessel* vessel = nullptr;
     struct Nearest {
@@ -36,7 +37,8 @@ struct VesselClearance {
     };
     Nearest scanned, planned;
 };
-/// `fragments`: of the plan, in its order. Between surface points, which lie apart by their spacing.
+/// `fragments`: of the plan, in its order. Distances refer to surface points, so that their spacing limits the
+/// precision.
 std::vector<VesselClearance> vessel_clearances(const cases::PlanState& state,
                                                const std::vector<CaseFragment>& fragments);
 

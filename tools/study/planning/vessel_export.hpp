@@ -11,9 +11,9 @@
 
 namespace tactus::study {
 
-/// Writes a course of `points` (m) and one radius (m), LPS, mm, once for each of `types`: .stl or .ply, a closed tube;
-/// .vtp, a line with its radius; .mrk.json, a curve of 3D Slicer. Files are named after the vessel, `taken` gets their
-/// names; a name in it gets a number. Nothing is written of a course without length. Throws Error.
+/// Writes a line of `points` (m) and one radius (m), LPS, mm, once for each of `types`: .stl or .ply, a closed tube;
+/// .vtp, a line with its radius; .mrk.json, a curve of 3D Slicer. Files are named after the vessel and added to
+/// `taken`; a name that is already in it gets a number. A line of zero length is not written. Throws Error.
 void export_vessel(const std::string& name, std::span<const Vec3> points, double radius,
                    const std::vector<std::string>& types, const std::filesystem::path& out,
                    std::vector<std::string>& taken);

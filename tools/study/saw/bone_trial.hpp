@@ -15,12 +15,12 @@ struct BoneTrialRow {
     double thrust = 0.0;  ///< N
     double feed = 0.0;  ///< m/s, mean over the measured time
     double removal = 0.0;  ///< m³/s over that time
-    double seconds = 0.0;  ///< that were measured: less when the blade broke through
+    double seconds = 0.0;  ///< measured time: shorter if the blade broke through
 };
 
 struct BoneTrial {
     volume::SawSite site;
-    double voxel = 0.0;  ///< m, in which it was cut
+    double voxel = 0.0;  ///< m, of the bone as cut
     std::vector<BoneTrialRow> rows;
 };
 

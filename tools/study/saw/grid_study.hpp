@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts one box in voxels of several sizes: how much is removed must not depend on them.
+// Cuts one box in voxels of several sizes, to verify that the removal does not depend on them.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -11,15 +11,15 @@ namespace tactus::study {
 
 struct GridStudyRow {
     double voxel = 0.0;  ///< m, of the bone
-    double cut_in = 0.0;  ///< m, of what was cut: coarse voxels are refined at the site
+    double cut_in = 0.0;  ///< m, voxel of the cut: coarse voxels are refined at the site
     double removed = 0.0;  ///< m³
     double feed = 0.0;  ///< m/s
 };
 
-/// A solid box of 20 × 12 × 60 mm as an import of its surface makes it, off the grid by a part of a voxel.
+/// Returns a solid box of 20 × 12 × 60 mm like an import of its surface, offset from the grid by a part of a voxel.
 bone::Bone box_of_voxels(double voxel);
 
-/// Sawn for `seconds` with `thrust` N in the middle of its broad face, across it.
+/// Saws for `seconds` with `thrust` N in the middle of its broad face, across it.
 std::vector<GridStudyRow> run_grid_study(std::span<const double> voxels, double thrust = 12.0, double seconds = 10.0);
 
 }  // namespace tactus::study

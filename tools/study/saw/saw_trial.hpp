@@ -12,7 +12,7 @@ namespace tactus::study {
 
 struct SawTrial {
     double thrust = 7.0;  ///< N; or
-    double feed = 0.0;  ///< m/s of the hand; above 0 it moves at this speed whatever it feels
+    double feed = 0.0;  ///< m/s of the hand; above 0 it moves at this speed regardless of the force
     double blade_rate = 228.0;  ///< Hz
     double tick_rate = 1000.0;  ///< Hz
     double voxel = 0.33e-3;  ///< m
@@ -26,7 +26,7 @@ struct SawTrial {
 struct SawTrialResult {
     double feed = 0.0;  ///< m/s, mean
     double thrust = 0.0, along = 0.0;  ///< N, means
-    double teeth = 0.0;  ///< bearing at a time
+    double teeth = 0.0;  ///< mean number of teeth in contact
     double removal = 0.0;  ///< m³/s
 };
 

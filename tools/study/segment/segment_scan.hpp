@@ -22,9 +22,9 @@ struct SegmentSettings {
     std::filesystem::path scan;      ///< as for volume::read_volume
     volume::ReadOptions read;
     std::optional<double> threshold;  ///< values at and above it are bone; none: bone::suggested_threshold
-    /// Values at and above it take no part; none: 2500 HU, and no limit for scanner numbers.
+    /// Values at and above it are excluded; none: 2500 HU, and no limit for scanner numbers.
     std::optional<double> metal;
-    double marrow = 2e-3;            ///< m: radius of the closing that takes in marrow; 0: none
+    double marrow = 2e-3;            ///< m: radius of the closing that includes marrow; 0: none
     RunJobs run = run_in_turn;
 };
 
@@ -32,7 +32,7 @@ struct SegmentSettings {
 struct ScanGraph {
     volume::Grid scan;               ///< values on LPS axes
     volume::HuKind hu = volume::HuKind::calibrated;
-    std::vector<std::string> notes;  ///< corrections while reading, and what was left out; one sentence each
+    std::vector<std::string> notes;  ///< corrections while reading, and excluded parts; one sentence each
     double threshold = 0.0;
     std::string threshold_from;      ///< "given", or the method
     std::size_t metal_voxels = 0;
@@ -46,7 +46,8 @@ struct ScanGraph {
 /// Reads a scan and makes its graph. Throws Error for scans without bone and for label maps.
 ScanGraph scan_graph(const SegmentSettings& settings);
 
-/// Strokes that segment::propose_seeds finds, named "fragment_1" and on. Throws Error when there are fewer than two.
+/// Returns the strokes of segment::propose_seeds, named "fragment_1" and so on. Throws Error if there are fewer than
+/// two.
 std::vector<segment::SeedLabel> proposed_seeds(const ScanGraph& scan);
 
 struct SegmentedLabel {
@@ -58,9 +59,9 @@ struct SegmentedLabel {
 struct UnseededIsland {
     std::size_t voxels = 0;
     Vec3 centre{0.0};  ///< m, mean of its voxels
-    Vec3 inside{0.0};  ///< m, its voxel that is nearest to the centre
+    Vec3 inside{0.0};  ///< m, its voxel nearest to the centre
 };
-/// The parts of the bone that no seed reaches, largest first. `label`: per node, 0 where there is none.
+/// Returns the parts of the bone that no seed reaches, largest first. `label`: per node, 0 if it has none.
 std::vector<UnseededIsland> islands_of(const ScanGraph& scan, std::span<const std::uint8_t> label);
 
 struct UncertainPlace {
@@ -78,19 +79,20 @@ struct SegmentedScan {
     std::vector<SegmentedLabel> labels;
     std::vector<UnseededIsland> islands;     ///< largest first
     std::vector<UncertainPlace> uncertain;   ///< regions with certainty below 0.4, largest first
-    std::vector<TouchingFace> touching;  ///< labels that meet without a gap, widest first: their faces are as scanned
-    std::size_t marrow_voxels = 0;  ///< took the label of the nearest bone
-    segment::GapLaw law;  ///< that was used; see segment::law_of_seeds
+    std::vector<TouchingFace> touching;  ///< labels in contact without a gap, widest first: their faces are as scanned
+    std::size_t marrow_voxels = 0;  ///< voxels that received the label of the nearest bone
+    segment::GapLaw law;  ///< the law used; see segment::law_of_seeds
     double residual = 0.0;
     int iterations = 0;
-    double certainty_p05 = 0.0;  ///< 5 % of the bone voxels with a label are less certain
+    double certainty_p05 = 0.0;  ///< 5th percentile of the certainty of the labelled bone voxels
     double seconds = 0.0;  ///< processor time of the solver
 };
-/// The graph with the conductances for these seeds. `law`: the one that was used. Null: that of the scan itself holds.
+/// Returns the graph with the conductances for these seeds, or null if those of the scan itself apply. `law`: receives
+/// the law used.
 std::unique_ptr<segment::VoxelGraph> graph_for_seeds(const ScanGraph& scan, std::span<const std::uint8_t> seed,
                                                      segment::GapLaw& law);
 
-/// Throws Error for strokes that touch no bone, and for labels whose strokes are all painted over by later ones;
+/// Throws Error for strokes that touch no bone, and for labels whose strokes are completely painted over by later ones;
 /// `seeds_file` is the name in the message.
 SegmentedScan segment_scan(const ScanGraph& scan, std::span<const segment::SeedLabel> seeds,
                            const SegmentSettings& settings, const std::string& seeds_file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores of an attempt at a task, from the results of its run. What each measure is: docs/reference/scores.md. None of
+// Scores of an attempt at a task, from the results of its run. docs/reference/scores.md defines the measures. None of
 // them is validated.
 #pragma once
 
@@ -18,13 +18,13 @@ namespace tactus::study {
 struct SparedScore {
     std::string name;
     double injured_mm3 = 0.0;
-    double closest_mm = 0.0;  ///< 0 when it was injured
+    double closest_mm = 0.0;  ///< 0 if it was injured
 };
 
-/// Below this share of shown force an attempt is not comparable: it was cut in part without feeling the bone.
+/// Minimum rendered fraction of a comparable attempt: below it, a part of the cut was made without force feedback.
 inline constexpr double complete_share = 0.99;
 
-/// Empty values: the run does not say, or there is no such thing (a plane of a bone that was not cut).
+/// Empty values: unknown in the run, or not applicable (a plane of a bone that was not cut).
 struct Score {
     std::optional<double> rms_mm, max_mm, angle_deg;
     double over_mm3 = 0.0, under_mm3 = 0.0;
@@ -40,10 +40,10 @@ struct Score {
     std::optional<double> heat_s;
 };
 
-/// An attempt with what its scores were computed from, for pictures.
+/// An attempt with the data of its scores, for images.
 struct ScoredRun {
-    std::string name;  ///< the run, as the user gave it
-    std::string trainee;  ///< of a session; empty: not known
+    std::string name;  ///< the run, as given by the user
+    std::string trainee;  ///< of a session; empty: unknown
     training::Task task;
     Score score;
     bone::Bone before, after;
@@ -53,13 +53,13 @@ struct ScoredRun {
     double removed_mm3 = 0.0, max_N = 0.0;
 };
 
-/// The attempts in a folder: of a session all that were completed, in order; of everything else the folder itself.
-/// Throws Error for a folder of a session in which none was completed.
+/// Returns the attempts in a folder: for a session all completed ones, in order; otherwise the folder itself. Throws
+/// Error for a session without completed attempts.
 std::vector<std::filesystem::path> attempts_in(const std::filesystem::path& folder);
 
-/// Scores the results of a run, a take (it is repeated first), or an attempt of a session. `task` in place of the task
-/// that the run names; empty: that. Throws Error when the run has no record of a task, did not come to its end, was at
-/// another bone, or when its task has changed since.
+/// Scores the results of a run, a take (it is replayed first), or an attempt of a session. `task` replaces the task of
+/// the run; empty: that one. Throws Error if the run has no record of a task, did not end normally, or used another
+/// bone, or if its task has changed since.
 ScoredRun score_run(const std::filesystem::path& folder, const std::filesystem::path& task = {});
 
 }  // namespace tactus::study

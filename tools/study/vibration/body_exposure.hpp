@@ -33,23 +33,24 @@ struct BodyOperation {
     bool is_lower_bound() const { return band_high < 80.0 || axes.size() < 3 || clipped > 0; }
 };
 
-/// As `analyse_exposure`, for the whole body. Throws Error, also when it is not known which channel is which axis.
+/// As `analyse_exposure`, for the whole body. Throws Error, also if the axes of the channels are unknown.
 BodyOperation analyse_body_exposure(const std::filesystem::path& file, const ExposureSettings& settings,
                                     signal::BodyJudgement judgement, double duration,
                                     const std::function<void(double)>& progress);
 
-/// A day: the greatest of k·A(8) and of k·VDV over the axes (directive 2002/44/EC, annex, part B). Health only.
+/// Exposure of a day: the maxima of k·A(8) and of k·VDV over the axes (directive 2002/44/EC, annex, part B). Health
+/// only.
 struct BodyDay {
     double a8 = 0.0, dose = 0.0;  ///< m/s², m/s^1.75
     signal::BodyAxis a8_axis = signal::BodyAxis::z, dose_axis = signal::BodyAxis::z;
-    bool has_shocks = false;  ///< the rms is not enough: the worse of both verdicts counts
+    bool has_shocks = false;  ///< the rms is not sufficient: the worse of both verdicts applies
     bool is_lower_bound = false;
     ExposureVerdict by_rms = ExposureVerdict::cannot_be_judged, by_dose = ExposureVerdict::cannot_be_judged;
 
     ExposureVerdict verdict() const noexcept;
 };
 
-/// None when the durations exceed a day.
+/// Empty if the durations exceed a day.
 std::optional<BodyDay> body_day(std::span<const BodyOperation> operations);
 
 }  // namespace tactus::study

@@ -17,7 +17,7 @@
 
 namespace tactus::study {
 
-/// What is compared of records with several channels.
+/// Selection of channels in records with several channels.
 enum class Axes {
     strongest,  ///< the strongest channel of the reference, and the same of the output
     vector,     ///< the root sum of squares of the spectra of all channels
@@ -35,7 +35,7 @@ struct CompareSettings {
     Axes axes = Axes::strongest;
     std::array<table::LogSelection, 2> logs;  ///< columns of the reference and the output if they are CSV
     std::array<sound::Stretch, 2> stretches{};  ///< of the reference and the output, each from its own start
-    std::optional<std::pair<double, double>> plotted;  ///< Hz: the range of figures; none: as far as the spectra go
+    std::optional<std::pair<double, double>> plotted;  ///< Hz: the range of figures; none: that of the spectra
     bool pictures = false;  ///< also compute spectrograms
 };
 
@@ -47,7 +47,7 @@ struct ComparedPair {
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
     double level_gap_db = 0.0;
     bool actuator_known = false;  ///< the level gap refers to an actuator at its limits
-    std::array<sound::ReadStretch, 2> stretches{};  ///< what was read of the reference and the output
+    std::array<sound::ReadStretch, 2> stretches{};  ///< the stretches of the reference and the output that were read
     std::optional<std::pair<double, double>> plotted;  ///< as in the settings
     std::vector<std::string> notes;
     std::vector<signal::Spectrogram> spectrograms;  ///< of reference and output, if requested
@@ -63,7 +63,7 @@ ComparedPair compare_files(const CompareSettings& settings);
 /// "displacement", "acceleration" or "none".
 const char* touch_unit(signal::ThresholdUnit unit);
 
-/// Two files to compare; one is empty when a folder has no partner.
+/// Two files to compare; one is empty if a folder has no partner.
 struct PairedFiles {
     std::filesystem::path reference, output;
 };
@@ -71,7 +71,7 @@ struct PairedFiles {
 /// Pairs two folders by name, or a file with every file of a folder. Throws Error for a folder without records.
 std::vector<PairedFiles> paired_files(const std::filesystem::path& reference, const std::filesystem::path& output);
 
-/// The distinguishing file of a pair: the output, or the reference when all share one output.
+/// Returns the distinguishing file of a pair: the output, or the reference if all have the same output.
 std::string pair_name(const ComparedPair& pair, std::span<const ComparedPair> all);
 
 }  // namespace tactus::study

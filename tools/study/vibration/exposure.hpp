@@ -19,7 +19,7 @@ struct ExposureOperation {
     std::string file;
     sound::ReadStretch stretch;
     std::vector<std::string> axes;
-    std::vector<double> weighted, filtered;  ///< m/s² rms per axis: by transform, which counts; by filter
+    std::vector<double> weighted, filtered;  ///< m/s² rms per axis: by transform, which is used; by filter
     double rate = 0.0, duration = 0.0;       ///< Hz; s per day
     bool calibrated = false, three_axes = false;
     sound::Calibration calibration;
@@ -34,7 +34,7 @@ struct ExposureOperation {
     bool is_lower_bound() const { return band_high < 1250.0 || !three_axes || clipped > 0; }
 };
 
-/// What the exposure of a day shows. A lower bound can exceed a value, but never shows that one is kept.
+/// Verdict on the exposure of a day. A lower bound can exceed a limit, but never proves compliance.
 enum class ExposureVerdict { below_action, above_action, above_limit, at_least_above_action, cannot_be_judged };
 
 ExposureVerdict judge_exposure(double value, const signal::ExposureLimits& limits, bool is_lower_bound) noexcept;
@@ -44,7 +44,7 @@ ExposureVerdict judge_exposure(double value, const signal::ExposureLimits& limit
 ExposureOperation analyse_exposure(const std::filesystem::path& file, const ExposureSettings& settings, double duration,
                                    const std::function<void(double)>& progress);
 
-/// A(8) of a day with all tools, m/s²; none when the durations exceed a day.
+/// A(8) of a day with all tools, m/s²; empty if the durations exceed a day.
 std::optional<double> exposure_of_day(std::span<const ExposureOperation> operations);
 
 }  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marked frequencies, such as those of a bearing or of teeth, and the levels that a spectrum has there.
+// Marked frequencies, such as those of a bearing or of teeth, and the levels of a spectrum at them.
 #pragma once
 
 #include "dsp/signal/spectrum/lines.hpp"
@@ -14,12 +14,12 @@ namespace tactus::study {
 struct Mark {
     double frequency = 0.0;  ///< Hz
     std::string label;
-    int harmonics = 1;  ///< how many multiples are marked, the first included
+    int harmonics = 1;  ///< number of multiples, including the first
 
     static constexpr int most_harmonics = 50;
 };
 
-/// "118.9:BPFI", "118.9 Hz:BPFI:5": frequency, in Hz without a unit; label; number of harmonics. Throws Error.
+/// Parses "118.9:BPFI" or "118.9 Hz:BPFI:5": frequency, in Hz without a unit; label; number of harmonics. Throws Error.
 Mark parse_mark(const std::string& text);
 
 /// One marked frequency.
@@ -36,14 +36,14 @@ std::vector<MarkPlace> places_of(std::span<const Mark> marks);
 
 struct MarkLevel {
     MarkPlace place;
-    double within = 0.0;        ///< Hz: how far from the mark the strongest bin was sought
-    signal::SpectralLine line;  ///< what was found there, a line or noise
-    bool is_line = false;       ///< it is a line above the noise
-    std::optional<signal::SpectralLine> nearest;  ///< the nearest line of the whole spectrum, whatever its distance
+    double within = 0.0;        ///< Hz: search range of the strongest bin around the mark
+    signal::SpectralLine line;  ///< the result, a line or noise
+    bool is_line = false;       ///< true if it is a line above the noise
+    std::optional<signal::SpectralLine> nearest;  ///< the nearest line of the whole spectrum, at any distance
 };
 
-/// The levels at the places that are within the spectrum (Hann, density). A line counts as at the mark within one and a
-/// half bins.
+/// Returns the levels at the frequencies that are within the spectrum (Hann, density). A line within one and a half
+/// bins belongs to the mark.
 std::vector<MarkLevel> levels_at(const signal::Spectrum& spectrum, std::span<const MarkPlace> places);
 
 }  // namespace tactus::study

@@ -16,8 +16,8 @@ namespace tactus::study {
 struct MeasureSettings {
     session::PatchChoice patch;                      ///< for a sweep through a patch
     std::string in, out_port;                        ///< its ports, NODE.PORT
-    std::string device;                              ///< a sound card instead: part of its name, or "default"
-    std::string actuator, sensor;  ///< entries of the patch, instead of its ports: through their card
+    std::string device;                              ///< a sound card instead: substring of its name, or "default"
+    std::string actuator, sensor;  ///< entries of the patch, instead of its ports: measured through their card
     double first = 20.0, last = 2000.0;  ///< Hz
     double duration = 8.0, pause = 1.0;  ///< s
     double amplitude = 1.0;  ///< in the unit of the fed port or of the actuator; card alone: fraction of full scale
@@ -41,12 +41,12 @@ struct Measurement {
     double fit_highest = 0.0;  ///< Hz, upper limit of the search for the resonance
     double coherence = 0.0;  ///< mean
     std::vector<DistortionOrder> orders;
-    std::size_t clipped = 0;  ///< samples of a card's input at full scale: the response is not to be trusted
+    std::size_t clipped = 0;  ///< samples of a card's input at full scale; if above 0, the response is unreliable
 };
 
 using Progress = std::function<void(double share)>;
 
-/// Plays the sweep and identifies the system. Prints all problems of a patch but the last on standard error. Throws
+/// Plays the sweep and identifies the system. Prints all problems of a patch except the last on standard error. Throws
 /// Error.
 Measurement measure(const MeasureSettings& settings, const Progress& progress);
 

@@ -23,11 +23,11 @@ struct RecordSettings {
 /// Opens a record. Throws Error.
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
 
-/// What was understood of a record, a line each: the form of a log, its steps, the calibration.
+/// Returns the interpretation of a record, one line each: the format of a log, its steps, the calibration.
 std::vector<std::string> understood(const sound::Calibration& calibration, const std::optional<sound::LogFacts>& log,
                                     double rate);
 
-/// Indices of the selected channels. Throws Error naming the file when one is missing.
+/// Returns the indices of the selected channels. Throws Error naming the file if one is missing.
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,
                                          const RecordSettings& settings);
 

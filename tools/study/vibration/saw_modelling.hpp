@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits the model of a saw to its recordings, and tests it on each recording that is left out.
+// Fits the model of a saw to its recordings, and cross-validates it with each recording left out.
 #pragma once
 
 #include "assets/sound/recording_set.hpp"
@@ -17,17 +17,17 @@ struct SawModelSettings {
     sound::Stretch stretch;  ///< of each recording, from the start of its file
 };
 
-/// One recording beside the sound of a model.
+/// Difference between a recording and a model.
 struct ModelDistance {
     double log_spectral_db = 0.0;  ///< log-spectral distance of the power densities, levels included
-    double level_db = 0.0;         ///< level of the model in the band less that of the recording
+    double level_db = 0.0;         ///< level of the model in the band minus that of the recording
 };
 
 struct ModelledRecording {
     const sound::Recording* recording = nullptr;
     ModelDistance fitted;                 ///< by the model of all recordings
-    std::optional<ModelDistance> left_out;  ///< by the model of the others; none when there are no others of its state
-    bool inner = false;  ///< the others lie on both sides of it; else the model extrapolates
+    std::optional<ModelDistance> left_out;  ///< by the model of the others; none if there are no others of its state
+    bool inner = false;  ///< the others enclose its condition; otherwise the model extrapolates
 };
 
 struct SawModelling {
@@ -37,7 +37,7 @@ struct SawModelling {
     std::vector<ModelledRecording> recordings;  // point into `set`
 };
 
-/// Throws Error for anything but a recording set that states every rate and thrust.
+/// Throws Error unless the file is a recording set that states every rate and thrust.
 SawModelling model_saw(const SawModelSettings& settings);
 
 }  // namespace tactus::study

@@ -35,13 +35,14 @@ struct SpectrumSettings {
     double high_pass = 10.0;   ///< Hz, of each integration
 };
 
-/// Limits of the velocity that machines are judged by (ISO 20816-1), Hz.
+/// Frequency limits of the velocity used to assess machines (ISO 20816-1), Hz.
 inline constexpr std::pair<double, double> machine_band{10.0, 1000.0};
 
 struct AnalysedChannel {
     std::string name;
     signal::VibrationReport report;
-    /// Velocity in `machine_band`, m/s rms; of a calibrated acceleration or velocity that reaches to its upper limit.
+    /// Velocity in `machine_band`, m/s rms; for a calibrated acceleration or velocity whose bandwidth includes its
+    /// upper limit.
     std::optional<double> machine_velocity;
     std::vector<MarkLevel> marks, envelope_marks;  ///< levels at the marks, in the spectrum and in that of the envelope
     std::vector<std::string> warnings;
@@ -50,7 +51,7 @@ struct AnalysedChannel {
 struct AnalysedFile {
     std::filesystem::path file;
     double rate = 0.0, duration = 0.0;  ///< Hz, s
-    sound::Calibration calibration;  ///< of the analysed values: after an integration in m/s or m
+    sound::Calibration calibration;  ///< of the analysed values: after integration in m/s or m
     sound::Calibration recorded;  ///< of the record
     int integrations = 0;
     double high_pass = 0.0;  ///< Hz, of each integration

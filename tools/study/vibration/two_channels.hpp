@@ -31,7 +31,7 @@ struct ResponsePeak {
 struct TwoChannels {
     std::string input, output;  ///< names of the channels
     double rate = 0.0, duration = 0.0;  ///< Hz, s
-    double usable = 0.0;  ///< Hz: up to which frequency the record can be trusted
+    double usable = 0.0;  ///< Hz: upper limit of the reliable frequency range
     sound::Calibration calibration;
     std::optional<sound::LogFacts> log;
     sound::ReadStretch stretch;
@@ -40,7 +40,7 @@ struct TwoChannels {
     signal::CrossSpectra spectra;
     std::vector<std::complex<double>> h1, h2, hv;  ///< output per input, per bin
     std::vector<double> coherence, deviation;  ///< per bin; the second: standard deviation of |H1|, relative
-    double noise_coherence = 0.0;  ///< mean coherence of unrelated noise with as many segments
+    double noise_coherence = 0.0;  ///< mean coherence of unrelated noise with the same number of segments
     double delay = 0.0;  ///< s, of the output: slope of the phase where the coherence is above 0.9; 0: unknown
     std::vector<ResponsePeak> peaks;  ///< of the chosen estimate where the coherence is above 0.8, the highest 5
 

@@ -20,7 +20,7 @@ struct ValidationRun {
     double level_db = 0.0;                 ///< level of the saw relative to the patch
     ComparedPair pair;                     ///< the recording and the handle
     std::optional<double> drive_rms, drive_peak;  ///< actuator voltage, V
-    std::string failure;                   ///< why the comparison failed; empty: success
+    std::string failure;                   ///< reason of a failed comparison; empty: success
 
     std::string name() const;       ///< "cutting, 233 Hz, 7 N, -6 dB"
     std::string file_name() const;  ///< "cutting_233Hz_7N_-6dB"
@@ -31,7 +31,7 @@ struct ValidateSettings {
     std::filesystem::path set;             ///< the recording set
     std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
     std::vector<double> levels{0.0, -6.0}; ///< dB relative to the patch
-    double from = 1.0;  ///< s: where the compared stretch of each run begins, after the saw's run-up
+    double from = 1.0;  ///< s: start of the compared stretch of each run, after the saw's run-up
     double seconds = 4.0;  ///< compared time of each run
     table::Thresholds thresholds;
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;

@@ -15,7 +15,7 @@ struct Judged {
     double value = 0.0, limit = 0.0;
     bool at_least = false, passed = true;
     std::string about;               ///< explanation of the score, with its band
-    double lowest = 0.0, highest = 0.0;  ///< Hz: the band that the score judges
+    double lowest = 0.0, highest = 0.0;  ///< Hz: the band of the score
 };
 
 struct Verdict {
@@ -23,7 +23,7 @@ struct Verdict {
     std::vector<std::string> not_judged;        ///< scores with a threshold but without a value
     std::vector<signal::SpectralLine> added, missing;           ///< lines that cause a failure
 
-    std::string time;  ///< what a pass says of time: "course over time", "statistics"; empty: nothing
+    std::string time;  ///< the temporal property that passed: "course over time", "statistics"; empty: none
     double lowest = 0.0, highest = 0.0;  ///< Hz: the band that was judged
 
     bool passed() const;

@@ -12,11 +12,11 @@ namespace tactus::study {
 
 struct WaterfallSettings {
     bool of_orders = true;      ///< columns are orders, otherwise frequencies
-    bool against_speed = false;  ///< rows are of one rate each, otherwise of one time each
+    bool against_speed = false;  ///< each row has one rate; otherwise one time
 };
 
 struct WaterfallRow {
-    double time = 0.0;  ///< s from the start of the record, the middle; of a row of one rate: NaN
+    double time = 0.0;  ///< s from the start of the record to its middle; NaN for a row of one rate
     double rate = 0.0;  ///< Hz, mean
     std::vector<float> rms;  ///< per column, in the record's unit; NaN above half the sample rate
 };
@@ -27,17 +27,17 @@ struct Waterfall {
     std::vector<WaterfallRow> rows;  ///< by time, or by rate
 };
 
-/// Follows one channel in the sequence of its samples.
+/// Processes one channel in the order of its samples.
 class WaterfallStream {
 public:
-    /// `stream`: of the same channel; takes its samples first. `begin`: s, where the record starts. Orders: Hann over 16
-    /// turns (8 of a short record), exact for multiples of a 16th order. Frequencies: flat-top windows of a quarter second,
-    /// up to `highest` times the highest rate.
+    /// `stream`: of the same channel; must receive the samples first. `begin`: s, start of the record. Orders: Hann
+    /// over 16 revolutions (8 for a short record), exact for multiples of a 16th order. Frequencies: flat-top windows
+    /// of a quarter second, up to `highest` times the highest rate.
     WaterfallStream(const WaterfallSettings& settings, const signal::OrderStream& stream,
                     const signal::Rotation& rotation, double rate, std::size_t frames, int highest, double begin);
 
     void push(std::span<const double> samples, std::span<const double> turned);
-    /// Throws Error when the record is too short for a row, or for rows of one rate while the rate stays the same.
+    /// Throws Error if the record is too short for a row, or for rows of one rate if the rate is constant.
     Waterfall finish() const;
 
 private:

@@ -17,14 +17,14 @@ struct ExposureSettings {
     std::string axes;  ///< whole body: "xyz", the axis of each channel; empty: by the names of the channels
 };
 
-/// The record and its channels; `usable` is the frequency (Hz) up to which it can be trusted.
+/// The record and its channels; `usable` is the upper limit (Hz) of its reliable frequency range.
 struct OpenAcceleration {
     sound::RecordReader reader;
     std::vector<std::size_t> channels;
     double usable = 0.0;
 };
 
-/// Opens a record of one to three axes. Throws Error for one that is no acceleration, or not calibrated.
+/// Opens a record of one to three axes. Throws Error if it is not an acceleration or not calibrated.
 OpenAcceleration open_acceleration(const std::filesystem::path& file, const ExposureSettings& settings);
 
 struct WeightedChannel {
