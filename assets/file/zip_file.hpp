@@ -20,7 +20,7 @@ bool is_zip_file(const std::filesystem::path& path);
 class ZipFile {
 public:
     struct Entry {
-        std::string name;        ///< for messages: the zip's path and the name in it, without control characters
+        std::string name;  ///< for messages: the zip's path and the name in it, without control characters
         std::uint64_t size = 0;  ///< bytes, unpacked
         std::uint64_t index = 0;
     };

@@ -67,7 +67,7 @@ ReadPoints points_of_text(std::string_view text, const std::string& file);
 /// system is not stated, because then left and right are unknown.
 ReadPoints points_of_fcsv(std::string_view text, const std::string& file);
 
-/// Either, by the extension: .fcsv, otherwise JSON.
+/// Reads either format, by the extension: .fcsv, otherwise JSON.
 ReadPoints read_points(const std::filesystem::path& path);
 
 }  // namespace tactus::markup

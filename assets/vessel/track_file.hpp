@@ -10,7 +10,7 @@
 
 namespace tactus::vessel {
 
-/// By extension:
+/// The format depends on the extension:
 ///
 /// - .csv: a row per node: branch, x_mm, y_mm, z_mm, radius_mm, contrast, confidence, parent. `parent` is the row of the
 /// node before this one, counted from 0; -1 for the first node of all. The first node of a side branch repeats the

@@ -9,7 +9,7 @@
 namespace tactus::audio {
 
 struct Duplex {
-    std::string device;  ///< substring of a name in `list_audio_cards`; the device must also have inputs; "": the default
+    std::string device;  ///< part of a name from `list_audio_cards`; the device must also have inputs; "": the default
     double rate = 48000.0;  ///< Hz
     int output_channel = 0;  ///< from 0
     int input_channel = 0;

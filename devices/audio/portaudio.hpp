@@ -35,7 +35,7 @@ std::vector<AudioCard> list_audio_cards();
 struct HeardChannels {
     std::shared_ptr<InputRing> ring;
     std::vector<std::string> names;  ///< shown by patch bays
-    bool is_played = true;           ///< false: the card is used for input only
+    bool is_played = true;  ///< false: the card is used for input only
 };
 std::unique_ptr<AudioSink> make_portaudio_sink(std::string device = {}, double lead_s = 0.0, HeardChannels heard = {});
 

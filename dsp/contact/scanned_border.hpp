@@ -14,7 +14,7 @@ namespace tactus::contact {
 /// at any pose; therefore fits must ignore it.
 struct ScannedBorder {
     std::vector<Vec3> faces;  ///< m, frame of the bone: middles of the voxels' faces between the labels
-    Vec3 voxel{0.0};          ///< m, spacing of these voxels
+    Vec3 voxel{0.0};  ///< m, spacing of these voxels
 };
 
 /// Labels the points within 1.25 voxels of a face as `surface_label::as_scanned`, regardless of their label. The

@@ -18,7 +18,7 @@ namespace tactus::contact {
 struct Voxmap {
     static constexpr std::string_view wire_name = "voxmap";
 
-    volume::Grid grid;             ///< at least 2 samples per axis
+    volume::Grid grid;  ///< at least 2 samples per axis
     double far = 1.0;  ///< m, value outside the grid
     double steepness = 1.0;  ///< largest |difference| of neighbouring samples (26) per distance, at least 1
 

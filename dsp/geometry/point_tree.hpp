@@ -48,7 +48,7 @@ public:
 
     bool empty() const noexcept { return points_.empty(); }
 
-    /// Whether a point is nearer to `place` than `distance`, m. Does not allocate.
+    /// Returns whether a point is nearer to `place` than `distance`, m. Does not allocate.
     bool has_nearer(const Vec3& place, double distance) const noexcept {
         // Only points below this distance count; the search ends at the first one.
         Search search{place, distance * distance, 0, false};

@@ -8,7 +8,7 @@
 
 namespace tactus::reconstruct {
 
-/// In the order of the segments in the donor, from the ankle on.
+/// Planes and segments in the order of the segments in the donor, from the ankle on.
 struct JawSide {
     std::vector<Plane> planes;  ///< normals along the axes
     std::vector<Vec3> axis, y;  ///< of the segments

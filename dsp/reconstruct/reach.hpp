@@ -34,11 +34,11 @@ struct SiteReach {
     double slack = 0.0;  ///< m: free - path; 0 when the path is longer
     double strain = 0.0;  ///< path / free - 1; 0 when slack
     std::optional<double> tension;  ///< N, for an artery: rope::artery() at this strain; veins have reach only
-    double bend_radius = 0.0;  ///< m: least over 10 mm of the shortest way and the last 10 mm on the bone; a slack
+    double bend_radius = 0.0;  ///< m: smallest over 10 mm of the path and the last 10 mm on the bone; a slack
         ///< vessel can be laid in a wider bend
     std::optional<double>
-        twist;  ///< rad: the vein's side of the artery at the site against the side that is carried along
-        ///< from the bone (Bishop frame), for an artery with a vein at hand
+        twist;  ///< rad: angle from the vein's side of the artery at the site to its side as transported
+    ///< from the bone (Bishop frame), for an artery with a vein at hand
     double contact = 0.0;  ///< m of the path in contact with bone
     std::optional<double> to_plate, to_screw;  ///< m, from the path
     Reach reach = Reach::slack;

@@ -26,7 +26,7 @@ private:
 
     const geometry::TriangleSurface& surface_;
     Vec3 point_, axis_;
-    double low_ = 0.0, radius_ = 0.0, longest_ = 0.0;  // m: least place along, farthest from the line, longest triangle
+    double low_ = 0.0, radius_ = 0.0, longest_ = 0.0;  // m: lowest position, distance from the line, longest triangle
     std::vector<std::size_t> begin_;  // of each slab, in order_
     std::vector<int> order_;  // triangles by the slab of their lowest position
     mutable std::vector<int> number_, chosen_;  // of vertices in a part

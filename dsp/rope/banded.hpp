@@ -17,7 +17,7 @@ namespace tactus::rope {
 /// element until they meet, so that they are computed as the two lanes of one vector. Only the constructor allocates.
 class BlockBand {
 public:
-    /// At least three points.
+    /// Requires at least three points.
     explicit BlockBand(std::size_t points)
         : size_(points), middle_(points > 0 ? (points - 1) / 2 : 0), columns_(middle_ + 2), right_(middle_ + 2) {}
 

@@ -16,7 +16,7 @@ namespace tactus::segment {
 struct VoxelGraph {
     std::array<int, 3> size{0, 0, 0};           ///< of the volume
     std::vector<std::uint32_t> voxel;           ///< of each node: its index in the volume
-    std::vector<std::array<std::int32_t, 3>> next;  ///< node after it along x, y and z; -1: none
+    std::vector<std::array<std::int32_t, 3>> next;  ///< next node along x, y and z; -1: none
     std::vector<std::array<float, 3>> weight;   ///< conductance to `next`, greater than 0
 
     std::size_t nodes() const { return voxel.size(); }

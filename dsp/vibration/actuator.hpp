@@ -28,7 +28,7 @@ struct ActuatorModel {
     bool per_ampere;  ///< ... of the coil's current ...
     double reference_frequency;  ///< ... at this frequency (Hz) ...
     double reference_mass;  ///< ... with this total mass, kg
-    double force_factor = 0.0;  ///< of the coil, N/A; above 0 it counts in place of the reference
+    double force_factor = 0.0;  ///< of the coil, N/A; above 0 it replaces the reference
 };
 
 /// haptuator_small, haptuator_large: f0 and ζ fitted to tones of 50–250 Hz at low and high drive; 24.5 m/s² at 1 V,
@@ -83,7 +83,7 @@ public:
     /// acceleration is proportional to 1/(M − m). Throws Error as `mechanics_of` does, for a mass that is not above the
     /// moving one, and when the resonance does not fit under half the rate.
     Actuator(const ActuatorModel& model, double mass, double rate);
-    /// With the given mechanics instead of those derived from the model.
+    /// Uses the given mechanics instead of those derived from the model.
     Actuator(const ActuatorModel& model, const ActuatorMechanics& mechanics, double mass, double rate);
 
     /// A drive that is not finite counts as 0 V.

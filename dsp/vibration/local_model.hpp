@@ -37,8 +37,9 @@ struct LocalModel {
     bool is_significant() const;
 };
 
-/// Weighted least squares, from four rounds of Sanathanan and Koerner (1963) on by Gauss and Newton. `oversampling`: bins per independent one, as
-/// zero padding makes them. A model with fewer than 8 independent bins is not significant. Allocates nothing.
+/// Weighted least squares: four rounds by Sanathanan and Koerner (1963), then Gauss–Newton steps. `oversampling`:
+/// number of bins per independent bin, due to zero padding. A model with fewer than 8 independent bins is not
+/// significant. Does not allocate.
 LocalModel fit_local_model(std::span<const ResponseBin> bins, double centre, double half_width,
                            double oversampling = 1.0);
 

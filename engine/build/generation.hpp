@@ -72,7 +72,7 @@ struct Generation {
     /// For each live parameter on which a force depends.
     std::unordered_map<const Param*, std::shared_ptr<run::ParamRamp>> ramps;
     std::unique_ptr<SwitchGate> gate;  ///< in a live run, if the plan reaches a hand
-    std::unordered_map<const Input*, std::uint64_t> constants;  ///< content hash of each input of plan.nodes that a file sets
+    std::unordered_map<const Input*, std::uint64_t> constants;  ///< content hashes of the inputs that files set
     /// For each driven device: a hash of everything that its force depends on, except ramped parameters.
     std::map<const DeviceSlot*, std::uint64_t> force_paths;
 

@@ -23,7 +23,7 @@ namespace tactus::io {
 struct DeviceFault {
     control::Fault reason = control::Fault::none;
     std::int64_t tick = 0;  ///< of the device's group
-    double force_N = 0.0;   ///< on the hand in the previous tick
+    double force_N = 0.0;  ///< on the hand in the previous tick
     std::int64_t over = -1;  ///< tick at which it ended or another fault replaced it; -1: still active
     std::int64_t number = 0;  ///< of the device's faults in this run, counted from 0
     std::array<char, 96> source{};  ///< the source whose values were late, cut to this length; "": none

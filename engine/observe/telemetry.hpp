@@ -113,13 +113,13 @@ struct GroupTelemetry {
     std::atomic<std::int64_t> skipped{0};
     std::atomic<std::int64_t> dropped{0};  ///< publications dropped for lack of room
     std::atomic<std::int64_t> lost_events{0};  ///< events dropped for lack of room, here or on the way to other groups
-    LateCounts skip_causes;   ///< of `skipped`, live only
-    LateCounts withheld;      ///< values of this group that others missed, by the cause of the delay; live only
+    LateCounts skip_causes;  ///< of `skipped`, live only
+    LateCounts withheld;  ///< values of this group that others missed, by the cause of the delay; live only
     mutable std::atomic<std::int64_t> awaited{0};  ///< missed values not yet explained; written by their consumers
-    std::atomic<double> force_N{0.0};      ///< on the hand, in the last tick; with several devices the largest
+    std::atomic<double> force_N{0.0};  ///< on the hand, in the last tick; with several devices the largest
     mutable std::atomic<double> most_force_N{0.0};  ///< since the last `take_most_force`
-    DurationHistogram execution;           ///< ns per call
-    DurationHistogram lateness;            ///< ns from release to start, live only
+    DurationHistogram execution;  ///< ns per call
+    DurationHistogram lateness;  ///< ns from release to start, live only
 
     /// Thread of the group; wait-free.
     void note_force(double newtons) noexcept {

@@ -91,7 +91,7 @@ public:
     // Own thread.
     /// True if its thread was abandoned in a driver: the thread must end and access nothing.
     bool is_forsaken() const noexcept { return decisions_->driver.is_forsaken(); }
-    /// It runs a program.
+    /// True if it runs a program.
     bool has_program() const noexcept { return program_ != nullptr; }
 
     // Own thread, before each call.

@@ -83,7 +83,7 @@ private:
     void service_pause();
     /// Adds a notice, once per group, when its world values are late by three periods.
     void note_old_values();
-    /// Joins all groups that have ended; returns true if none is left.
+    /// True if all groups have ended.
     bool all_over() const;
     /// After the end: abandons threads that a driver blocks.
     void leave_blocked();

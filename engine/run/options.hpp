@@ -34,7 +34,7 @@ struct EngineOptions {
     std::optional<std::filesystem::path> folder;  ///< folder of the recordings; empty: nothing is recorded
     const take::TimingLog* replay = nullptr;      ///< repeats the timing decisions of a live run
     const std::vector<io::RecordedDevice>* devices =
-        nullptr;  ///< stand-ins for the devices of the replayed run
+        nullptr;  ///< stand-ins for the devices of the run that is replayed
     take::TakeWriter* take = nullptr;                          ///< records the run
     bool record_values = true;  ///< the take has values from the beginning; otherwise from `Engine::record` on
     std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< maximum bytes of decisions without recorded values

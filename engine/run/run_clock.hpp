@@ -9,7 +9,7 @@
 
 namespace tactus::run {
 
-/// From setting the clock to the first activation.
+/// Time from setting the clock to the first activation.
 constexpr std::int64_t start_delay_ns = 20'000'000;
 
 class RunClock {

@@ -13,12 +13,12 @@ enum class TimingKind : std::uint8_t {
     held_read,      ///< activations tick … tick + count − 1 read index `value` of link `source`
     skipped,        ///< activations tick … tick + count − 1 never ran
     dropped,        ///< publications tick … tick + count − 1 to link `source` were dropped for lack of room
-    parameter,  ///< from activation tick on, the parameter change numbered `value` holds; it comes in over `source`
-    ///< activations, 0: at once
+    parameter,  ///< from activation tick on, parameter change number `value` applies; it ramps over `source`
+    ///< activations, 0: immediately
     fade,  ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
-    ///< pause, which `value` 1 begins and 0 ends
-    plan,  ///< from activation tick on, the plan numbered `value` runs; what it changes of parameters on which a force
-    ///< depends comes in over `source` activations, 0: at once
+    ///< pause; `value` 1: the pause begins, 0: it ends
+    plan,  ///< from activation tick on, plan number `value` runs; its changes of parameters on which a force
+    ///< depends ramp over `source` activations, 0: immediately
     progress,  ///< all records before tick are in the log; an incomplete log is valid up to here
     end,  ///< the last activation of the group was tick − 1
     whole,  ///< the last record of a complete log; `value` is the number of all records

@@ -18,7 +18,7 @@ namespace tactus::analyse {
 struct DeclaredStiffness {
     std::string param;              ///< "blade.stiffness", "law (its slope)"
     double newton_per_metre =
-        0.0;  ///< its value, or the end of its range if a wire drives it; per metre of the device
+        0.0;  ///< its value, or the end of its range when a wire drives it; in metres of the device
     bool is_driven = false;  ///< by a wire
 };
 
@@ -30,7 +30,7 @@ enum class Verdict : std::uint8_t {
 
 /// A control loop through a hand: device input, nodes, device output.
 struct ForceLoop {
-    std::string from, to;      ///< names of nodes
+    std::string from, to;  ///< names of nodes
     double graph_s = 0.0;  ///< from a sample to the resulting force, on the path with the smallest stiffness margin
     double latency_s = 0.0;  ///< `loop_delay` of that path
     double period_s = 0.0;  ///< time for which a force is held

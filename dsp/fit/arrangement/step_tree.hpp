@@ -20,7 +20,7 @@ public:
 
     /// Adds known step `step`, which leads from one arrangement to the next.
     void put(int step, int before, const Arrangement& from, const Arrangement& to);
-    /// Sets the current place among the known steps.
+    /// Sets the current position among the known steps.
     void stand(HistoryPlace place);
 
     /// Adds a step at the head. Its number is the previous `count`.
@@ -29,7 +29,7 @@ public:
     bool undo(Arrangement& now) noexcept;
     bool redo(Arrangement& now) noexcept;
 
-    /// The current place, as numbers of steps.
+    /// Returns the current position, as numbers of steps.
     HistoryPlace place() const noexcept;
     /// Moves to another position: undoes to the last common step and redoes from there, in time proportional to the
     /// number of steps. `now`: the arrangement at the head. Returns false, without a change, for a step that is no

@@ -17,7 +17,7 @@ public:
     /// `rate` in samples per second.
     explicit BandLimitedWave(double rate) noexcept : rate_(rate) {}
 
-    /// Of the next sample, in [0, 1).
+    /// Phase of the next sample, in [0, 1).
     double phase() const noexcept { return phase_; }
 
     /// Returns the next sample, within ±1 except for the corrections. Frequency in Hz; `width`: duty cycle of a pulse.

@@ -4,7 +4,7 @@
 
 namespace tactus::signal {
 
-/// By its series, exact to rounding up to 20.
+/// Computed by its series; exact to rounding up to x = 20.
 inline double bessel_i0(double x) noexcept {
     double sum = 1.0, term = 1.0;
     for (int k = 1; k < 50; ++k) {

@@ -16,10 +16,11 @@ struct Alignment {
 
 /// Finds the delay, up to ±`longest` s, in the whitened cross-correlation of the band from `lowest` to `highest` Hz
 /// (Knapp and Carter 1976). All frequencies above −60 dB of the strongest have equal weight, so that two takes with the
-/// same few lines do not count as one: chance then has a known distribution, and the peak must exceed it at odds of
-/// about 1 to 1000, corrected for the number of delays. When the records as a whole show none, blocks of one are sought in all of the other, so
-/// that an excerpt is found wherever it is: at least 1 s and a quarter of the shorter record must overlap. The result is
-/// the best correlation of the waveforms within 5 ms of that peak, over what both have in common. Both at `rate` Hz. Allocates.
+/// same few lines do not match by them alone. Chance then has a known distribution, and the peak must exceed it at odds
+/// of about 1 to 1000, corrected for the number of delays. If the whole records show no peak, blocks of one are
+/// searched in the whole other one. This finds an excerpt at any position, if at least 1 s and a quarter of the shorter
+/// record overlap. The result is the best correlation of the waveforms within 5 ms of that peak, over their overlap.
+/// Both at `rate` Hz. Allocates.
 Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
                       double highest, double longest);
 

@@ -27,10 +27,11 @@ struct CepstralPeak {
     double frequency() const { return 1.0 / quefrency; }  ///< Hz, spacing of the lines
 };
 
-/// The strongest peaks from 8 steps on to a quarter of the segment, at most `count`, by falling value: those above 2.5 times
-/// the median there, without those at multiples of another at least half as high. They are peaks of an envelope, the
-/// root of a weighted mean of squares over 11 steps: side bands of a carrier that is no multiple of their spacing have a
-/// cepstrum that swings through zero at the spacing's quefrency, and positive values beside it mislead.
+/// Returns at most `count` of the strongest peaks from 8 steps to a quarter of the segment, by descending value: those
+/// above 2.5 times the median of that range, except multiples of another peak at least half as high. The peaks are
+/// those of an envelope, the root of a weighted mean of squares over 11 steps. The envelope is needed because side
+/// bands of a carrier that is not a multiple of their spacing have a cepstrum that crosses zero at the spacing's
+/// quefrency, with misleading positive values beside it.
 std::vector<CepstralPeak> cepstral_peaks(const Cepstrum& cepstrum, std::size_t count);
 
 }  // namespace tactus::signal

@@ -82,9 +82,9 @@ struct Comparison {
 };
 
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.
-/// Their loudest minute decides whether they belong together. Other takes are compared by their spectra only; if both
-/// are of one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when a take is too
-/// short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
+/// Whether they are simultaneous is determined from their loudest minute. Other takes are compared by their spectra
+/// only; if both are of one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when
+/// a take is too short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});
 
 }  // namespace tactus::signal

@@ -45,7 +45,7 @@ public:
 
     /// Equally many samples of each. Does not allocate.
     void push(std::span<const T> x, std::span<const T> y);
-    /// From all samples pushed so far. Allocates.
+    /// Returns the spectra of all samples pushed so far. Allocates.
     CrossSpectra spectra() const;
     /// Marks a gap: no segment spans it.
     void forget_waiting() noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fundamental frequency of a vibration, the one estimator of all analyses: the lines of the whole record, which decide
-// where they are steady; otherwise harmonic sums of short sections, joined to a path over time.
+// Fundamental frequency of a vibration; all analyses use this estimator. If the lines of the whole record are steady,
+// they determine it; otherwise harmonic sums of short sections, joined to a path over time.
 #pragma once
 
 #include "dsp/signal/spectrum/harmonic_sum.hpp"
@@ -40,7 +40,8 @@ struct FundamentalEstimate {
     bool is_certain() const { return frequency > 0.0 && certain; }
 };
 
-/// Estimates the fundamental of a record that comes in pieces, in a memory of about 100 bytes per half second beside that of the steady lines.
+/// Estimates the fundamental of a record that comes in pieces. Memory: about 100 bytes per half second, in addition to
+/// that of the steady lines.
 class FundamentalStream {
 public:
     /// `frames`: length of the record; an estimate is enough.

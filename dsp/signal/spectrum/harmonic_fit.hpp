@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least-squares fit of harmonically related sines to samples: the maximum-likelihood estimate of their common rate in white noise.
+// Least-squares fit of harmonically related sines to samples: the maximum-likelihood estimate of their common rate in
+// white noise.
 #pragma once
 
 #include <span>
@@ -12,8 +13,9 @@ struct HarmonicFit {
 };
 
 /// Gauss–Newton iterations from `frequency`, Hz, which must be within about a third of 1/(duration × highest order).
-/// `orders`: those that are present. `others`: frequencies, Hz, of further lines, whose amplitudes are fitted too. A constant part is fitted as well.
-/// The normal equations have closed forms in all frequencies (Dirichlet kernels), so that an iteration costs two correlations per line. Allocates.
+/// `orders`: the present orders. `others`: frequencies, Hz, of further lines, whose amplitudes are fitted too, as is a
+/// constant. The normal equations have closed forms in all frequencies (Dirichlet kernels), so that an iteration costs
+/// two correlations per line. Allocates.
 HarmonicFit fit_harmonics(std::span<const double> samples, double rate, double frequency, std::span<const int> orders,
                           std::span<const double> others);
 

@@ -16,10 +16,10 @@ struct HarmonicSum {
     double score = 0.0;      ///< 0 … 1
 };
 
-/// The best fundamentals from `lowest` to `highest` Hz of a Hann spectrum, best first, none within 3 % of another and
-/// none below five bins. An order counts by its level above the noise around it, at most 30 dB: neither the strongest
-/// line nor a missing first order decides. Multiples of the fundamental explain fewer lines than it does, submultiples
-/// have missing orders. Allocates.
+/// Returns the best fundamentals from `lowest` to `highest` Hz of a Hann spectrum, best first; none is within 3 % of
+/// another or below five bins. The weight of an order is its level above the noise around it, at most 30 dB, so that
+/// neither the strongest line nor a missing first order dominates. Multiples of the fundamental explain fewer lines,
+/// and submultiples have missing orders. Allocates.
 std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, double highest, std::size_t most = 5);
 
 /// Confidence, 0 … 1, in the best of the sums of one spectrum: its score, halved when a rival is as good.
@@ -31,7 +31,7 @@ public:
     /// For spectra of at most `bins` bins. Allocates.
     explicit HarmonicSummer(std::size_t bins);
 
-    /// At most `most` sums, up to `most_sums`; valid until the next call. Wait-free, does not allocate.
+    /// Returns at most `most` sums, up to `most_sums`; valid until the next call. Wait-free, does not allocate.
     std::span<const HarmonicSum> operator()(const Spectrum& spectrum, double lowest, double highest,
                                             std::size_t most = 5) noexcept;
 

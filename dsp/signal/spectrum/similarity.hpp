@@ -78,7 +78,7 @@ private:
     double spectral_ = 0.0, temporal_ = 0.0, quality_ = 0.0, signal_ = 0.0, noise_ = 0.0;
 };
 
-/// The same for takes in memory, over the length of the shorter one. Allocate.
+/// The same for takes in memory, over the length of the shorter one. Allocates.
 double st_sim(std::span<const double> reference, std::span<const double> output);
 double spqi(std::span<const double> reference, std::span<const double> output);
 double signal_to_noise_db(std::span<const double> reference, std::span<const double> output);
@@ -87,7 +87,7 @@ double signal_to_noise_db(std::span<const double> reference, std::span<const dou
 /// a step of a quarter. The takes are pushed twice in pieces, as the first pass finds the maxima.
 class SpectrogramSimilarity {
 public:
-    /// Of takes at `rate` Hz, from `lowest` to `highest` Hz.
+    /// Compares takes at `rate` Hz, from `lowest` to `highest` Hz.
     SpectrogramSimilarity(double rate, double lowest, double highest);
 
     /// Equally many samples of each.

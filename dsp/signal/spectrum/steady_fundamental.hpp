@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fundamental frequency of a steady vibration from the frequencies of its lines. The lines of the whole record are far narrower than those of short sections: whether
-// they are orders of one rate is a test of coincidences, and the rate is the least-squares fit of all orders to the samples.
+// Fundamental frequency of a steady vibration from the frequencies of its lines. The lines of the whole record are far
+// narrower than those of short sections. A test of coincidences determines whether they are orders of one rate, and the
+// rate is the least-squares fit of all orders to the samples.
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"

@@ -43,7 +43,7 @@ struct Inspection {
     std::array<double, 2> window{};         ///< black and white level of the slices
     bool is_labels = false;                 ///< slices are coloured by label
     std::vector<mesh::ColouredSurface> surfaces;  ///< surfaces for the view
-    /// Of bones: the points of each of `surfaces` that are painted as fracture; m, unit normals outwards.
+    /// For bones: the points of each of `surfaces` that are painted as fracture; m, unit normals outwards.
     struct Painted {
         Vec3 at, normal;
     };

@@ -10,7 +10,7 @@ namespace tactus::study {
 
 struct CalibrationSettings {
     std::filesystem::path places;              ///< CSV of positions known in the viewer's world; empty: none
-    std::string tracker;                       ///< driver of a tracker that measures the tip in that world; empty: none
+    std::string tracker;  ///< driver of a tracker that measures the tip in that world; empty: none
     std::vector<std::string> screens, images;  ///< screens whose markers are touched directly, or at their mirror image
     std::string tip = "0 mm, 0 mm, 0 mm";  ///< position of the tip in the frame of the handle
     int grid = 3;  ///< markers per side of a screen

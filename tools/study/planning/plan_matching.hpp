@@ -36,7 +36,7 @@ enum class Partners : std::uint8_t { standing_first, all };
 /// Inputs of fits besides the faces.
 struct FitWay {
     std::optional<double>
-        kerf;  ///< m, width of bone lost along the faces, which fits leave open; 0: nothing was lost
+        kerf;  ///< m, width of the bone lost along the faces, which fits leave open; 0: nothing was lost
     bool with_healthy = false;  ///< the plan's healthy side, see dsp/fit/registration/healthy_pull.hpp
 };
 

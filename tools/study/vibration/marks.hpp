@@ -36,9 +36,9 @@ std::vector<MarkPlace> places_of(std::span<const Mark> marks);
 
 struct MarkLevel {
     MarkPlace place;
-    double within = 0.0;        ///< Hz: search range of the strongest bin around the mark
+    double within = 0.0;  ///< Hz: search range of the strongest bin around the mark
     signal::SpectralLine line;  ///< the result, a line or noise
-    bool is_line = false;       ///< true if it is a line above the noise
+    bool is_line = false;  ///< true if it is a line above the noise
     std::optional<signal::SpectralLine> nearest;  ///< the nearest line of the whole spectrum, at any distance
 };
 

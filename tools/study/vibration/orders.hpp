@@ -49,7 +49,7 @@ struct Orders {
     std::vector<OrdersOfChannel> channels;
 };
 
-/// Of a record of any length without gaps. Throws Error.
+/// Analyses a record of any length without gaps. Throws Error.
 Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& settings);
 
 }  // namespace tactus::study
