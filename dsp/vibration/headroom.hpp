@@ -13,7 +13,7 @@ struct BandLoss {
 };
 
 struct Headroom {
-    double peak = 0.0;  ///< peak of the wanted drive, V
+    double peak = 0.0;  ///< peak of the commanded drive, V
     double headroom_db = 0.0;  ///< limit over peak; negative: the limit clips
     double limited_fraction = 0.0;  ///< fraction of clipped samples
     std::vector<BandLoss> losses;   ///< bands from 40 Hz to 1 kHz within 30 dB of the strongest that lose 0.1 dB

@@ -74,7 +74,7 @@ public:
     }
     /// Activates the resources opened since `begin`; control thread.
     void keep();
-    /// Closes what was opened since `begin`.
+    /// Closes the resources opened since `begin`.
     void discard();
     /// Devices opened since `begin`.
     const std::vector<std::unique_ptr<build::DeviceSlot>>& opened_devices() const { return opened_.devices; }

@@ -35,7 +35,7 @@ public:
     void write(const std::uint64_t* words) noexcept {
         const std::uint64_t before = sequence_.load(std::memory_order_relaxed);
         sequence_.store(before + 1, std::memory_order_relaxed);
-        // Each word is released: a reader that sees a new word also sees the odd sequence number.
+        // Each word is released: a reader that loads a new word also loads the odd sequence number.
         for (std::size_t i = 0; i < words_.size(); ++i) words_[i].store(words[i], std::memory_order_release);
         sequence_.store(before + 2, std::memory_order_release);
     }

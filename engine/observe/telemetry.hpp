@@ -63,7 +63,7 @@ private:
 
 /// Why a group was late.
 enum class LateCause : std::uint8_t {
-    woken_late,  ///< the system woke its thread after the time asked for
+    woken_late,  ///< the system woke its thread after the requested time
     preempted,   ///< its thread was woken in time and then did not get the processor
     ran_long,    ///< its nodes needed the time
 };

@@ -48,7 +48,7 @@ inline bool is_good(const Pose& pose, const Twist& twist) noexcept {
     return is_valid(pose) && is_finite(twist.linear) && is_finite(twist.angular);
 }
 /// The same for a sample that the driver marks as valid. Drivers, the engine and all nodes use this predicate and no
-/// other: with two that differ, device_input would freeze the pose while device_output sees no fault.
+/// other: if they differed, device_input could freeze the pose while device_output detects no fault.
 inline bool is_good(const DeviceSample& sample) noexcept { return sample.valid && is_good(sample.pose, sample.twist); }
 
 /// Properties of a device. Zero means none or unknown.

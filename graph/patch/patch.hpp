@@ -118,7 +118,7 @@ struct Problems {
 };
 
 /// Reads patch text. `file` is its name in messages, and relative paths start at its folder. Adds the errors to
-/// `problems` and returns what it could read.
+/// `problems` and returns the parts that it could read.
 Patch read_patch(std::string_view text, const std::filesystem::path& file, Problems& problems);
 
 /// Reads a patch file in the same way. Throws Error when the file cannot be read.

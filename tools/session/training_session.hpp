@@ -3,7 +3,7 @@
 //
 //   DIR/PSEUDONYM/1/session.json          trainee, tasks, attempts; replaced as a whole after each attempt
 //   DIR/PSEUDONYM/1/01-NAME/run, /take    results and take of the attempt at the first task
-//   DIR/PSEUDONYM/1/01-NAME-cut-off-1     what is left of an attempt that was cut off
+//   DIR/PSEUDONYM/1/01-NAME-cut-off-1     files of an interrupted attempt
 #pragma once
 
 #include "assets/training/session_file.hpp"

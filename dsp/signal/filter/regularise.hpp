@@ -30,7 +30,7 @@ struct EvenFacts {
     std::size_t frames = 0;   ///< even samples in all pieces
 };
 
-/// Even samples in blocks, in memory that does not grow with the record but for 40 bytes per gap. Times that are
+/// Returns even samples in blocks, in constant memory except for 40 bytes per gap. Times that are
 /// multiples of a common step, and that differ from even sampling by less than that step, were rounded by a coarse
 /// clock: even times are used instead, since rounding is not a jitter of the samples and its pattern would modulate
 /// every line. Otherwise samples with equal times are spread evenly up to the next. Interpolates each piece between

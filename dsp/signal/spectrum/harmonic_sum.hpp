@@ -45,7 +45,7 @@ private:
     struct Comb {
         double frequency = 0.0;
         double filled = 0.0;  // mean salience of the orders up to the last one there is
-        double share = 0.0;   // of all lines that are orders, less what would be by chance
+        double share = 0.0;   // fraction of lines that are orders, minus the fraction by chance
     };
     static constexpr std::size_t around = 32;  // bins to each side for the noise
 

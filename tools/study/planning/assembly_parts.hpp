@@ -31,7 +31,8 @@ public:
     /// Returns `stands` and the locked parts, without the part that moves.
     std::vector<char> and_locked(std::vector<char> stands, int moving) const;
     bool can_move(int part) const;
-    /// Returns whether the first part moves to the second when they connect: false if the first is locked or larger.
+    /// Returns whether the first part moves to the second when they connect: a locked part stays, otherwise the larger
+    /// one.
     bool goes_to(int first, int second) const;
 
     const std::vector<Pose>& poses() const { return poses_; }
