@@ -29,7 +29,7 @@ struct ImportOptions {
     /// "largest", "all", or the number of components to keep, largest first. Default: all for a label, otherwise the
     /// largest.
     std::string component;
-    /// Unit of length: "mm", "cm" or "m". Default: the unit stated in the file, or mm if the size is plausible for a bone.
+    /// Unit of length: "mm", "cm" or "m". Default: the unit in the file, or mm if that is plausible for a bone.
     std::optional<std::string> unit;
     std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
     bool fill = true;  ///< of a CT: count closed hollows and marrow behind a leaky shell as bone, with their density

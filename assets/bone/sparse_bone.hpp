@@ -23,7 +23,7 @@ struct SparseBone {
     };
 
     volume::Grid layout;  ///< size, origin and spacing; no values
-    float outside = 0.0f;  ///< m: distance where no block is stored, and the largest distance. The density there is 0
+    float outside = 0.0f;  ///< m: largest distance; applies where no block is stored, with density 0
     std::vector<std::unique_ptr<Block>> blocks;  ///< x fastest
 
     explicit SparseBone(volume::Grid size_and_place = {}, float outside_of_blocks = 0.0f);

@@ -55,7 +55,7 @@ private:
     double farthest_from_line_;
     Mat3 frame_{1.0};
     geometry::TriangleSurface bone_;
-    std::optional<Slabs> slabs_;  // of bone_
+    std::optional<Slabs> slabs_;  // index of bone_
     Extent whole_{};
 };
 

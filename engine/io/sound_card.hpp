@@ -95,7 +95,7 @@ private:
     std::vector<std::unique_ptr<SoundChannel>> listed_;
     std::optional<CardInput> input_;
     // Thread of the group:
-    bool is_played_;  ///< a node has written since the previous call was read
+    bool is_played_;  ///< a node has written since the input was read for the previous call
     std::int64_t heard_ = -1;  ///< first activation of the call that is read
     ChannelGather gather_;  // thread of the group
     control::CardFollower follower_;

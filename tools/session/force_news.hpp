@@ -63,7 +63,7 @@ private:
     static constexpr double told_after_s = 0.5;  ///< duration of a wait without a fault before it is reported
 
     struct Told {
-        std::int64_t faults = 0, over = 0;  ///< numbers of the next ones to report
+        std::int64_t faults = 0, over = 0;  ///< number of the next fault, and of the next end of a fault, to report
         double wait_s = -1.0;  ///< start of the wait that was reported last
         bool is_away = false;
     };
