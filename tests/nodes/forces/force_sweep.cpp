@@ -222,6 +222,9 @@ private:
             if (port.is_optional && !is_hand) return;
             has_hand_ = has_hand_ || is_hand;
             if (is_hand) node_.feed<Pose>(name, [this](std::int64_t) { return hand_; });
+            // The axes of a device are at its handle, and torques about it.
+            else if (name == "frame" && !port.is_of_world)
+                node_.feed<Pose>(name, [this](std::int64_t) { return Pose{hand_.position, {1.0, 0.0, 0.0, 0.0}}; });
             else node_.feed(name, Pose{});
         } else if (type == &value_type<Twist>()) {
             const bool is_hand = !std::exchange(has_twist_, true);
