@@ -36,13 +36,17 @@ rate = "48 kHz"
 gain = "3"
 )";
 
-constexpr const char* counted = R"(wires = ["count.counts -> read.counts"]
+constexpr const char* counted = R"(wires = ["count.counts -> read.counts", "read.total -> keep.in"]
 [nodes.count]
 type = "count_ticks"
 rate = "1 kHz"
 [nodes.read]
 type = "read_counts"
 rate = "1 kHz"
+[nodes.keep]
+type = "record"
+rate = "1 kHz"
+file = "total.csv"
 )";
 
 }  // namespace
@@ -115,6 +119,8 @@ TEST_CASE("two plug-ins share a value type by its name and layout, and one of an
                                        " --nodes " + file_of("read_counts"));
     INFO(same.err);
     CHECK(same.code == 0);
+    const std::string totals = slurp(folder.path / "out/total.csv");
+    CHECK(totals.ends_with(",20\n"));
     const Outcome other =
         folder.tactus("check " + patch + " --nodes " + file_of("fold") + " --nodes " + file_of("read_other_counts"));
     CHECK(other.code == 2);
