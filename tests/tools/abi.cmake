@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+# The digest by which plug-ins are compared: another one for each change of a header that a compiler sees, the same one for
+# another comment. SOURCE: the tree, SCRATCH: a folder.
+file(REMOVE_RECURSE ${SCRATCH})
+file(WRITE ${SCRATCH}/graph/node/param.hpp "struct Param {\n    double value;  // in SI\n};\n")
+file(WRITE ${SCRATCH}/dsp/core/time.hpp "using Flicks = long;\n")
+
+function(digest result)
+  execute_process(COMMAND ${CMAKE_COMMAND} -DSOURCE=${SCRATCH} -DVERSION=1.2.3 -DOUTPUT=${SCRATCH}/out.hpp -P ${SOURCE}/cmake/abi.cmake
+                  COMMAND_ERROR_IS_FATAL ANY)
+  file(STRINGS ${SCRATCH}/out.hpp line REGEX "TACTUS_ABI_HEADERS \"1\\.2\\.3-[0-9a-f]+\"")
+  if(line STREQUAL "")
+    message(FATAL_ERROR "no digest is defined")
+  endif()
+  set(${result} ${line} PARENT_SCOPE)
+endfunction()
+
+digest(before)
+file(WRITE ${SCRATCH}/graph/node/param.hpp "// Parameters.\nstruct Param {\n    double value;  // SI\n};\n")
+digest(commented)
+if(NOT commented STREQUAL before)
+  message(FATAL_ERROR "a comment changes the digest")
+endif()
+file(WRITE ${SCRATCH}/graph/node/param.hpp "struct Param {\n    float value;\n};\n")
+digest(changed)
+file(WRITE ${SCRATCH}/dsp/core/time.hpp "using Flicks = long long;\n")
+digest(changed_below)
+file(WRITE ${SCRATCH}/assets/file/new.hpp "struct New {};\n")
+digest(added)
+set(all ${before} ${changed} ${changed_below} ${added})
+list(REMOVE_DUPLICATES all)
+list(LENGTH all count)
+if(NOT count EQUAL 4)
+  message(FATAL_ERROR "two different sets of headers have one digest: ${all}")
+endif()
+file(REMOVE_RECURSE ${SCRATCH})
