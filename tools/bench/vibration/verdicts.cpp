@@ -15,7 +15,7 @@ namespace {
 
 struct VerdictsChoice {
     int pairs = 300, first = 1000;
-    bool json = false;
+    bool held_out = false, json = false;
 };
 
 int bench_verdicts(const VerdictsChoice& choice) {
@@ -26,7 +26,8 @@ int bench_verdicts(const VerdictsChoice& choice) {
         int same = 0, by_time = 0;
         std::map<std::string, int> reasons;
         for (int i = 0; i < choice.pairs; ++i) {
-            const VerdictCase one(static_cast<std::uint64_t>(choice.first + i), kind);
+            const VerdictCase one(static_cast<std::uint64_t>(choice.first + i), kind,
+                                  choice.held_out ? PairSources::held_out : PairSources::known);
             const signal::Comparison found =
                 signal::compare(signal::Take(std::span<const double>(one.reference), VerdictCase::rate),
                                 signal::Take(std::span<const double>(one.output), VerdictCase::rate));
@@ -40,7 +41,8 @@ int bench_verdicts(const VerdictsChoice& choice) {
         const bool alike = kind == PairKind::copy || kind == PairKind::take;
         if (!alike) false_same += same;
         std::string words;
-        for (const auto& [name, count] : reasons) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name, count);
+        for (const auto& [name, count] : reasons)
+            words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name, count);
         const char* const name = pair_names[static_cast<std::size_t>(kind)];
         if (choice.json)
             json.push_back({{"pairs", name}, {"count", choice.pairs}, {"same", same}, {"by_time", by_time}});
@@ -62,6 +64,7 @@ Verb verdicts_verb() {
                 verb.add("--first", choice->first, "seed of the first; 0 to 99 set the thresholds")
                     .shows_default()
                     .range(0, 1000000000);
+                verb.flag("--held-out", choice->held_out, "sources of kinds that set no threshold");
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_verdicts(*choice); };
             }};
