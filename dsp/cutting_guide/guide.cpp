@@ -67,7 +67,8 @@ public:
         find_grid();
         const geometry::TriangleTree tree(bone_);
         const double cap = set_.offset + set_.thickness + 2.0 * mm;
-        const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm), 2.0 * set_.voxel, cap, run_);
+        const SeatedBone bone(bone_, tree, low_ - Vec3(1.0 * mm), high_ + Vec3(1.0 * mm),
+                              std::min(0.5 * mm, 1.5 * set_.voxel), cap, run_);
         lift_rail(bone);
         GuideSolid solid(bone);
         add_parts(solid);
@@ -258,11 +259,19 @@ private:
         }
         const double width = set_.slot_width();
         for (const Slot& s : slots_) {
-            const double out = s.sides == Sides::one ? 0.0 : width + set_.wall;
-            solid.parts.push_back({plane(s.normal, s.origin + out * s.normal),
-                                   plane(-s.normal, s.origin - set_.wall * s.normal), side(1, 1.0, s.end_y),
-                                   side(1, -1.0, rail_y_ - set_.rail), side(2, 1.0, top_), side(2, -1.0, s.bottom),
-                                   above});
+            const auto block = [&](double out, double to) {
+                solid.parts.push_back({plane(s.normal, s.origin + out * s.normal),
+                                       plane(-s.normal, s.origin - set_.wall * s.normal), side(1, 1.0, s.end_y),
+                                       side(1, -1.0, rail_y_ - set_.rail), side(2, 1.0, to), side(2, -1.0, s.bottom),
+                                       above});
+            };
+            if (s.sides != Sides::one) {
+                block(width + set_.wall, top_);
+            } else {
+                block(0.0, top_);
+                // Beyond a ledge a low wall joins the base to the rail.
+                block(std::max(width, ledge) + set_.wall, s.top + set_.offset + set_.thickness);
+            }
         }
         solid.parts.push_back({side(0, 1.0, rail_to_),
                                side(0, -1.0, rail_from_),

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace tactus::cutting_guide {
@@ -152,6 +153,53 @@ Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTre
     seat.play_direction = Vec3(moves.vector[2][0], moves.vector[2][1], moves.vector[2][2]);
     seat.play_angle = std::min(most_play_angle, gap / size * std::sqrt(turns.value[2]));
     return seat;
+}
+
+SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slot) {
+    // Faces of the walls: triangles near the plane that look into the slot.
+    struct Sum {
+        double weight = 0.0;
+        Vec3 mean{0.0};
+        std::array<double, 9> m{};
+    };
+    const Vec3 n = slot.cut.plane.normal;
+    std::vector<std::pair<Vec3, double>> kept, other;
+    for (const auto& t : surface.triangles) {
+        const auto at = [&](std::size_t c) { return surface.vertices[static_cast<std::size_t>(t[c])]; };
+        const Vec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
+        const double area = glm::length(cross);
+        if (!(area > 0.0)) continue;
+        const Vec3 normal = cross / area, middle = (at(0) + at(1) + at(2)) / 3.0, from = middle - slot.middle;
+        const double out = glm::dot(middle - slot.cut.plane.origin, n);
+        if (std::abs(glm::dot(from, slot.deep)) > 0.55 * slot.depth ||
+            std::abs(glm::dot(from, slot.wide)) > 0.6 * slot.length)
+            continue;
+        if (std::abs(out) < 0.3 * slot.width && glm::dot(normal, n) > 0.9) kept.emplace_back(middle, area);
+        if (std::abs(out - slot.width) < 0.3 * slot.width && glm::dot(normal, n) < -0.9)
+            other.emplace_back(middle, area);
+    }
+    const auto fit = [](const std::vector<std::pair<Vec3, double>>& points) {
+        Sum sum;
+        for (const auto& [p, w] : points) sum.weight += w, sum.mean += w * p;
+        if (sum.weight > 0.0) sum.mean /= sum.weight;
+        for (const auto& [p, w] : points)
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    sum.m[static_cast<std::size_t>(3 * i + j)] += w * (p - sum.mean)[i] * (p - sum.mean)[j];
+        return sum;
+    };
+    const Sum wall = fit(kept);
+    SlotFit found;
+    if (kept.size() < 20) {
+        found.offset = found.angle = infinity;  // the wall on the kept side is missing
+        return found;
+    }
+    const auto eigen = geometry::symmetric_eigen<3>(wall.m);
+    const Vec3 normal(eigen.vector[0][0], eigen.vector[0][1], eigen.vector[0][2]);
+    found.offset = glm::dot(wall.mean - slot.cut.plane.origin, n);
+    found.angle = std::asin(std::min(1.0, glm::length(glm::cross(normal, n))));
+    if (other.size() >= 20 && slot.sides != Sides::one) found.width = glm::dot(fit(other).mean - wall.mean, n);
+    return found;
 }
 
 double overhang_share(const geometry::TriangleSurface& surface, const Vec3& up, double angle) {

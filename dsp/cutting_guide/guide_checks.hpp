@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/core/jobs.hpp"
+#include "dsp/cutting_guide/guide.hpp"
 #include "dsp/geometry/iso_surface.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
 
@@ -44,6 +45,17 @@ inline constexpr double most_play = 20e-3, most_play_angle = 0.5;  // m, rad
 /// it is more than with the strictest reading), linearised at the seat; a shaft that a guide slides along gives most_play.
 Seat seat_of(const geometry::TriangleSurface& guide, const geometry::TriangleTree& bone, const Vec3& removal,
              double offset, double gap, const RunJobs& run);
+
+/// The walls of a slot as they are in the mesh.
+struct SlotFit {
+    double offset = 0.0;  ///< m, of the wall on the kept side from the plan, out of the bone that is kept
+    double angle = 0.0;  ///< rad, between them
+    double width = 0.0;  ///< m, between the walls; 0 without a second one
+};
+
+/// Planes through the middles of the triangles of each wall, by least squares with their areas; infinite offset and angle
+/// when the wall on the kept side is missing.
+SlotFit refit_slot(const geometry::TriangleSurface& surface, const MadeSlot& slot);
 
 /// Share of the area whose normal looks more than `angle` below the horizon when the guide is printed along `up`; the
 /// lowest 0.3 mm lie on the plate and do not count.

@@ -61,7 +61,8 @@ double TextField::value(double x, double y) const noexcept {
     const double s = a - i, t = b - j;
     const double inside =
         (1.0 - t) * ((1.0 - s) * at(i, j) + s * at(i + 1, j)) + t * ((1.0 - s) * at(i, j + 1) + s * at(i + 1, j + 1));
-    return std::max(inside, text_step * std::max(std::abs(u - a), std::abs(v - b)));
+    const double outside = text_step * std::max(std::abs(u - a), std::abs(v - b));
+    return outside > 0.0 ? std::max(inside, outside) : inside;
 }
 
 double GuideSolid::value_of(const Term& term, const Vec3& p) const noexcept {

@@ -9,6 +9,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,43 @@ namespace {
 
 constexpr int block = 8;  // samples along the side of a block that is classified by its middle
 constexpr double truncated = 0.01;  // of eigenvalues: singular values below 0.1 of the largest
+constexpr double outside = 0.45;  // of a cell: how far a vertex may lie beside it
 constexpr double rim = 0.02;  // of a cell: vertices keep it from the faces, so that those of two cells do not coincide
+
+/// Tangent planes as a quadratic form about their mean: distances squared are x'mx - 2 right'x and a constant.
+struct Planes {
+    std::array<double, 9> m{};
+    Vec3 right{0.0};
+
+    double error(const Vec3& x) const {
+        double sum = -2.0 * glm::dot(right, x);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) sum += x[i] * m[static_cast<std::size_t>(3 * i + j)] * x[j];
+        return sum;
+    }
+    /// The least along the axes that are free from `start`, of least length where the planes do not decide.
+    Vec3 nearest(const Vec3& start, const std::array<bool, 3>& is_free) const {
+        std::array<double, 9> part{};
+        Vec3 to(0.0);
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (!is_free[i]) continue;
+            const int n = static_cast<int>(i);
+            to[n] = right[n];
+            for (std::size_t j = 0; j < 3; ++j) {
+                to[n] -= m[3 * i + j] * start[static_cast<int>(j)];
+                if (is_free[j]) part[3 * i + j] = m[3 * i + j];
+            }
+        }
+        const SymmetricEigen<3> eigen = symmetric_eigen<3>(part);
+        Vec3 found = start;
+        for (std::size_t n = 0; n < 3; ++n) {
+            if (!(eigen.value[n] > truncated * eigen.value[2])) continue;
+            const Vec3 axis(eigen.vector[n][0], eigen.vector[n][1], eigen.vector[n][2]);
+            found += axis * (glm::dot(axis, to) / eigen.value[n]);
+        }
+        return found;
+    }
+};
 
 class DualContour {
 public:
@@ -96,11 +133,13 @@ public:
         for (std::size_t v = 1; v < sheet_.size(); ++v)
             if (net_.cell[v] == net_.cell[v - 1]) sheet_[v] = static_cast<std::uint8_t>(sheet_[v - 1] + 1);
         mean_.resize(net_.vertices.size());
+        settled_.resize(net_.vertices.size());
         constexpr int chunk = 4096;
         const int count = static_cast<int>(net_.vertices.size());
         run_((count + chunk - 1) / chunk, [&](int job) {
             for (int v = job * chunk; v < std::min(count, (job + 1) * chunk); ++v) place(static_cast<std::size_t>(v));
         });
+        part_vertices();
     }
 
     /// Divides each quad along the diagonal whose middle is nearer to the surface: along edges of the solid, not across.
@@ -126,7 +165,7 @@ public:
 
     /// Vertices of triangles that intersect approach the mean of their crossings.
     void untangle(Contour& made) {
-        const TriangleBoxes boxes(net_, grid_.spacing.x);
+        const TriangleBoxes boxes(net_, 1.5 * grid_.spacing.x);
         std::vector<std::vector<int>> of_vertex;
         std::vector<std::uint8_t> is_moved(net_.vertices.size(), 0);
         std::vector<std::array<int, 2>> pairs = self_intersections(net_, 100000, run_);
@@ -145,7 +184,8 @@ public:
             for (const int v : moved) {
                 made.smoothed += is_moved[at(v)] == 0;
                 is_moved[at(v)] = 1;
-                net_.vertices[at(v)] = glm::mix(net_.vertices[at(v)], mean_[at(v)], round < 3 ? 0.5 : 1.0);
+                net_.vertices[at(v)] =
+                    round == 0 ? settled_[at(v)] : glm::mix(net_.vertices[at(v)], mean_[at(v)], round < 4 ? 0.5 : 1.0);
                 dirty.insert(dirty.end(), of_vertex[at(v)].begin(), of_vertex[at(v)].end());
             }
             std::ranges::sort(dirty);
@@ -313,14 +353,46 @@ private:
                 for (int j = 0; j < 3; ++j) m[static_cast<std::size_t>(3 * i + j)] += w[i] * w[j];
             right += w * glm::dot(w, point[n] - mean);
         }
-        const SymmetricEigen<3> eigen = symmetric_eigen<3>(m);
-        Vec3 at = mean;
-        for (std::size_t n = 0; n < 3; ++n) {
-            if (!(eigen.value[n] > truncated * eigen.value[2])) continue;
-            const Vec3 axis(eigen.vector[n][0], eigen.vector[n][1], eigen.vector[n][2]);
-            at += axis * (glm::dot(axis, right) / eigen.value[n]);
+        const Planes planes{m, right};
+        const std::array<bool, 3> all{true, true, true};
+        const Vec3 free = mean + planes.nearest(Vec3(0.0), all);
+        const auto is_within = [&](const Vec3& x, const Vec3& from, const Vec3& to) {
+            return glm::all(glm::lessThanEqual(from, x)) && glm::all(glm::lessThanEqual(x, to));
+        };
+        settled_[v] = is_within(free, low, high) ? free : in_cell(planes, mean, low, high);
+        // An edge may pass beside a cell whose corner it cuts off.
+        const Vec3 beside = outside * grid_.spacing;
+        net_.vertices[v] = is_within(free, low - beside, high + beside) ? free : settled_[v];
+    }
+
+    /// Corners that several cells have found: only one vertex may be there.
+    void part_vertices() {
+        for (const auto& t : net_.triangles)
+            for (std::size_t n = 0; n < 3; ++n) {
+                const std::size_t a = at(t[n]), b = at(t[(n + 1) % 3]);
+                if (glm::length(net_.vertices[a] - net_.vertices[b]) > 1e-3 * grid_.spacing.x) continue;
+                net_.vertices[a] = settled_[a], net_.vertices[b] = settled_[b];
+            }
+    }
+
+    /// The place in the cell nearest to the planes: the least over the cell's faces, edges and corners, as none is inside.
+    static Vec3 in_cell(const Planes& planes, const Vec3& mean, const Vec3& low, const Vec3& high) {
+        Vec3 best(0.0);
+        double least = infinity_;
+        // Each axis is free, at its low or at its high bound.
+        for (int choice = 1; choice < 27; ++choice) {
+            std::array<bool, 3> is_free{};
+            Vec3 start(0.0);
+            for (int axis = 0, rest = choice; axis < 3; ++axis, rest /= 3) {
+                is_free[at(axis)] = rest % 3 == 0;
+                if (rest % 3 == 1) start[axis] = low[axis] - mean[axis];
+                if (rest % 3 == 2) start[axis] = high[axis] - mean[axis];
+            }
+            const Vec3 offset = planes.nearest(start, is_free), found = glm::clamp(mean + offset, low, high);
+            if (glm::length(found - mean - offset) > 1e-9 * glm::length(high - low)) continue;
+            if (const double error = planes.error(offset); error < least - 1e-24) least = error, best = found;
         }
-        net_.vertices[v] = glm::clamp(at, low, high);
+        return least < infinity_ ? best : glm::clamp(mean, low, high);
     }
 
     static constexpr double infinity_ = std::numeric_limits<double>::infinity();
@@ -331,7 +403,7 @@ private:
     volume::Grid grid_;
     SurfaceNet net_;
     std::vector<std::uint8_t> sheet_;  // per vertex: which of its cell
-    std::vector<Vec3> mean_;
+    std::vector<Vec3> settled_, mean_;  // per vertex: within its cell; mean of its crossings
 };
 
 }  // namespace

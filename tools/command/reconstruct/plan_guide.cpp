@@ -51,7 +51,7 @@ void print_guide(const study::PlannedGuide& guide, const std::filesystem::path& 
     if (guide.wall) fmt::print("thinnest wall {:.2f} mm\n", guide.wall->thickness / mm);
     for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
         const cutting_guide::MadeSlot& slot = guide.made.slots[n];
-        const study::PlannedGuide::Refit& fit = guide.refits[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
         fmt::print("slot {} ({}): {}, {:.1f} mm deep, {:.3f} mm and {:.3f}° off the plan{}\n", slot.cut.letter,
                    slot.cut.name, fit.width > 0.0 ? fmt::format("{:.2f} mm wide", fit.width / mm) : "a ledge",
                    slot.depth / mm, std::abs(fit.offset / mm), fit.angle / degree,

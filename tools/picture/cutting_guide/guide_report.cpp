@@ -58,7 +58,7 @@ ReportTable guide_slots(const study::PlannedGuide& guide) {
                       {}};
     for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
         const cutting_guide::MadeSlot& s = guide.made.slots[n];
-        const study::PlannedGuide::Refit& fit = guide.refits[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
         table.rows.push_back({std::string(1, s.cut.letter), s.cut.name, fmt::format("{}", static_cast<int>(s.sides)),
                               fit.width > 0.0 ? hundredths(fit.width) : "ledge", fmt::format("{:.1f}", s.depth / mm),
                               fmt::format("{:.1f}", s.length / mm), fmt::format("{:.3f}", std::abs(fit.offset) / mm),

@@ -6,7 +6,6 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/self_intersection.hpp"
-#include "dsp/geometry/symmetric_eigen.hpp"
 #include "dsp/reconstruct/clearance.hpp"
 #include "dsp/reconstruct/donor_bone.hpp"
 #include "dsp/reconstruct/margin_wall.hpp"
@@ -303,7 +302,7 @@ void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
                                 guide.seat.least_distance / mm));
     if (!(guide.seat.contact_area > 0.0)) throw Error("the guide does not touch the bone");
     for (std::size_t n = 0; n < guide.refits.size(); ++n) {
-        const PlannedGuide::Refit& fit = guide.refits[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
         if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
             throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan", guide.made.slots[n].cut.letter,
                                     fit.offset / mm, fit.angle / degree));
@@ -339,55 +338,6 @@ GuideDesign design_guide(const FlapStudy& study, const std::string& title, const
     return design;
 }
 
-PlannedGuide::Refit refit_slot(const cutting_guide::MadeGuide& made, const cutting_guide::MadeSlot& slot) {
-    // Faces of the walls: triangles near the plane that look into the slot.
-    struct Sum {
-        double weight = 0.0;
-        Vec3 mean{0.0};
-        std::array<double, 9> m{};
-    };
-    const geometry::TriangleSurface& surface = made.surface;
-    const Vec3 n = slot.cut.plane.normal;
-    std::vector<std::pair<Vec3, double>> kept, other;
-    for (const auto& t : surface.triangles) {
-        const auto at = [&](std::size_t c) { return surface.vertices[static_cast<std::size_t>(t[c])]; };
-        const Vec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
-        const double area = glm::length(cross);
-        if (!(area > 0.0)) continue;
-        const Vec3 normal = cross / area, middle = (at(0) + at(1) + at(2)) / 3.0, from = middle - slot.middle;
-        const double out = glm::dot(middle - slot.cut.plane.origin, n);
-        if (std::abs(glm::dot(from, slot.deep)) > 0.55 * slot.depth ||
-            std::abs(glm::dot(from, slot.wide)) > 0.6 * slot.length)
-            continue;
-        if (std::abs(out) < 0.3 * slot.width && glm::dot(normal, n) > 0.9) kept.emplace_back(middle, area);
-        if (std::abs(out - slot.width) < 0.3 * slot.width && glm::dot(normal, n) < -0.9)
-            other.emplace_back(middle, area);
-    }
-    const auto fit = [](const std::vector<std::pair<Vec3, double>>& points) {
-        Sum sum;
-        for (const auto& [p, w] : points) sum.weight += w, sum.mean += w * p;
-        if (sum.weight > 0.0) sum.mean /= sum.weight;
-        for (const auto& [p, w] : points)
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j)
-                    sum.m[static_cast<std::size_t>(3 * i + j)] += w * (p - sum.mean)[i] * (p - sum.mean)[j];
-        return sum;
-    };
-    const Sum wall = fit(kept);
-    PlannedGuide::Refit found;
-    if (kept.size() < 20) {
-        found.offset = found.angle = infinity;  // the wall on the kept side is missing
-        return found;
-    }
-    const auto eigen = geometry::symmetric_eigen<3>(wall.m);
-    const Vec3 normal(eigen.vector[0][0], eigen.vector[0][1], eigen.vector[0][2]);
-    found.offset = glm::dot(wall.mean - slot.cut.plane.origin, n);
-    found.angle = std::asin(std::min(1.0, glm::length(glm::cross(normal, n))));
-    if (other.size() >= 20 && slot.sides != cutting_guide::Sides::one)
-        found.width = glm::dot(fit(other).mean - wall.mean, n);
-    return found;
-}
-
 PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
     const RunJobs run = on_threads();
     PlannedGuide guide;
@@ -409,7 +359,8 @@ PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const 
     guide.seat = cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal),
                                         guide.design.settings.offset, choice.seat_gap, run);
     guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);
-    for (const cutting_guide::MadeSlot& slot : guide.made.slots) guide.refits.push_back(refit_slot(guide.made, slot));
+    for (const cutting_guide::MadeSlot& slot : guide.made.slots)
+        guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
     refuse(guide, topology);
     for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
     warn_clinically(guide, study, choice);
@@ -423,7 +374,7 @@ file::Json guide_json(const PlannedGuide& guide) {
     std::optional<double> play;
     for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
         const cutting_guide::MadeSlot& slot = guide.made.slots[n];
-        const PlannedGuide::Refit& fit = guide.refits[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
         if (slot.play) play = std::max(play.value_or(0.0), *slot.play);
         slots.push_back(
             {{"letter", std::string(1, slot.cut.letter)},

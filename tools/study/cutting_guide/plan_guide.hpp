@@ -44,12 +44,7 @@ struct PlannedGuide {
     std::optional<cutting_guide::ThinWall> wall;  ///< none: no wall is thinner than 6 mm
     cutting_guide::Seat seat;
     double overhang = 0.0;  ///< share of the area
-    struct Refit {
-        double offset = 0.0;  ///< m, of the wall on the kept side from the plan, out of the bone that is kept
-        double angle = 0.0;  ///< rad, between them
-        double width = 0.0;  ///< m, between the walls; 0 without a second one
-    };
-    std::vector<Refit> refits;  ///< of each slot, from the mesh
+    std::vector<cutting_guide::SlotFit> refits;  ///< of each slot, from the mesh
     std::vector<GuideWarning> warnings;
 };
 
@@ -60,9 +55,6 @@ cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::strin
 /// thinner than it should, a slot off the plan, or cannot be seated: such a guide must not be printed. Clinical
 /// thresholds only warn.
 PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
-
-/// The walls of a slot as planes through the mesh's own triangles, by least squares.
-PlannedGuide::Refit refit_slot(const cutting_guide::MadeGuide& made, const cutting_guide::MadeSlot& slot);
 
 /// {closed, parts, triangles, wall_min_mm, seating, slots, play_deg, seat_play, contact_share, warnings, ...}
 file::Json guide_json(const PlannedGuide& guide);

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Guides measured from their meshes alone.
+#include "dsp/cutting_guide/guide.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/cutting_guide/guide_checks.hpp"
+#include "dsp/geometry/self_intersection.hpp"
+#include "tests/dsp/cutting_guide/random_guide.hpp"
+#include "tests/dsp/geometry/closed_mesh.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tactus;
+using namespace tactus::cutting_guide;
+
+namespace {
+
+void check_guide(unsigned seed, int segments) {
+    INFO("seed " << seed);
+    const GuideDesign design = test::random_guide(seed, segments);
+    const MadeGuide made = make_guide(design, run_in_turn);
+    CHECK(test::flaws_of(made.surface) == "none");
+    CHECK(test::parts_of(made.surface) == 1);
+    CHECK(test::volume_of(made.surface) > 0.0);
+    CHECK(geometry::self_intersections(made.surface).size() == 0);
+    REQUIRE(made.slots.size() == design.cuts.size());
+    for (const MadeSlot& slot : made.slots) {
+        const SlotFit fit = refit_slot(made.surface, slot);
+        INFO("slot " << slot.cut.letter);
+        CHECK(std::abs(fit.offset) < 0.05 * mm);
+        CHECK(fit.angle < 0.1 * degree);
+        if (slot.sides != Sides::one) CHECK(fit.width == Approx(design.settings.slot_width()).margin(0.05 * mm));
+        if (slot.play) CHECK(std::tan(*slot.play) * slot.depth == Approx(2.0 * design.settings.clearance).margin(1e-9));
+    }
+    const geometry::TriangleTree bone(design.bone);
+    const Seat seat =
+        seat_of(made.surface, bone, glm::normalize(design.removal), design.settings.offset, 0.3 * mm, run_in_turn);
+    CHECK(seat.is_path_free);
+    CHECK(seat.least_distance > design.settings.offset - 0.1 * mm);
+    CHECK(seat.contact_share() > 0.5);
+}
+
+}  // namespace
+
+TEST_CASE("a random guide is closed, one part, on plan and seats", "[slow]") { check_guide(1, 1); }
+
+// Costly: the guides of 40 bones, directions, slot kinds and sizes, each meshed and checked.
+TEST_CASE("40 random guides are closed, one part, on plan and seat", "[long]") {
+    for (unsigned seed = 100; seed < 140; ++seed) check_guide(seed, 1 + static_cast<int>(seed % 2));
+}
+
+TEST_CASE("letters of a guide are read back from its rail", "[slow]") {
+    GuideDesign design = test::random_guide(5, 1);
+    design.settings.voxel = 0.35 * mm;
+    const MadeGuide made = make_guide(design, run_in_turn);
+    const Pose to_guide = made.frame.inverse();
+    REQUIRE(made.texts.size() == design.letters.size());
+    // How deep the rail is below its face, over the text, by the triangles that look out.
+    for (const MadeText& text : made.texts) {
+        constexpr int columns = 40, rows = 60;
+        const double step = 0.1 * mm;
+        std::vector<double> face(columns * rows, 1.0);
+        for (const auto& t : made.surface.triangles) {
+            Vec3 c[3];
+            for (std::size_t n = 0; n < 3; ++n)
+                c[n] = to_guide.apply(made.surface.vertices[static_cast<std::size_t>(t[n])]) - text.at;
+            const double area = (c[1].x - c[0].x) * (c[2].z - c[0].z) - (c[1].z - c[0].z) * (c[2].x - c[0].x);
+            if (area == 0.0) continue;
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column) {
+                    const double x = (column - 5) * step, z = (row - 10) * step;
+                    const double u = ((x - c[0].x) * (c[2].z - c[0].z) - (z - c[0].z) * (c[2].x - c[0].x)) / area,
+                                 v = ((c[1].x - c[0].x) * (z - c[0].z) - (c[1].z - c[0].z) * (x - c[0].x)) / area;
+                    if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
+                    double& at = face[static_cast<std::size_t>(row * columns + column)];
+                    at = std::min(at, c[0].y + u * (c[1].y - c[0].y) + v * (c[2].y - c[0].y));
+                }
+        }
+        int both = 0, either = 0;
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                const double x = (column - 5) * step, z = (row - 10) * step;
+                const bool is_letter = (x > 0.0 && x < 0.9 * mm && z > 0.0 && z < 4.0 * mm) ||
+                                       (x > 0.0 && x < 2.6 * mm && z > 0.0 && z < 0.9 * mm);
+                const bool is_deep =
+                    face[static_cast<std::size_t>(row * columns + column)] > 0.5 * design.settings.text_depth;
+                both += is_letter && is_deep;
+                either += is_letter || is_deep;
+            }
+        CHECK(static_cast<double>(both) / either > 0.9);
+    }
+}
+
+TEST_CASE("the thinnest wall of a wedge is that of its thin end") {
+    for (const double thin : {0.5 * mm, 1.0 * mm, 2.3 * mm, 4.0 * mm}) {
+        // 20 mm long, 10 mm deep, its thickness grows by 0.8 mm; facets of half a millimetre.
+        geometry::TriangleSurface wedge;
+        constexpr int along = 40, across = 20, through = 6;
+        const auto index = [&](int i, int j, int k) { return (i * (across + 1) + j) * (through + 1) + k; };
+        for (int i = 0; i <= along; ++i)
+            for (int j = 0; j <= across; ++j)
+                for (int k = 0; k <= through; ++k)
+                    wedge.vertices.push_back(
+                        {0.5 * mm * i, 0.5 * mm * j,
+                         (thin + 0.8 * mm * i / along) * (static_cast<double>(k) / through - 0.5)});
+        const auto quad = [&](int a, int b, int c, int d) {
+            wedge.triangles.push_back({a, b, c});
+            wedge.triangles.push_back({a, c, d});
+        };
+        for (int i = 0; i < along; ++i)
+            for (int j = 0; j < across; ++j) {
+                quad(index(i, j, through), index(i + 1, j, through), index(i + 1, j + 1, through),
+                     index(i, j + 1, through));
+                quad(index(i, j, 0), index(i, j + 1, 0), index(i + 1, j + 1, 0), index(i + 1, j, 0));
+            }
+        for (int k = 0; k < through; ++k) {
+            for (int i = 0; i < along; ++i) {
+                quad(index(i, 0, k), index(i + 1, 0, k), index(i + 1, 0, k + 1), index(i, 0, k + 1));
+                quad(index(i, across, k), index(i, across, k + 1), index(i + 1, across, k + 1),
+                     index(i + 1, across, k));
+            }
+            for (int j = 0; j < across; ++j) {
+                quad(index(0, j, k), index(0, j, k + 1), index(0, j + 1, k + 1), index(0, j + 1, k));
+                quad(index(along, j, k), index(along, j + 1, k), index(along, j + 1, k + 1), index(along, j, k + 1));
+            }
+        }
+        REQUIRE(test::flaws_of(wedge) == "none");
+        REQUIRE(test::volume_of(wedge) > 0.0);
+        const geometry::TriangleTree tree(wedge);
+        const auto wall = thinnest_wall(wedge, tree, 8.0 * mm, [](const Vec3&) { return true; }, run_in_turn);
+        REQUIRE(wall);
+        CHECK(wall->thickness == Approx(thin).margin(0.1 * mm));
+    }
+}
+
+TEST_CASE("a smooth shaft does not hold a guide along itself and a ball does not hold it against turning") {
+    // Half a tube round a shaft, and a cap on a ball, both 0.3 mm off.
+    const geometry::TriangleSurface shaft = reconstruct::closed_tube(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 60.0 * mm, 90, 61,
+                                                                     [](double, double) { return 7.0 * mm; });
+    const auto half_of = [](geometry::TriangleSurface s, const auto& keeps) {
+        std::erase_if(s.triangles, [&](const auto& t) { return !keeps(s.vertices[static_cast<std::size_t>(t[0])]); });
+        for (auto& t : s.triangles) std::swap(t[1], t[2]);
+        return s;
+    };
+    const geometry::TriangleSurface sleeve =
+        half_of(reconstruct::closed_tube(Vec3(0.0, 0.0, 20.0 * mm), Vec3(0.0, 0.0, 1.0), 20.0 * mm, 90, 41,
+                                         [](double, double) { return 7.3 * mm; }),
+                [](const Vec3& v) { return v.x > 1.0 * mm && glm::length(Vec3(v.x, v.y, 0.0)) > 7.0 * mm; });
+    const geometry::TriangleTree bone(shaft);
+    const Seat seat = seat_of(sleeve, bone, Vec3(1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn);
+    CHECK(seat.contact_share() > 0.99);
+    CHECK(seat.play == Approx(most_play));
+    CHECK(std::abs(seat.play_direction.z) > 0.99);
+    CHECK(seat.least_distance == Approx(0.3 * mm).margin(0.02 * mm));
+    CHECK(seat.is_path_free);
+    // Into the bone nothing can be taken off.
+    CHECK(!seat_of(sleeve, bone, Vec3(-1.0, 0.0, 0.0), 0.3 * mm, 0.3 * mm, run_in_turn).is_path_free);
+}
+
+TEST_CASE("a guide that cannot be made is refused with the reason") {
+    GuideDesign design = test::random_guide(9, 1);
+    design.removal = design.cuts[0].plane.normal;
+    CHECK_THROWS_AS(make_guide(design, run_in_turn), Error);
+    design = test::random_guide(9, 1);
+    design.settings.offset = 0.0;
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("does not seat"));
+    design = test::random_guide(9, 1);
+    design.cuts[0].plane.origin += design.along * 1.0;
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("does not meet the bone"));
+    design = test::random_guide(9, 1);
+    design.settings.voxel = 0.01 * mm;
+    CHECK_THROWS_WITH(make_guide(design, run_in_turn), Catch::Matchers::ContainsSubstring("coarser voxel"));
+    design = test::random_guide(9, 1);
+    design.cuts.clear();
+    CHECK_THROWS_AS(make_guide(design, run_in_turn), Error);
+}
