@@ -3,6 +3,8 @@
 
 #include "assets/experiment/toml_values.hpp"
 
+#include <toml++/toml.h>
+
 #include <utility>
 
 namespace tactus::experiment {

@@ -4,8 +4,14 @@
 #include "assets/experiment/toml_values.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/core/units.hpp"
 #include "dsp/statistics/orders.hpp"
 
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <sstream>

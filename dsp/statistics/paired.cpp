@@ -139,8 +139,16 @@ EquivalenceTest standardised_equivalence(std::span<const double> differences, do
     const double below = noncentral_student_cdf(size, freedom, shift);
     EquivalenceTest test;
     test.p = below - noncentral_student_cdf(-size, freedom, shift);
-    // Interval of the standardised effect: those shifts that t does not exclude (Steiger and Fouladi 1997).
-    const auto shift_at = [&](double wanted) {
+    if (test.p < alpha) test.verdict = Equivalence::equivalent;
+    else if (1.0 - below < alpha) test.verdict = Equivalence::different;
+    return test;
+}
+
+std::pair<double, double> standardised_interval(std::span<const double> differences, double confidence) {
+    const Moments of = varying_moments(differences);
+    const double root = std::sqrt(static_cast<double>(differences.size()));
+    const double freedom = static_cast<double>(differences.size()) - 1.0, t = root * of.mean / of.deviation;
+    const auto effect_at = [&](double wanted) {
         double low = t - 20.0, high = t + 20.0;
         for (int step = 0; step < 40; ++step) {  // 40 / 2^40 standard errors
             const double middle = 0.5 * (low + high);
@@ -148,11 +156,7 @@ EquivalenceTest standardised_equivalence(std::span<const double> differences, do
         }
         return 0.5 * (low + high) / root;
     };
-    test.low = shift_at(1.0 - alpha);
-    test.high = shift_at(alpha);
-    if (test.p < alpha) test.verdict = Equivalence::equivalent;
-    else if (1.0 - below < alpha) test.verdict = Equivalence::different;
-    return test;
+    return {effect_at(0.5 + 0.5 * confidence), effect_at(0.5 - 0.5 * confidence)};
 }
 
 double power_of_standardised_equivalence(std::size_t subjects, double margin, double effect, double alpha) {

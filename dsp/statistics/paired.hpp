@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tactus::statistics {
@@ -56,9 +57,12 @@ EquivalenceTest equivalence_test(std::span<const double> differences, double mar
 
 /// The same with a margin in standard deviations of the differences, which are not known beforehand: the t statistic against the
 /// non-central t at the margin (Wellek 2010, section 5.3). The test above with margin times the sample's deviation would not
-/// have the size alpha, because that margin is random. `low` and `high` are the interval of the mean over the deviation.
-/// Throws Error as paired_t, or for a margin that is not positive.
+/// have the size alpha, because that margin is random. The result has no interval. Throws Error as paired_t, or for a
+/// margin that is not positive.
 EquivalenceTest standardised_equivalence(std::span<const double> differences, double margin, double alpha = 0.05);
+/// Confidence interval of the mean over the deviation: those effects that t does not exclude (Steiger and Fouladi 1997).
+/// Throws Error as paired_t.
+std::pair<double, double> standardised_interval(std::span<const double> differences, double confidence = 0.9);
 
 /// Period effect of a cross-over: each subject did A and B in one of two orders.
 struct CrossOver {

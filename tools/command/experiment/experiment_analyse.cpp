@@ -49,8 +49,8 @@ Json comparison_result(const study::AnalysedComparison& one, double alpha) {
     if (one.equivalence)
         json["equivalence"] = {{"margin_sd", *one.of.margin},
                                {"p", one.equivalence->p},
-                               {"low_sd", one.equivalence->low},
-                               {"high_sd", one.equivalence->high},
+                               {"low_sd", one.effect_interval.first},
+                               {"high_sd", one.effect_interval.second},
                                {"power_without_effect", one.equivalence_power}};
     if (one.cross_over)
         json["period"] = {{"effect", one.cross_over->period},
@@ -134,10 +134,13 @@ std::string analysis_text(const study::ExperimentAnalysis& analysis) {
         }
         const std::string unit = unit_of(analysis.protocol, group.task, group.measure);
         const double factor = parse_unit(unit).factor;
+        const std::string interval = group.count > 1
+                                         ? fmt::format(" ({:.4g} to {:.4g})", group.low / factor, group.high / factor)
+                                         : std::string();
         out += fmt::format(
-            "{:<36} {:>9.4g} ({:.4g} to {:.4g}){}, n = {}\n",
+            "{:<36} {:>9.4g}{}{}, n = {}\n",
             fmt::format("{}{}, {}", group.task.empty() ? "" : group.task + " ", group.measure, group.condition),
-            group.mean / factor, group.low / factor, group.high / factor, unit.empty() ? "" : " " + unit, group.count);
+            group.mean / factor, interval, unit.empty() ? "" : " " + unit, group.count);
     }
     for (const study::AnalysedComparison& one : analysis.comparisons) {
         if (!one.test) {

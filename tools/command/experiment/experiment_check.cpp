@@ -2,6 +2,7 @@
 // tactus experiment check: the protocol, its orders, and whether the patch can present all levels.
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
+#include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/experiment/run_experiment.hpp"
@@ -35,9 +36,8 @@ std::string order_text(const experiment::Protocol& protocol, std::size_t row) {
 int check_experiment(const ExperimentCheck& choice) {
     const experiment::Protocol protocol = experiment::load_protocol(session::find_experiment(choice.experiment));
     const auto subjects = static_cast<std::size_t>(choice.subjects > 0 ? choice.subjects : protocol.subjects);
-    say(stdout,
-        fmt::format("{}\n{} conditions, {}\n", protocol.title, protocol.conditions.size(),
-                    protocol.is_psychophysics() ? "psychophysics" : fmt::format("{} tasks", protocol.tasks.size())));
+    say(stdout, fmt::format("{}\n{}, {}\n", protocol.title, counted(protocol.conditions.size(), "condition"),
+                            protocol.is_psychophysics() ? "psychophysics" : counted(protocol.tasks.size(), "task")));
     if (const std::string warning = experiment::balance_warning(protocol, subjects); !warning.empty())
         say(stdout, fmt::format("warning: {}\n", warning));
     if (choice.lists_orders)

@@ -233,6 +233,7 @@ AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment:
     try {
         result.test = statistics::paired_t(result.differences);
         result.permutation = statistics::permutation_test(result.differences, protocol.seed);
+        result.effect_interval = statistics::standardised_interval(result.differences, 1.0 - 2.0 * protocol.alpha);
         if (comparison.margin) {
             result.equivalence =
                 statistics::standardised_equivalence(result.differences, *comparison.margin, protocol.alpha);

@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::study {
@@ -53,6 +54,7 @@ struct AnalysedComparison {
     std::optional<statistics::PermutationTest> permutation;
     double adjusted_p = 1.0;  ///< Holm, over all comparisons that were tested
     std::optional<statistics::EquivalenceTest> equivalence;
+    std::pair<double, double> effect_interval;  ///< of the difference in standard deviations, confidence 1 - 2 alpha
     std::optional<statistics::CrossOver> cross_over;
     double detectable = 0.0;  ///< standardised effect found with 80 % power at this n
     double equivalence_power = 0.0;  ///< at no effect
