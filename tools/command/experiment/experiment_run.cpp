@@ -40,10 +40,13 @@ class Person {
 public:
     explicit Person(bool has_window, const std::atomic<bool>& stop) : has_window_(has_window), stop_(stop) {}
 
-    bool confirm(const std::string& text) {
+    bool confirm(const std::string& text, char wanted) {
         say(stdout, text + "\n");
-        const std::optional<char> key = keys_.read(stop_);
-        return key && *key != 'q';
+        while (const std::optional<char> key = keys_.read(stop_)) {
+            if (*key == 'q') return false;
+            if (wanted == 0 || *key == wanted) return true;
+        }
+        return false;
     }
 
     std::optional<study::Answered> ask(const experiment::Protocol& protocol) {
@@ -139,7 +142,7 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     LiveLine line;
     study::ExperimentHooks hooks;
     hooks.say = [&](const std::string& text) { say(stdout, text); };
-    hooks.confirm = [&](const std::string& text) { return person.confirm(text); };
+    hooks.confirm = [&](const std::string& text, char key) { return person.confirm(text, key); };
     hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
     hooks.perform = [&](const session::RunChoice& run, std::atomic<bool>& over) { return person.perform(run, over); };
     hooks.progress = [&](const study::TrialSpec& spec, int trials, int blocks) {

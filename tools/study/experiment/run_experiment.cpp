@@ -173,8 +173,7 @@ private:
     bool prepare(bool is_resumed) {
         if (simulated_) return true;
         if (protocol_.needs_consent && entry_.consent.empty()) {
-            if (!hooks_.confirm(
-                    "Has the subject given informed consent in writing? Press a key to record it, q to end."))
+            if (!hooks_.confirm("Has the subject given informed consent in writing? y records it, q ends.", 'y'))
                 return false;
             entry_.consent = cases::time_of_day();
             folder_.update(entry_);
@@ -192,7 +191,7 @@ private:
             hooks_.say(
                 "This is a rehearsal: no haptic device is chosen, or the registration is not given. The analysis "
                 "tests nothing from it.\n");
-        return protocol_.welcome.empty() || is_resumed || hooks_.confirm(protocol_.welcome);
+        return protocol_.welcome.empty() || is_resumed || hooks_.confirm(protocol_.welcome, 0);
     }
 
     /// A mouse or the patch's own simulated hand is no haptic device.
@@ -211,14 +210,15 @@ private:
     bool pause_before(const TrialSpec& spec, const SubjectSession& session) {
         if (simulated_) return true;
         if (session.is_break_due() &&
-            !hooks_.confirm(protocol_.pause.empty() ? "Have a break. Press a key to go on, q to end."
-                                                    : protocol_.pause))
+            !hooks_.confirm(protocol_.pause.empty() ? "Have a break. Press a key to go on, q to end." : protocol_.pause,
+                            0))
             return false;
         if (!spec.begins_block) return true;
         if (protocol_.is_psychophysics()) return true;
         const experiment::Task& task = protocol_.tasks[spec.task];
         return hooks_.confirm(fmt::format("Block {} of {}, condition {}. {}", spec.block + 1, session.blocks(),
-                                          protocol_.conditions[spec.condition].name, task.instruction));
+                                          protocol_.conditions[spec.condition].name, task.instruction),
+                              0);
     }
 
     /// None: the session ends, and this trial is not kept.
@@ -271,9 +271,21 @@ private:
             record.is_finished = task.done.empty() || std::ranges::any_of(values.at(task.done).values,
                                                                           [](double value) { return value > 0.5; });
         }
-        record.marked = end.losses.size() > losses ? "the take is not whole" : mark_of(record, protocol_.limits);
+        if (end.losses.size() > losses) record.marked = "the take is not whole";
+        if (record.marked.empty()) record.marked = mark_of(record, protocol_.limits);
+        if (record.marked.empty()) record.marked = level_mark(record);
         if (!choice_.keeps_takes) fs::remove_all(at, failure);
         return record;
+    }
+
+    /// Late ticks, a fault, or a hand that did not explore an interval leave another stimulus than the wanted one.
+    std::string level_mark(const TrialRecord& record) const {
+        if (!protocol_.is_psychophysics() || record.interval == 0) return {};
+        const std::string unit = protocol_.stimulus->level_unit();
+        if (!record.rendered_level) return "an interval has nothing that can be measured";
+        if (std::abs(*record.rendered_level - record.level) <= protocol_.stimulus->tolerance * std::abs(record.level))
+            return {};
+        return fmt::format("the device was commanded level {}", format_quantity(*record.rendered_level, unit));
     }
 
     void perform(const session::RunChoice& run, PortCollector& collector, TrialRecord& record, ExperimentEnd& end) {

@@ -34,7 +34,8 @@ struct LiveEnd {
 /// What a subject or an experimenter does. All but `say` may be null for simulated subjects.
 struct ExperimentHooks {
     std::function<void(const std::string&)> say;       ///< to the experimenter or the subject
-    std::function<bool(const std::string&)> confirm;   ///< shows a text and waits for a key; false: end the session
+    /// Shows a text and waits for `key`, or for any key when it is 0. False: end the session.
+    std::function<bool(const std::string&, char key)> confirm;
     std::function<std::optional<Answered>(const experiment::Protocol&)> ask;  ///< none: end the session
     std::function<void(const TrialSpec&, int done, int blocks)> progress;
     /// Runs a patch live, until its end or until `over`, which a task sets that is done, and a user who ends the session.
