@@ -101,7 +101,7 @@ TEST_CASE("whatever NaN a node computes, an event carries the same bits") {
 
 TEST_CASE("a contact begins and ends at its tick, with speed and depth") {
     NodeHarness node("contact_events", {.period = ms});
-    node.set("begin", "1 mm").set("hysteresis", "0.5 mm").disconnect("twist");
+    node.set("begin", "1 mm").set("hysteresis", "0.5 mm").disconnect("twist").disconnect("contact");
     node.feed<double>("depth", row({-2e-3, 0.0, 1e-3, 1.5e-3, nan_number, 2.5e-3, 0.8e-3, 0.5e-3, 1.2e-3}));
     node.prepare();
     node.run(9);
@@ -121,8 +121,20 @@ TEST_CASE("a contact begins and ends at its tick, with speed and depth") {
     CHECK(pattern_of(node, "in_contact") == "...####.#");
 }
 
+TEST_CASE("with a tool's contact a contact begins and ends with it, whatever the depth") {
+    NodeHarness node("contact_events", {.period = ms});
+    node.disconnect("twist").feed<double>("depth", row({1e-3, 2e-3, 0.0, 0.0, 3e-3, 1e-9, 1e-9, 0.0}));
+    node.feed<bool>("contact", [](std::int64_t k) { return k >= 2 && k < 6; });
+    node.prepare();
+    node.run(8);
+    CHECK(pattern_of(node, "in_contact") == "..####..");
+    REQUIRE(given(node).size() == 2);
+    CHECK(given(node)[1].event.values[1] == Approx(3e-3));
+}
+
 TEST_CASE("with the tool's velocity the speed of a contact is the tool's") {
     NodeHarness node("contact_events", {.period = ms});
+    node.disconnect("contact");
     node.feed<double>("depth", row({0.0, 1e-6})).feed("twist", Twist{{0.03, 0.0, -0.04}, {}});
     node.prepare();
     node.run(2);

@@ -2,6 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -25,7 +26,10 @@ std::vector<double> teeth_alone(double strokes, double stroke, double pitch, dou
     std::vector<double> alone;
     for (const double n : {force, 0.0}) {
         NodeHarness node("saw");
-        node.set("blade_rate", std::to_string(strokes) + " Hz").set("voice", "model").disconnect("trigger");
+        node.set("blade_rate", std::to_string(strokes) + " Hz")
+            .set("voice", "model")
+            .disconnect("trigger")
+            .disconnect("contact");
         node.disconnect("density").set("mass", std::to_string(mass) + " kg");
         node.feed<double>("load", [](std::int64_t) { return 7.0; });
         node.feed<double>("tooth_force", [n](std::int64_t) { return n; });
@@ -94,7 +98,7 @@ TEST_CASE("in a model teeth that are out of the bone are silent, and half the fo
 
 TEST_CASE("a saw spins up to its rate while the trigger is held, and stops after") {
     NodeHarness node("saw");
-    node.set("blade_rate", "200 Hz").disconnect("load");
+    node.set("blade_rate", "200 Hz").disconnect("load").disconnect("contact");
     node.feed<bool>("trigger", [](std::int64_t k) { return k < 48000; });
     node.prepare();
     node.run(3 * 48000);
@@ -109,7 +113,7 @@ TEST_CASE("a saw spins up to its rate while the trigger is held, and stops after
 
 TEST_CASE("a saw with no trigger wire always runs, and cuts louder than it idles") {
     NodeHarness node("saw");
-    node.set("blade_rate", "200 Hz").disconnect("trigger");
+    node.set("blade_rate", "200 Hz").disconnect("trigger").disconnect("contact");
     node.feed<double>("load", [](std::int64_t k) { return k < 48000 ? 0.0 : 7.0; });
     node.prepare();
     node.run(2 * 48000);
@@ -120,9 +124,29 @@ TEST_CASE("a saw with no trigger wire always runs, and cuts louder than it idles
     CHECK(level(signal, 84000) == Approx(50.0 * shape).epsilon(0.05));
 }
 
+TEST_CASE("a saw that is told of its contact sounds as one that cuts in exactly that time") {
+    for (const char* voice : {"recordings", "model"}) {
+        NodeHarness node("saw");
+        node.set("blade_rate", "200 Hz").set("voice", voice).set("spin_up", "0 ms").disconnect("trigger");
+        node.disconnect("density").feed<double>("load", [](std::int64_t k) { return k < 24000 ? 7.0 : 0.1; });
+        node.feed<bool>("contact", [](std::int64_t k) { return k >= 12000 && k < 36000; });
+        node.prepare();
+        node.run(48000);
+        const auto cutting = node.values<bool>("cutting");
+        CHECK(std::count(cutting.begin(), cutting.end(), true) == 24000);
+        CHECK(cutting[12000]);
+        CHECK_FALSE(cutting[11999]);
+        CHECK_FALSE(cutting[36000]);
+    }
+}
+
 TEST_CASE("a saw played as a model has the levels and the rate of its recordings") {
     NodeHarness node("saw");
-    node.set("blade_rate", "200 Hz").set("voice", "model").disconnect("trigger").disconnect("density");
+    node.set("blade_rate", "200 Hz")
+        .set("voice", "model")
+        .disconnect("trigger")
+        .disconnect("density")
+        .disconnect("contact");
     node.feed<double>("load", [](std::int64_t k) { return k < 48000 ? 0.0 : 7.0; });
     node.prepare();
     node.run(2 * 48000);
