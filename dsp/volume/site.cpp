@@ -166,11 +166,11 @@ private:
         return (border < 20e-3 ? 0.3 : 1.0) * (from_inside ? 0.2 : 1.0) * centrality(p);
     }
 
-    /// 1 in the middle of the bone, 0.75 as far from it as bone is on the mean, towards 0.5 at its ends: of sites that are
-    /// as good for a blade, the one on the body of a bone is that which a person means, not one on a process or a rib.
+    /// 1 about the middle of the bone, as far as its samples lie from it on the mean, and less towards its ends: of sites
+    /// that are as good for a blade, a person means the one on the body of a bone, not one on a process or a rib.
     double centrality(const Vec3& p) const {
-        const Vec3 away = (p - middle_) / spread_;
-        return 0.5 + 0.5 / (1.0 + glm::dot(away, away));
+        const double beyond = std::max(0.0, glm::length(p - middle_) / spread_ - 1.0);
+        return 0.4 + 0.6 / (1.0 + 4.0 * beyond * beyond);
     }
 
     bool near_border(const Vec3& p) const {
@@ -292,7 +292,10 @@ private:
         if (wide < least_thickness) return;
         double score = depth_score * request_.blade_length / (request_.blade_length + wide);
         // A blade is put on the middle of a bone, not on its edge, nor on what sticks out of it.
-        score *= (0.4 + 0.6 * std::min(one, other) / std::max(one, other)) * std::min(1.0, wide / least_width);
+        score *=
+            std::min(1.0, 0.2 + 1.6 * std::min(one, other) / std::max(one, other)) * std::min(1.0, wide / least_width);
+        // Flat bone is cut through its thickness, not from its edge.
+        score *= std::min(1.0, wide / deep);
         if (score <= best_score_) return;
         score *= both_sides(p + feed * (0.5 * deep), glm::cross(feed, stroke));
         if (score <= best_score_) return;
