@@ -305,7 +305,7 @@ TEST_CASE("one file has one fundamental in every verb, and orders above half the
     folder.sound("saw.wav", x, 1, 8000);
     const json channel = folder.tactus("spectrum --json saw.wav").only("rows")["channels"][0];
     CHECK(channel["fundamental_hz"].get<double>() == Approx(166.0).margin(0.1));
-    CHECK(channel["fundamental"]["certain"] == true);
+    CHECK(channel["fundamental"]["certain"] == mark.is_certain);
     const json compared = folder.tactus("compare --json saw.wav saw.wav").only("pairs");
     CHECK(compared["fundamental_hz"]["reference"] == channel["fundamental_hz"]);
     const json orders = folder.tactus("orders --json --orders 30 saw.wav").answer();
@@ -331,10 +331,13 @@ TEST_CASE("the recordings of real saws have the fundamental that their spectrogr
     struct Mark {
         const char* file;
         double low, high;
+        bool is_certain;
     };
+    // Of the second, four of ten sections hold the rate, beside a stronger line at 154 Hz: a rule that called it certain was wrong for one
+    // in five of the machines that it added.
     for (const Mark& mark :
-         {Mark{"chainsaw_116765a.flac", 140.0, 176.0}, Mark{"chainsaw_cutting_149294a.flac", 215.0, 222.0},
-          Mark{"chainsaw_cutting_tree_169127b.flac", 147.0, 165.0}}) {
+         {Mark{"chainsaw_116765a.flac", 140.0, 176.0, true}, Mark{"chainsaw_cutting_149294a.flac", 215.0, 222.0, false},
+          Mark{"chainsaw_cutting_tree_169127b.flac", 147.0, 165.0, true}}) {
         const json channel = fundamental(mark.file)[0];
         CAPTURE(mark.file, channel["fundamental_hz"], channel["confidence"]);
         CHECK(channel["fundamental_hz"].get<double>() > mark.low);
@@ -392,8 +395,7 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line",
     folder.sound("good.wav", tone);
     const std::string bytes = slurp(folder.path / "good.wav");
     folder.text("cut.wav", bytes.substr(0, bytes.size() / 2));
-    for (const char* file :
-         {"empty.wav", "words.wav", "words.csv", "no_samples.wav", "nan.wav", "missing.wav"})
+    for (const char* file : {"empty.wav", "words.wav", "words.csv", "no_samples.wav", "nan.wav", "missing.wav"})
         for (const char* verb : {"orders --rate 100", "orders", "exposure --uncalibrated"}) {
             const RecordOutcome outcome = folder.tactus(fmt::format("{} {}", verb, file));
             CAPTURE(verb, file, outcome.out, outcome.err);
