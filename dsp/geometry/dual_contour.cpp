@@ -390,7 +390,9 @@ private:
             }
             const Vec3 offset = planes.nearest(start, is_free), found = glm::clamp(mean + offset, low, high);
             if (glm::length(found - mean - offset) > 1e-9 * glm::length(high - low)) continue;
-            if (const double error = planes.error(offset); error < least - 1e-24) least = error, best = found;
+            // Where the planes do not decide, the nearest to the mean.
+            if (const double error = planes.error(offset) + 1e-3 * glm::dot(offset, offset); error < least)
+                least = error, best = found;
         }
         return least < infinity_ ? best : glm::clamp(mean, low, high);
     }

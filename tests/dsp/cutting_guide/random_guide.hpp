@@ -49,7 +49,8 @@ inline cutting_guide::GuideDesign random_guide(unsigned seed, int segments) {
             design.cuts.push_back(
                 {{origin + s * axis, sign * tilt}, "cut", static_cast<char>('A' + design.cuts.size())});
             design.letters.push_back(letter_l());
-            s += sign < 0.0 ? from(14.0, 20.0) * mm : from(1.0, 14.0) * mm;
+            // Nearer planes would cross within the bone.
+            s += sign < 0.0 ? from(14.0, 20.0) * mm : from(7.0, 16.0) * mm;
         }
     const double first = 40.0 * mm - 24.0 * mm,
                  last = glm::dot(design.cuts.back().plane.origin - origin, axis) + 24.0 * mm;
