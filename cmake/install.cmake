@@ -28,6 +28,7 @@ tactus_place(TACTUS_INSTALLED_NODES ${CMAKE_INSTALL_FULL_LIBDIR}/tactus graph/pl
 
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         COMPONENT common FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY assets/library/experiments DESTINATION ${installed_library} COMPONENT common)
 install(DIRECTORY assets/library/pictures DESTINATION ${installed_library} COMPONENT common FILES_MATCHING PATTERN "*.png")
 install(DIRECTORY docs/how-to/patches/ DESTINATION ${installed_library}/examples COMPONENT common FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.

@@ -51,7 +51,7 @@ public:
         if (const auto* node = root.get("alpha")) p.alpha = number(*node, 1e-6, 0.5);
         if (const auto* node = root.get("instructions")) read_instructions(as_table(*node));
         if (const auto* node = root.get("condition")) read_conditions(*node);
-        if (p.conditions.empty()) p.conditions.push_back({"all", {}, {}, {}});
+        if (p.conditions.empty()) p.conditions.push_back({"all", {}, {}, {}, {}, {}});
         if (const auto* node = root.get("limits")) read_limits(as_table(*node));
         if (const auto* node = root.get("exclusion")) read_exclusion(as_table(*node));
         if (const auto* node = root.get("practice")) read_practice(as_table(*node));
@@ -89,7 +89,7 @@ private:
     void read_conditions(const toml::node& node) {
         for (const toml::node& one : list(node, 1, max_conditions)) {
             const toml::table& table = as_table(one);
-            know(table, {"name", "factors", "settings", "standard"});
+            know(table, {"name", "factors", "settings", "standard", "display", "offset"});
             Condition condition;
             const toml::node& name = need(table, "name", "a condition needs a name");
             condition.name = label(name);
@@ -99,6 +99,8 @@ private:
                 for (const auto& [key, value] : as_table(*factors))
                     condition.factors[std::string(key.str())] = line(value);
             if (const auto* settings_ = table.get("settings")) condition.settings = settings(*settings_);
+            if (const auto* display = table.get("display")) condition.display = display_of(*display);
+            if (const auto* offset = table.get("offset")) condition.offset = line(*offset);
             standards_.push_back(table.get("standard"));
             protocol_.conditions.push_back(std::move(condition));
         }
@@ -108,6 +110,12 @@ private:
                     condition.factors.size() != protocol_.conditions.front().factors.size())
                     fail(node, fmt::format("condition '{}' does not have the same factors as '{}'", condition.name,
                                            protocol_.conditions.front().name));
+    }
+
+    /// A file beside this one, or a name in the library.
+    std::string display_of(const toml::node& node) const {
+        const std::string name = line(node);
+        return name.find('/') == std::string::npos && !name.ends_with(".toml") ? name : beside(node).string();
     }
 
     void read_limits(const toml::table& table) {
@@ -498,6 +506,8 @@ std::vector<fs::path> Protocol::files() const {
     };
     add(patch);
     add(order_file);
+    for (const Condition& condition : conditions)
+        if (fs::path(condition.display).is_absolute()) add(condition.display);
     for (const Task& task : tasks) {
         add(task.patch);
         add(task.ideal);

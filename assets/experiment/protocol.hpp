@@ -98,6 +98,8 @@ struct Condition {
     std::map<std::string, std::string> factors;
     std::vector<std::string> settings;  ///< NODE.PARAM=VALUE
     std::optional<double> standard;  ///< in place of the stimulus', SI
+    std::string display;  ///< of the window: a file, or a name in the library; empty: none
+    std::string offset;  ///< shift of the picture against the hand: "none", "study" (0.3 m), or three lengths
 };
 
 struct Task {

@@ -67,12 +67,15 @@ public:
         return std::nullopt;
     }
 
-    study::LiveEnd perform(const session::RunChoice& choice, std::atomic<bool>& over) {
+    study::LiveEnd perform(const session::RunChoice& choice, const experiment::Condition& condition,
+                           std::atomic<bool>& over) {
         study::LiveEnd end;
         if (has_window_) {
             view::ViewedRunChoice viewed;
             static_cast<session::RunChoice&>(viewed) = choice;
             viewed.view.wanted = true;
+            if (!condition.display.empty()) viewed.view.sight.display = session::find_display(condition.display);
+            viewed.view.sight.offset = condition.offset;
             if (view::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
             end.summary = file::read_whole_file(choice.out / "summary.json");
             end.seconds = choice.seconds.value();
@@ -144,7 +147,8 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     hooks.say = [&](const std::string& text) { say(stdout, text); };
     hooks.confirm = [&](const std::string& text, char key) { return person.confirm(text, key); };
     hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
-    hooks.perform = [&](const session::RunChoice& run, std::atomic<bool>& over) { return person.perform(run, over); };
+    hooks.perform = [&](const session::RunChoice& run, const experiment::Condition& condition,
+                        std::atomic<bool>& over) { return person.perform(run, condition, over); };
     hooks.progress = [&](const study::TrialSpec& spec, int trials, int blocks) {
         if (choice.model)
             line.show(fmt::format("{}: trial {}, block {} of {}", choice.subject, trials, spec.block + 1, blocks));

@@ -258,7 +258,7 @@ private:
                                 protocol_.is_psychophysics() ? std::string() : protocol_.tasks[spec.task].done);
         run.tap = collector.tap();
         const std::size_t losses = end.losses.size();
-        perform(run, collector, record, end);
+        perform(spec, run, collector, record, end);
         if (stop_) return std::nullopt;
         const PortValues values = collector.values();
         if (protocol_.is_psychophysics()) {
@@ -288,7 +288,8 @@ private:
         return fmt::format("the device was commanded level {}", format_quantity(*record.rendered_level, unit));
     }
 
-    void perform(const session::RunChoice& run, PortCollector& collector, TrialRecord& record, ExperimentEnd& end) {
+    void perform(const TrialSpec& spec, const session::RunChoice& run, PortCollector& collector, TrialRecord& record,
+                 ExperimentEnd& end) {
         if (simulated_) {
             const session::RenderedRun rendered = session::render_run(run, assets_, stop_, [](double) {});
             end.losses.insert(end.losses.end(), rendered.losses.begin(), rendered.losses.end());
@@ -296,7 +297,7 @@ private:
             read_quality(rendered.summary, record);
             return;
         }
-        const LiveEnd live = hooks_.perform(run, collector.over());
+        const LiveEnd live = hooks_.perform(run, protocol_.conditions[spec.condition], collector.over());
         end.losses.insert(end.losses.end(), live.losses.begin(), live.losses.end());
         record.seconds = live.seconds;
         read_quality(live.summary, record);

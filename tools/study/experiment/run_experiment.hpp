@@ -39,7 +39,7 @@ struct ExperimentHooks {
     std::function<std::optional<Answered>(const experiment::Protocol&)> ask;  ///< none: end the session
     std::function<void(const TrialSpec&, int done, int blocks)> progress;
     /// Runs a patch live, until its end or until `over`, which a task sets that is done, and a user who ends the session.
-    std::function<LiveEnd(const session::RunChoice&, std::atomic<bool>& over)> perform;
+    std::function<LiveEnd(const session::RunChoice&, const experiment::Condition&, std::atomic<bool>& over)> perform;
 };
 
 struct ExperimentChoice {

@@ -235,6 +235,31 @@ TEST_CASE("a simulated subject runs, its takes give the measures to the bit, and
     CHECK(fs::exists(choice.out / "participants.tsv"));
 }
 
+TEST_CASE("a trial whose stimulus did not reach the device is marked, repeated once, and left out of the fit",
+          "[slow]") {
+    const session::ScratchFolder scratch;
+    const std::atomic<bool> never{false};
+    ExperimentChoice choice = simulated_choice(scratch.path(), "P01");
+    // Less than the walls need: the forces of both are cut off alike.
+    choice.settings = {"hand_out.max_force=0.5 N"};
+    const ExperimentEnd end = run_experiment(choice, silent(), never);
+    CHECK(end.is_complete);
+    CHECK(end.marked == end.trials);
+    int main = 0, repeat = 0;
+    for (const TrialRecord& trial : experiment::load_trials(choice.out / "sub-P01/trials.jsonl")) {
+        if (trial.phase == Phase::main) ++main;
+        if (trial.phase == Phase::repeat) ++repeat;
+    }
+    CHECK(main == 12);
+    CHECK(repeat == 12);
+    const ExperimentAnalysis analysis = analyse_experiment(choice.out, {0});
+    REQUIRE(analysis.subjects.size() == 1);
+    CHECK(analysis.subjects[0].thresholds[0].counts.empty());
+    CHECK_FALSE(analysis.subjects[0].thresholds[0].threshold);
+    CHECK(analysis.subjects[0].excluded.find("marked") != std::string::npos);
+    CHECK(analysis.included == 0);
+}
+
 TEST_CASE("a session that is stopped in any trial is resumed to the same trials", "[slow]") {
     const session::ScratchFolder whole, cut;
     const std::atomic<bool> never{false};
