@@ -49,8 +49,9 @@ if(TACTUS_COVERAGE)
 endif()
 find_program(CCACHE ccache)
 if(CCACHE)
-  # Precompiled headers are part of what ccache compares; it asks to be told that this is wanted.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
+  # Precompiled headers are part of what ccache compares; it asks to be told that this is wanted. Comments count: `#pragma once`
+  # recognises a precompiled header by its bytes, so one that was cached before a comment changed would be read twice.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_COMMENTS=1 ${CCACHE})
 endif()
 # Reading the standard library, fmt and GLM takes as long as compiling what a file of ours says.
 set(TACTUS_PCH_HEADERS <algorithm> <array> <cmath> <cstring> <memory> <numbers> <optional> <span> <string> <string_view> <vector>
