@@ -71,33 +71,33 @@ private:
         know(table, {"kind", "point", "normal", "from", "to", "feed", "depth", "tolerance", "depth_tolerance",
                      "angle_tolerance"});
         PlannedCut& cut = task.cut;
-        const toml::node& kind = need(where, table, "kind", "a cut is of the kind \"plane\" or \"guide\"");
+        const toml::node& kind = need(where, table, "kind", "a cut is of the kind \"plane\" or \"line\"");
         const std::string name = word(kind);
-        if (name != "plane" && name != "guide")
-            fail(kind, fmt::format("'{}' is neither \"plane\" nor \"guide\"{}", name,
-                                   did_you_mean(name, std::vector<std::string>{"plane", "guide"})));
-        task.is_guide = name == "guide";
+        // Files may still have the old name of a line.
+        task.is_line = name == "line" || name == "guide";
+        if (name != "plane" && !task.is_line)
+            fail(kind, fmt::format("'{}' is neither \"plane\" nor \"line\"{}", name,
+                                   did_you_mean(name, std::vector<std::string>{"plane", "line"})));
         for (const char* other : {"point", "normal"})
-            if (const auto* node = table.get(other); node && task.is_guide)
-                fail(*node, fmt::format("a guide has 'from' and 'to' instead of '{}'", other));
+            if (const auto* node = table.get(other); node && task.is_line)
+                fail(*node, fmt::format("a line has 'from' and 'to' instead of '{}'", other));
         for (const char* other : {"from", "to"})
-            if (const auto* node = table.get(other); node && !task.is_guide)
+            if (const auto* node = table.get(other); node && !task.is_line)
                 fail(*node, fmt::format("a plane has 'point' and 'normal' instead of '{}'", other));
         const toml::node& feed =
             need(where, table, "feed", "a cut needs 'feed', the direction into the bone, as [x, y, z]");
         const Vec3 into = direction(feed);
-        if (task.is_guide) {
-            const toml::node &from =
-                                 need(where, table, "from", "a guide needs 'from', the point where its line begins"),
-                             &to = need(where, table, "to", "a guide needs 'to', the point where its line ends");
+        if (task.is_line) {
+            const toml::node &from = need(where, table, "from", "a line needs 'from', the point where it begins"),
+                             &to = need(where, table, "to", "a line needs 'to', the point where it ends");
             const Vec3 begin = vector(from), line = vector(to) - begin;
             const double length = glm::length(line);
-            if (!(length > 1e-3)) fail(to, "the guide is shorter than 1 mm");
+            if (!(length > 1e-3)) fail(to, "the line is shorter than 1 mm");
             cut.stroke = line / length;
             cut.point = begin + 0.5 * line;
             cut.half_length = 0.5 * length;
             const Vec3 down = into - glm::dot(into, cut.stroke) * cut.stroke;
-            if (!(glm::length(down) > 0.5)) fail(feed, "the feed is not across the line of the guide");
+            if (!(glm::length(down) > 0.5)) fail(feed, "the feed is not across the line");
             cut.feed = glm::normalize(down);
         } else {
             cut.point = vector(need(where, table, "point", "a plane needs 'point', where the blade enters the bone"));

@@ -41,7 +41,7 @@ struct TaskFile {
     double length = 60.0;               ///< s: maximum duration of an attempt
     BladeSize blade;
     PlannedCut cut;
-    bool is_guide = false;
+    bool is_line = false;
     std::vector<SparedFile> spare;
     TaskLimits limits;
 };

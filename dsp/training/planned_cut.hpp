@@ -26,9 +26,9 @@ struct PlannedCut {
     Vec3 feed{0.0, 0.0, -1.0};   ///< into the bone
     Vec3 stroke{1.0, 0.0, 0.0};  ///< along the blade
     Vec3 normal{0.0, 1.0, 0.0};  ///< of the planned plane
-    double half_length = std::numeric_limits<double>::infinity();  ///< m, of a guide, to both sides of `point`
+    double half_length = std::numeric_limits<double>::infinity();  ///< m, of a line, to both sides of `point`
     double depth = 0.02;              ///< m along `feed` from `point`: the depth stop
-    double tolerance = 1e-3;          ///< m, across the plane and beyond the ends of a guide
+    double tolerance = 1e-3;          ///< m, across the plane and beyond the ends of a line
     double depth_tolerance = 1e-3;    ///< m beyond the depth stop
     double angle_tolerance = 0.0873;  ///< rad
 

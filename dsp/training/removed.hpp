@@ -29,7 +29,7 @@ struct CutVolumes {
 
 /// A sample counts by the share of its voxel that the surface leaves in the bone, linear in the distance, so that the
 /// volumes do not step with the voxels. Under-cut is the area of the planned plane in bone (down to the depth stop,
-/// within a guide), in cells of half a voxel, where no bone was removed within half a kerf and the tolerance, times the
+/// within a line), in cells of half a voxel, where no bone was removed within half a kerf and the tolerance, times the
 /// kerf.
 CutVolumes cut_volumes(const CutBone& bone, const PlannedCut& cut, double kerf);
 

@@ -105,14 +105,17 @@ TEST_CASE("the axes of a cut are orthogonal, and the feed is made to lie in the 
     CHECK(std::abs(glm::dot(cut.stroke, cut.feed)) < 1e-12);
     CHECK(std::abs(std::abs(cut.normal.x) - 1.0) < 1e-12);
     CHECK(glm::length(glm::cross(cut.stroke, cut.feed) - cut.normal) < 1e-12);
-    const std::string text = with(
-        with(with(plane, "\"plane\"", "\"guide\""), "point  = \"1 mm, -6 mm, 0 mm\"", "from = \"0 mm, -6 mm, -4 mm\""),
-        "normal = [1, 0, 0]", "to = \"0 mm, -6 mm, 8 mm\"");
-    const training::TaskFile guide = training::load_task_file(folder.write(text));
-    CHECK(guide.is_guide);
-    CHECK(std::abs(guide.cut.half_length - 6 * mm) < 1e-12);
-    CHECK(std::abs(guide.cut.point.z - 2 * mm) < 1e-12);
-    CHECK(std::abs(guide.cut.stroke.z - 1.0) < 1e-12);
+    // The second name is that of older files.
+    for (const char* name : {"\"line\"", "\"guide\""}) {
+        const std::string text = with(
+            with(with(plane, "\"plane\"", name), "point  = \"1 mm, -6 mm, 0 mm\"", "from = \"0 mm, -6 mm, -4 mm\""),
+            "normal = [1, 0, 0]", "to = \"0 mm, -6 mm, 8 mm\"");
+        const training::TaskFile line = training::load_task_file(folder.write(text));
+        CHECK(line.is_line);
+        CHECK(std::abs(line.cut.half_length - 6 * mm) < 1e-12);
+        CHECK(std::abs(line.cut.point.z - 2 * mm) < 1e-12);
+        CHECK(std::abs(line.cut.stroke.z - 1.0) < 1e-12);
+    }
 }
 
 TEST_CASE("a wrong task is refused with the line of what is wrong") {
@@ -120,7 +123,7 @@ TEST_CASE("a wrong task is refused with the line of what is wrong") {
         {with(plane, "format = 1", "format = 2"), "task.toml:1:10: the task has format 2"},
         {with(plane, "format = 1\n", ""), "task.toml:1:1: a task begins with format = 1"},
         {with(plane, "title ", "titel "), "task.toml:2:10: unknown key 'titel' in a task file; did you mean 'title'?"},
-        {with(plane, "\"plane\"", "\"plan\""), "task.toml:11:10: 'plan' is neither \"plane\" nor \"guide\""},
+        {with(plane, "\"plane\"", "\"plan\""), "task.toml:11:10: 'plan' is neither \"plane\" nor \"line\""},
         {with(plane, "normal = [1, 0, 0]", "normal = [0, 0, 0]"), "task.toml:13:10: this direction is zero"},
         {with(plane, "normal = [1, 0, 0]", "normal = [0, 1, 0]"),
          "task.toml:14:10: the feed does not lie in the plane"},
