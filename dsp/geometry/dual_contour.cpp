@@ -91,7 +91,7 @@ public:
         });
     }
 
-    /// Removes small parts (6-neighbours) and small cavities (18-neighbours would be exact; 6 removes more of them).
+    /// Removes small parts and all cavities, by 6-neighbours.
     void clean(double crumb, Contour& made) {
         const double cell = grid_.spacing.x * grid_.spacing.y * grid_.spacing.z;
         const auto most = static_cast<std::size_t>(crumb / cell);
@@ -99,20 +99,19 @@ public:
         std::vector<std::size_t> part;
         const std::array<std::ptrdiff_t, 3> step{1, grid_.size[0],
                                                  static_cast<std::ptrdiff_t>(grid_.size[0]) * grid_.size[1]};
-        // All samples inside, and those outside next to them: far air needs no visit.
-        std::vector<std::pair<std::size_t, std::size_t>> small;  // first sample and size of a part to flip
         for (std::size_t first = 0; first < is_seen.size(); ++first) {
             if (is_seen[first] || !is_in(first)) continue;
-            const std::size_t size = flood(first, step, is_seen, part, is_seen.size());
+            const std::size_t size = flood(first, step, is_seen, part);
             if (size > most) continue;
             for (const std::size_t s : part) grid_.values[s] = -grid_.values[s] + tiny;
             ++made.crumbs;
         }
         std::ranges::fill(is_seen, std::uint8_t{0});
+        // The border is outside, and all of it is connected.
+        flood(0, step, is_seen, part);
         for (std::size_t first = 0; first < is_seen.size(); ++first) {
-            if (is_seen[first] || is_in(first) || !has_other_neighbour(first, step)) continue;
-            const std::size_t size = flood(first, step, is_seen, part, is_seen.size());
-            if (size > most) continue;
+            if (is_seen[first] || is_in(first)) continue;
+            flood(first, step, is_seen, part);
             for (const std::size_t s : part) grid_.values[s] = -std::abs(grid_.values[s]) - tiny;
             ++made.voids;
         }
@@ -239,17 +238,12 @@ private:
             if (place[axis] + 1 < grid_.size[axis]) visit(static_cast<std::size_t>(at + step[axis]));
         }
     }
-    bool has_other_neighbour(std::size_t s, const std::array<std::ptrdiff_t, 3>& step) const {
-        bool has = false;
-        neighbours(s, step, [&](std::size_t other) { has |= is_in(other) != is_in(s); });
-        return has;
-    }
     std::size_t flood(std::size_t first, const std::array<std::ptrdiff_t, 3>& step, std::vector<std::uint8_t>& is_seen,
-                      std::vector<std::size_t>& part, std::size_t most) const {
+                      std::vector<std::size_t>& part) const {
         part.assign(1, first);
         is_seen[first] = 1;
         const bool side = is_in(first);
-        for (std::size_t n = 0; n < part.size() && n < most; ++n) {
+        for (std::size_t n = 0; n < part.size(); ++n) {
             if (n % 65536 == 0) leave_if_stopped();
             neighbours(part[n], step, [&](std::size_t other) {
                 if (is_seen[other] || is_in(other) != side) return;
