@@ -78,7 +78,6 @@ public:
             viewed.view.sight.offset = condition.offset;
             if (view::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
             end.summary = file::read_whole_file(choice.out / "summary.json");
-            end.seconds = choice.seconds.value();
             return end;
         }
         session::RunSession run(choice, assets_);
@@ -92,7 +91,6 @@ public:
         line.clear();
         run.finish();
         end.summary = run.summary_json();
-        end.seconds = run.engine().progress_seconds();
         end.losses = run.losses();
         return end;
     }

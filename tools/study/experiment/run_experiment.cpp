@@ -38,6 +38,7 @@ constexpr const char* trials_name = "trials.jsonl";
 void read_quality(const std::string& summary, TrialRecord& record) {
     const Json json = Json::parse(summary);
     record.output_hash = json["output_hash"].get<std::string>();
+    record.seconds = json["seconds"].get<double>();
     for (const Json& group : json["groups"]) {
         const double ticks = group["ticks"].get<double>();
         const double lost = group["misses"].get<double>() + group["skipped"].get<double>();
@@ -293,13 +294,11 @@ private:
         if (simulated_) {
             const session::RenderedRun rendered = session::render_run(run, assets_, stop_, [](double) {});
             end.losses.insert(end.losses.end(), rendered.losses.begin(), rendered.losses.end());
-            record.seconds = rendered.seconds;
             read_quality(rendered.summary, record);
             return;
         }
         const LiveEnd live = hooks_.perform(run, protocol_.conditions[spec.condition], collector.over());
         end.losses.insert(end.losses.end(), live.losses.begin(), live.losses.end());
-        record.seconds = live.seconds;
         read_quality(live.summary, record);
     }
 

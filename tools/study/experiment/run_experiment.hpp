@@ -27,7 +27,6 @@ struct Answered {
 /// A live run of a trial.
 struct LiveEnd {
     std::string summary;  ///< as JSON
-    double seconds = 0.0;
     std::vector<std::string> losses;
 };
 
