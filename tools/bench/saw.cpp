@@ -307,7 +307,8 @@ int bench_rates(const SawBenchChoice& choice) {
     for (const double thrust : {4.0, 5.0, 7.5, 10.0, 15.0}) {
         const study::SawTrial saw{.thrust = thrust};
         const study::SawTrialResult sawn = study::run_saw_trial(saw);
-        row("saw", sawn.thrust, sawn.teeth * saw.shape.kerf, sawn.feed / (2.0 * saw.blade_rate), sawn.along, sawn.removal);
+        row("saw", sawn.thrust, sawn.teeth * saw.shape.kerf, sawn.feed / (2.0 * saw.blade_rate), sawn.along,
+            sawn.removal);
         const study::BurrTrial burr{.thrust = thrust, .settle = 0.5, .seconds = 0.5};
         const study::BurrTrialResult milled = study::run_burr_trial(burr);
         row("burr", milled.thrust, milled.width, milled.feed / (burr.shape.flutes * burr.turn_rate), milled.along,
