@@ -352,10 +352,13 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
     // by the absence of other orders of the mains.
     const bool is_first = std::min(std::abs(comb.frequency - 55.0), std::abs(comb.frequency - 110.0)) < 12.0;
     bool has_hum = is_first;
+    bool is_over_hum = false;  // a multiple of what was taken for hum
     for (std::size_t i = 0; i < std::min(lines.found.size(), most_tested); ++i) {
         const NarrowLine& line = lines.found[i];
         if (comb.order[i] == 0) {
             has_hum |= line.is_hum;
+            for (int divisor = 2; divisor <= 12 && line.is_hum; ++divisor)
+                is_over_hum |= std::abs(divisor * line.frequency - comb.frequency) < 3.0 * divisor * line.deviation;
             if (!line.is_hum) out.foreign = std::max(out.foreign, line.weight);
             if (others.size() < 8) others.push_back(line.frequency);
             continue;
@@ -365,7 +368,7 @@ SteadyFundamental SteadyFundamentalStream::estimate() const {
         if (!line.is_hum) common = std::gcd(common, comb.order[i]);
     }
     // Also a comb that only lines of the mains hold together: without them a multiple explains the machine's.
-    out.may_be_hum = (has_hum && is_mains(comb.frequency, 0.3)) || common > 1;
+    out.may_be_hum = (has_hum && is_mains(comb.frequency, 0.3)) || common > 1 || is_over_hum;
     out.between = between_orders(levels_[chosen.level].spectrum(), lines, comb.frequency, comb.highest, top);
     out.margin_db = 10.0 * std::log10(strongest->power / (lines.threshold * strongest->floor));
     // The strongest order in eighths of the kept samples.

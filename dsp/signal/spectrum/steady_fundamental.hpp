@@ -27,7 +27,8 @@ struct SteadyFundamental {
     double margin_db = 0.0;  ///< level of the strongest order above the weakest detectable line
     double persistence = 0.0;  ///< 1: the strongest order is equally strong throughout; 1/8: in one eighth only
     double lowest = 0.0;  ///< Hz: lower rates are not resolved
-    /// The rate may be an order of the mains, or may only combine hum with the orders of a machine.
+    /// The rate may be an order of the mains, may only combine hum with the orders of a machine, or may be a multiple of a
+    /// fundamental whose line was taken for hum.
     bool may_be_hum = false;
     bool is_sharp = false;  ///< the lines are as narrow as the longest segment resolves
     /// Probability that the rate is correct, not a multiple or fraction of the true rate; see `FundamentalEstimate`.
