@@ -14,7 +14,7 @@ namespace tactus::picture {
 
 namespace {
 
-constexpr Vec3 bone_colour{0.90, 0.86, 0.76};
+constexpr Vec3 kept_bone_colour{0.90, 0.86, 0.76};
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void write_paddle_picture(const study::FlapStudy& study, const study::PaddleStud
                           const std::filesystem::path& path) {
     std::vector<display::PictureMesh> meshes;
     for (const auto& [file, pose] : study.placed_files())
-        meshes.push_back(picture_mesh(study::surface_of_piece(file), pose, {&bone_colour, 1}));
+        meshes.push_back(picture_mesh(study::surface_of_piece(file), pose, {&kept_bone_colour, 1}));
     const skin::DrapedPaddle& draped = found.draped;
     meshes.push_back(picture_mesh(skin::shell_of(draped, found.settings.sheet.thickness), {}, {&paddle_colour, 1}));
     for (const skin::PaddleRope& rope : draped.ropes)
