@@ -61,7 +61,7 @@ install(FILES ${TACTUS_GENERATED}/graph/node/abi_headers.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/graph/node COMPONENT development)
 install(FILES tools/embed/embedded.hpp tools/embed/host_hand.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/embed COMPONENT development)
-install(FILES tools/session/output_folder.hpp tools/session/patch_choice.hpp
+install(FILES tools/run/output_folder.hpp tools/run/patch_choice.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/tools/session COMPONENT development)
 
 # find_package(Tactus 0.1) → Tactus::tactus; pkg-config tactus.

@@ -12,7 +12,7 @@ function(tactus_place definition destination)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS ${definition}="${from_program}:${from_library}")
 endfunction()
 
-tactus_place(TACTUS_INSTALLED_LIBRARY ${CMAKE_INSTALL_FULL_DATADIR}/tactus tools/session/load_plan.cpp)
+tactus_place(TACTUS_INSTALLED_LIBRARY ${CMAKE_INSTALL_FULL_DATADIR}/tactus tools/run/load_plan.cpp)
 install(TARGETS tactus tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Not for users to call: the command finds it from its own place.

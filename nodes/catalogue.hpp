@@ -2,7 +2,7 @@
 // The table of all node types.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 namespace tactus::nodes {
 

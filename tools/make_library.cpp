@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_library OUT_DIR: generates the bundled bones and saw recordings, which are not stored in the repository.
-#include "assets/cases/plan_file.hpp"
+#include "assets/plan/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
 #include "assets/library/fibula.hpp"
@@ -55,7 +55,7 @@ void make_case(const tactus::bone::Bone& mandible, const fs::path& folder) {
     }
     tactus::file::write_whole_file(folder / "truth.txt", truth);
     tactus::file::write_whole_file(folder / "hand.txt", broken.script);
-    tactus::cases::save_case_plan(tactus::library::plan_of(broken, files, hashes), folder / "case.plan.json");
+    tactus::plan::save_case_plan(tactus::library::plan_of(broken, files, hashes), folder / "case.plan.json");
     fmt::print("{}: the hand needs {:.1f} s\n", (folder / "case.plan.json").string(), broken.seconds);
 }
 
@@ -87,7 +87,7 @@ void make_flap_case(const fs::path& folder) {
         meshes[n] = hash.value();
     }
     tactus::file::write_whole_file(folder / "hand.txt", pieces.script);
-    tactus::cases::save_case_plan(
+    tactus::plan::save_case_plan(
         tactus::library::plan_of(pieces, files, hashes, tactus::library::reconstruction_of(made, meshes)),
         folder / "case.plan.json");
     fmt::print("{}: the hand needs {:.1f} s in {} lines\n", (folder / "case.plan.json").string(), pieces.seconds,

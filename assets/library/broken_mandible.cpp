@@ -2,8 +2,8 @@
 #include "assets/library/broken_mandible.hpp"
 
 #include "assets/bone/labels.hpp"
-#include "assets/cases/break_bone.hpp"
-#include "assets/cases/paint.hpp"
+#include "assets/plan/break_bone.hpp"
+#include "assets/plan/paint.hpp"
 #include "assets/library/hand_script.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
@@ -189,7 +189,7 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
 }  // namespace
 
 BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOptions& options) {
-    std::vector<volume::Grid> solids = cases::break_bone(
+    std::vector<volume::Grid> solids = plan::break_bone(
         bone.distance, {.pieces = options.pieces, .seed = options.seed, .chips = options.chips, .kerf = options.kerf});
     std::ranges::stable_sort(solids, std::ranges::greater{}, samples_inside);
     const contact::Voxmap whole = contact::make_voxmap(bone.distance);
@@ -207,11 +207,11 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
                                       36e-3 * (static_cast<double>(n / 4) - 1.0));
         const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.rotation * direction(random, 0));
         bone::Bone fragment;
-        fragment.distance = cases::scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
+        fragment.distance = plan::scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
         fragment.density = fragment.distance;
         for (float& d : fragment.density.values) d = d < 0.0f ? 1200.0f : 0.0f;
         fragment.points = contact::sample_surface(fragment.distance, {.spacing = 0.42e-3});
-        cases::paint_fracture(fragment.points, whole, placement.inverse());
+        plan::paint_fracture(fragment.points, whole, placement.inverse());
         fragment.name = fmt::format("fragment_{:02}", n + 1);
         fragment.colour = bone::label_colour(static_cast<int>(n) + 1);
         fragment.provenance = {
@@ -239,17 +239,17 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
     return broken;
 }
 
-cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+plan::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
                         const std::vector<std::uint64_t>& hashes) {
-    cases::CasePlan plan;
+    plan::CasePlan plan;
     plan.title = "A mandible in twelve pieces";
     for (std::size_t n = 0; n < broken.fragments.size(); ++n)
         plan.fragments.push_back({broken.fragments[n].name, files[n], hashes[n], broken.fragments[n].colour});
-    cases::PlanStep lock;
-    lock.kind = cases::StepKind::lock;
+    plan::PlanStep lock;
+    lock.kind = plan::StepKind::lock;
     lock.by = "command";
     lock.fragments = {0};
-    cases::add_step(plan, lock);
+    plan::add_step(plan, lock);
     return plan;
 }
 

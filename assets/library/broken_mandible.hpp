@@ -4,7 +4,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/cases/case_plan.hpp"
+#include "assets/plan/case_plan.hpp"
 
 #include <cstdint>
 #include <string>
@@ -43,7 +43,7 @@ struct BrokenMandible {
 BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOptions& options = {});
 
 /// The plan of the case as scanned, with one file per fragment; the first fragment is locked.
-cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+plan::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
                         const std::vector<std::uint64_t>& hashes);
 
 }  // namespace tactus::library

@@ -6,7 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
-#include "dsp/reconstruct/section.hpp"
+#include "dsp/reconstruction/section.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -23,7 +23,7 @@ namespace tactus::library {
 namespace {
 
 using geometry::TriangleSurface;
-using reconstruct::Leg;
+using reconstruction::Leg;
 
 constexpr double artery_radius = 1.5 * mm, vein_radius = 1.8 * mm;
 constexpr double beside_bone = 2.0 * mm;  // between vessel and bone
@@ -49,7 +49,7 @@ LongBone long_bone(const TriangleSurface& surface, Leg leg) {
     std::array<Vec3, 2> centre;
     for (std::size_t n = 0; n < 2; ++n) {
         const double z = low + (n == 0 ? 0.3 : 0.7) * (high - low);
-        const reconstruct::Section section = reconstruct::section_of(surface, {{0.0, 0.0, z}, {0.0, 0.0, 1.0}});
+        const reconstruction::Section section = reconstruction::section_of(surface, {{0.0, 0.0, z}, {0.0, 0.0, 1.0}});
         if (section.points.empty()) throw Error("the fibula has no shaft");
         centre[n] = section.centre;
     }
@@ -77,7 +77,7 @@ struct Level {
 
 Level level_of(const LongBone& bone, double share) {
     const Vec3 near = bone.at(share);
-    reconstruct::Section section = reconstruct::section_of(bone.surface, {near, bone.along()}, &near);
+    reconstruction::Section section = reconstruction::section_of(bone.surface, {near, bone.along()}, &near);
     if (section.points.empty()) throw Error(fmt::format("the fibula has no section at {:.0f} %", share * 100.0));
     return {section.centre, std::move(section.points)};
 }
@@ -193,10 +193,10 @@ void add_perforators(FlapCase& made, const LongBone& bone, std::uint64_t seed) {
 
 /// From the chin's right side to the left angle: the proximal end, where the pedicle leaves, is at the left angle, near
 /// the vessels of the left side.
-void add_planes(reconstruct::FibulaInputs& inputs) {
+void add_planes(reconstruction::FibulaInputs& inputs) {
     constexpr std::array<double, 4> angles{-0.40, 0.17, 0.70, 1.19};
     for (std::size_t n = 0; n < angles.size(); ++n) {
-        reconstruct::JawPlane plane;
+        reconstruction::JawPlane plane;
         // The segments are flush with the lower border.
         plane.origin = arch_point(angles[n]) - Vec3(0.0, 0.0, 7.0 * mm);
         if (n == 0 || n + 1 == angles.size()) plane.normal = arch_direction(angles[n]);
@@ -218,10 +218,10 @@ std::vector<NamedPoint> sites() {
 }
 
 /// Rolls the donor so that the vessels of the middle segment face the tongue, and a little downwards.
-double roll_for(const reconstruct::FibulaInputs& inputs, const LongBone& bone, const std::vector<Vec3>& course) {
-    const reconstruct::FibulaPlan plan = reconstruct::plan_fibula(inputs);
+double roll_for(const reconstruction::FibulaInputs& inputs, const LongBone& bone, const std::vector<Vec3>& course) {
+    const reconstruction::FibulaPlan plan = reconstruction::plan_fibula(inputs);
     const std::size_t middle = plan.segments.size() / 2;
-    const reconstruct::FibulaSegment& segment = plan.segments[middle];
+    const reconstruction::FibulaSegment& segment = plan.segments[middle];
     const Vec3 donor = 0.5 * (segment.donor_plane[0].origin + segment.donor_plane[1].origin);
     const auto beside = std::ranges::min_element(
         course, {}, [&](const Vec3& p) { return std::abs(glm::dot(p - donor, bone.along())); });

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
-#include "dsp/reconstruct/fibula_plan.hpp"
+#include "dsp/reconstruction/fibula_plan.hpp"
 #include "dsp/vessel/track.hpp"
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace tactus::library {
 
 struct FlapOptions {
     std::optional<geometry::TriangleSurface> fibula;  ///< from a scan, m, LPS, closed; none: generated
-    reconstruct::Leg fibula_leg = reconstruct::Leg::left;  ///< side of `fibula`
+    reconstruction::Leg fibula_leg = reconstruction::Leg::left;  ///< side of `fibula`
     /// Surfaces of the muscles beside `fibula` between which the vessels run: tibialis posterior and flexor hallucis
     /// longus. None or two; without them the vessels run behind and medial of the bone.
     std::vector<geometry::TriangleSurface> between;
-    reconstruct::Leg leg = reconstruct::Leg::left;  ///< of the case; the fibula is mirrored if needed
+    reconstruction::Leg leg = reconstruction::Leg::left;  ///< of the case; the fibula is mirrored if needed
     std::uint64_t seed = 1;  ///< of perforators
 };
 
@@ -37,7 +37,7 @@ struct FlapCase {
     vessel::Track vein;
     std::vector<NamedPoint> perforators;  ///< points where they reach the skin
     std::vector<NamedPoint> sites;  ///< vessels of the neck to which the vessels of the flap can be joined
-    reconstruct::FibulaInputs inputs;  ///< planes, line, roll; without jaw and donor
+    reconstruction::FibulaInputs inputs;  ///< planes, line, roll; without jaw and donor
     std::vector<std::string> notes;  ///< the synthetic and the mirrored parts
 };
 

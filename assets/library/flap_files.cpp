@@ -32,7 +32,7 @@ std::string markups(const std::vector<NamedPoint>& points) {
 
 std::string inputs_text(const FlapCase& made) {
     Json planes = Json::array(), notes = Json::array();
-    for (const reconstruct::JawPlane& plane : made.inputs.planes) {
+    for (const reconstruction::JawPlane& plane : made.inputs.planes) {
         Json one{{"name", fmt::format("plane {}", planes.size() + 1)}, {"origin", in_mm(plane.origin)}};
         if (plane.normal) one["normal"] = as_is(*plane.normal);
         planes.push_back(one);
@@ -44,7 +44,7 @@ std::string inputs_text(const FlapCase& made) {
         {"notes", notes},
         {"jaw", "jaw.stl"},
         {"donor", "fibula.stl"},
-        {"leg", made.inputs.leg == reconstruct::Leg::left ? "left" : "right"},
+        {"leg", made.inputs.leg == reconstruction::Leg::left ? "left" : "right"},
         {"mandible_planes", planes},
         {"fibula_line", {{"point", in_mm(made.inputs.line_point)}, {"direction", as_is(made.inputs.line_direction)}}},
         {"roll_deg", rounded(made.inputs.roll * 180.0 / std::numbers::pi)},

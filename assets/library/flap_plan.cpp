@@ -8,8 +8,8 @@
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/reconstruct/cut.hpp"
-#include "dsp/reconstruct/margin_wall.hpp"
+#include "dsp/reconstruction/cut.hpp"
+#include "dsp/reconstruction/margin_wall.hpp"
 #include "dsp/volume/surface_distance.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ namespace tactus::library {
 namespace {
 
 using geometry::TriangleSurface;
-using reconstruct::Plane;
+using reconstruction::Plane;
 
 constexpr double plan_voxel = 0.6 * mm;
 const Quat upright{1.0, 0.0, 0.0, 0.0};
@@ -63,8 +63,8 @@ bone::Bone bone_of(const TriangleSurface& surface, const std::string& name, doub
 }
 
 /// A plane of the jaw, its normal towards the next one.
-Plane jaw_plane(const FlapCase& made, const reconstruct::FibulaPlan& plan, std::size_t segment, std::size_t end) {
-    const reconstruct::FibulaSegment& s = plan.segments[segment];
+Plane jaw_plane(const FlapCase& made, const reconstruction::FibulaPlan& plan, std::size_t segment, std::size_t end) {
+    const reconstruction::FibulaSegment& s = plan.segments[segment];
     Plane plane{made.inputs.planes[segment + end].origin, s.donor_to_target.rotate(s.donor_plane[end].normal)};
     const Vec3 along = made.inputs.planes[segment + 1].origin - made.inputs.planes[segment].origin;
     if (glm::dot(plane.normal, along) < 0.0) plane.normal = -plane.normal;
@@ -186,26 +186,26 @@ void write_script(FlapPieces& pieces, const std::vector<Vec3>& middle, const Pla
 }  // namespace
 
 FlapPieces cut_flap(const FlapCase& made) {
-    reconstruct::FibulaInputs inputs = made.inputs;
+    reconstruction::FibulaInputs inputs = made.inputs;
     inputs.donor = made.fibula;
-    const reconstruct::FibulaPlan plan = reconstruct::plan_fibula(inputs);
+    const reconstruction::FibulaPlan plan = reconstruction::plan_fibula(inputs);
     const std::size_t count = plan.segments.size();
     if (count != 3) throw Error("the bundled reconstruction has three segments");
     FlapPieces pieces;
     const Plane from = jaw_plane(made, plan, 0, 0), to = jaw_plane(made, plan, count - 1, 1);
-    const reconstruct::CutPieces jaw = reconstruct::cut_between(made.jaw, from, to);
+    const reconstruction::CutPieces jaw = reconstruction::cut_between(made.jaw, from, to);
     if (jaw.rest.size() != 2) throw Error("the jaw of the bundled reconstruction is cut in other than two stumps");
     const Plane cuts[] = {from, to};
-    for (const reconstruct::RestPiece& rest : jaw.rest)
+    for (const reconstruction::RestPiece& rest : jaw.rest)
         pieces.bones.push_back(bone_of(rest.surface, fmt::format("jaw-{}", pieces.bones.size() + 1), 0.9 * mm, cuts,
                                        static_cast<int>(pieces.bones.size()) + 1));
     pieces.bones.push_back(bone_of(jaw.between, "resected", 0.9 * mm, cuts, 3));
     pieces.planned.assign(3, Pose{});
     std::vector<Vec3> middle{Vec3(0.0), Vec3(0.0), arch_point(0.4)};
     for (std::size_t n = 0; n < count; ++n) {
-        const reconstruct::FibulaSegment& s = plan.segments[n];
+        const reconstruction::FibulaSegment& s = plan.segments[n];
         pieces.bones.push_back(
-            bone_of(reconstruct::cut_between(made.fibula, s.donor_plane[0], s.donor_plane[1]).between,
+            bone_of(reconstruction::cut_between(made.fibula, s.donor_plane[0], s.donor_plane[1]).between,
                     fmt::format("segment-{}", n + 1), 0.6 * mm, s.donor_plane, static_cast<int>(n) + 4));
         pieces.planned.push_back(s.donor_to_target);
         middle.push_back(0.5 * (s.donor_plane[0].origin + s.donor_plane[1].origin));
@@ -216,62 +216,62 @@ FlapPieces cut_flap(const FlapCase& made) {
     pieces.tumour = bone_of(made.tumour, "tumour", 0.9 * mm, {}, 1);
     pieces.tumour.colour = Vec3(0.55, 0.16, 0.42);
     write_script(pieces, middle,
-                 reconstruct::margin_walls(inputs, made.tumour.vertices, reconstruct::Flap{}.margin).front());
+                 reconstruction::margin_walls(inputs, made.tumour.vertices, reconstruction::Flap{}.margin).front());
     return pieces;
 }
 
-reconstruct::Reconstruction reconstruction_of(const FlapCase& made, const std::array<std::uint64_t, 3>& hashes) {
-    reconstruct::Reconstruction all;
+reconstruction::Reconstruction reconstruction_of(const FlapCase& made, const std::array<std::uint64_t, 3>& hashes) {
+    reconstruction::Reconstruction all;
     all.inputs = made.inputs;
     all.donor = {"fibula.stl", hashes[0]};
     all.jaw = {"jaw.stl", hashes[1]};
     all.tumour = {"tumour.stl", hashes[2]};
-    const auto vessel = [](const vessel::Track& track, const char* name, reconstruct::VesselKind kind) {
-        reconstruct::FlapVessel one{name, kind, track.branches[0].nodes[0].radius, {}};
+    const auto vessel = [](const vessel::Track& track, const char* name, reconstruction::VesselKind kind) {
+        reconstruction::FlapVessel one{name, kind, track.branches[0].nodes[0].radius, {}};
         for (const vessel::Node& node : track.branches[0].nodes) one.points.push_back(node.position);
         return one;
     };
-    all.flap.vessels = {vessel(made.artery, "artery", reconstruct::VesselKind::artery),
-                        vessel(made.vein, "vein", reconstruct::VesselKind::vein)};
+    all.flap.vessels = {vessel(made.artery, "artery", reconstruction::VesselKind::artery),
+                        vessel(made.vein, "vein", reconstruction::VesselKind::vein)};
     for (const NamedPoint& mark : made.perforators) all.flap.perforators.push_back({mark.name, mark.position});
     for (const NamedPoint& site : made.sites) {
         const bool is_vein = site.name.find("vein") != std::string::npos;
         all.flap.sites.push_back(
-            {site.name, is_vein ? reconstruct::VesselKind::vein : reconstruct::VesselKind::artery, site.position});
+            {site.name, is_vein ? reconstruction::VesselKind::vein : reconstruction::VesselKind::artery, site.position});
     }
     return all;
 }
 
-cases::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes, const reconstruct::Reconstruction& all) {
-    cases::CasePlan plan;
+plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
+                        const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all) {
+    plan::CasePlan plan;
     plan.title = "A jaw and three segments of a fibula (synthetic)";
     for (std::size_t n = 0; n < pieces.bones.size(); ++n)
         plan.fragments.push_back({pieces.bones[n].name, files[n], hashes[n], pieces.bones[n].colour});
-    const auto kept = std::make_shared<const reconstruct::Reconstruction>(all);
+    const auto kept = std::make_shared<const reconstruction::Reconstruction>(all);
     const auto arrange = [&](const std::vector<Pose>& places, bool is_resected) {
-        cases::PlanStep whole;
-        whole.kind = cases::StepKind::reconstruct;
+        plan::PlanStep whole;
+        whole.kind = plan::StepKind::reconstruct;
         whole.by = "command";
         for (std::size_t n = 0; n < places.size(); ++n) whole.fragments.push_back(static_cast<int>(n));
         whole.reconstruction = kept;
-        cases::add_step(plan, whole);
+        plan::add_step(plan, whole);
         for (const int stump : {0, 1}) {
-            cases::PlanStep lock;
-            lock.kind = cases::StepKind::lock;
+            plan::PlanStep lock;
+            lock.kind = plan::StepKind::lock;
             lock.by = "command";
             lock.fragments = {stump};
-            cases::add_step(plan, lock);
+            plan::add_step(plan, lock);
         }
         if (is_resected) {
-            cases::PlanStep hide;
-            hide.kind = cases::StepKind::hide;
+            plan::PlanStep hide;
+            hide.kind = plan::StepKind::hide;
             hide.by = "command";
             hide.fragments = {static_cast<int>(resected)};
-            cases::add_step(plan, hide);
+            plan::add_step(plan, hide);
         }
         for (std::size_t n = first_segment; n < places.size(); ++n)
-            cases::add_step(plan, cases::placing(plan, static_cast<int>(n), places[n], "command"));
+            plan::add_step(plan, plan::placing(plan, static_cast<int>(n), places[n], "command"));
     };
     arrange(pieces.planned, true);
     plan.alternatives.push_back({"table", {}});

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/cases/case_plan.hpp"
+#include "assets/plan/case_plan.hpp"
 #include "assets/library/flap_case.hpp"
-#include "assets/reconstruct/reconstruction.hpp"
+#include "assets/reconstruction/reconstruction.hpp"
 
 #include <array>
 #include <cstdint>
@@ -33,11 +33,11 @@ FlapPieces cut_flap(const FlapCase& made);
 
 /// Returns the reconstruction that `plan reconstruct` would store for the case; its meshes are "fibula.stl", "jaw.stl"
 /// and "tumour.stl" with these hashes.
-reconstruct::Reconstruction reconstruction_of(const FlapCase& made, const std::array<std::uint64_t, 3>& hashes);
+reconstruction::Reconstruction reconstruction_of(const FlapCase& made, const std::array<std::uint64_t, 3>& hashes);
 
 /// Returns the plan with one file per piece: alternative 'main' has the planned poses; 'table', the current one, has
 /// the initial poses. The pieces of the jaw are locked in both. Each begins with the reconstruction.
-cases::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
-                        const std::vector<std::uint64_t>& hashes, const reconstruct::Reconstruction& all);
+plan::CasePlan plan_of(const FlapPieces& pieces, const std::vector<std::string>& files,
+                        const std::vector<std::uint64_t>& hashes, const reconstruction::Reconstruction& all);
 
 }  // namespace tactus::library

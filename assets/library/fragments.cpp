@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/library/fragments.hpp"
 
-#include "assets/cases/rough_surface.hpp"
+#include "assets/plan/rough_surface.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/volume/iso_distance.hpp"
@@ -27,7 +27,7 @@ double bar(const Vec3& p) {
     return std::max(side, std::abs(p.x) - bar_half_length);
 }
 
-bone::Bone fragment(double side, const cases::RoughSurface& fracture, const FractureOptions& options) {
+bone::Bone fragment(double side, const plan::RoughSurface& fracture, const FractureOptions& options) {
     const Vec3 margin(3.0 * mm);
     const Vec3 low = Vec3(side < 0.0 ? -bar_half_length : -4.0 * mm, -bar_half_width * 1.2, -bar_half_height) - margin;
     const Vec3 high = Vec3(side < 0.0 ? 4.0 * mm : bar_half_length,
@@ -70,7 +70,7 @@ bone::Bone fragment(double side, const cases::RoughSurface& fracture, const Frac
 }  // namespace
 
 std::vector<bone::Bone> make_fragments(const FractureOptions& options) {
-    const cases::RoughSurface fracture(options.roughness, options.seed);
+    const plan::RoughSurface fracture(options.roughness, options.seed);
     return {fragment(-1.0, fracture, options), fragment(1.0, fracture, options)};
 }
 

@@ -109,15 +109,15 @@ private:
                     "no blade can come along the approach into the plane of cut {} ({}): they are {:.0f}° apart; "
                     "choose another approach",
                     c.letter, c.name, tilt > 70.0 * degree ? tilt / degree : std::acos(across) / degree));
-            const reconstruct::Plane plane{s.origin, s.normal};
-            const reconstruct::Section section = reconstruct::section_of(bone_, plane, &s.origin);
+            const reconstruction::Plane plane{s.origin, s.normal};
+            const reconstruction::Section section = reconstruction::section_of(bone_, plane, &s.origin);
             if (section.points.empty())
                 throw Error(fmt::format("the plane of cut {} ({}) does not meet the bone", c.letter, c.name));
             for (const Vec3& p : section.points) s.top = std::max(s.top, p.z);
             // The block must reach beyond the bone along its whole thickness.
             for (const double out : {0.0, -set_.wall, set_.slot_width() + set_.wall}) {
-                const reconstruct::Plane beside{s.origin + out * s.normal, s.normal};
-                const reconstruct::Section cut = reconstruct::section_of(bone_, beside, &beside.origin);
+                const reconstruction::Plane beside{s.origin + out * s.normal, s.normal};
+                const reconstruction::Section cut = reconstruction::section_of(bone_, beside, &beside.origin);
                 for (const Vec3& p : cut.points) s.low_y = std::min(s.low_y, p.y), s.high_y = std::max(s.high_y, p.y);
             }
             for (const Vec3& p : section.points)

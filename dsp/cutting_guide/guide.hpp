@@ -6,7 +6,7 @@
 #include "dsp/core/types.hpp"
 #include "dsp/geometry/dual_contour.hpp"
 #include "dsp/geometry/iso_surface.hpp"
-#include "dsp/reconstruct/section.hpp"
+#include "dsp/reconstruction/section.hpp"
 
 #include <glm/vec2.hpp>
 
@@ -50,7 +50,7 @@ struct GuideSettings {
 };
 
 struct GuideCut {
-    reconstruct::Plane plane;  ///< normal out of what is kept; the wall of the slot lies on it
+    reconstruction::Plane plane;  ///< normal out of what is kept; the wall of the slot lies on it
     std::string name;  ///< "segment-1 at plane 2"
     char letter = 'A';
 };

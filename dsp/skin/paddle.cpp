@@ -201,7 +201,7 @@ double coverage_of(const Defect& defect, const Sheet& sheet) {
 
 }  // namespace
 
-Pose paddle_in_leg(const reconstruct::SkinPaddle& paddle, const reconstruct::FibulaInputs& inputs) {
+Pose paddle_in_leg(const reconstruction::SkinPaddle& paddle, const reconstruction::FibulaInputs& inputs) {
     const Vec3 x = glm::normalize(inputs.line_direction);
     Vec3 out = paddle.at - inputs.line_point;
     out -= glm::dot(out, x) * x;
@@ -211,7 +211,7 @@ Pose paddle_in_leg(const reconstruct::SkinPaddle& paddle, const reconstruct::Fib
     return frame_of(paddle.at, x, glm::normalize(out));
 }
 
-std::optional<std::size_t> segment_at(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
                                       const Vec3& place) {
     const double along = glm::dot(place - inputs.line_point, glm::normalize(inputs.line_direction));
     for (std::size_t n = 0; n < plan.segments.size(); ++n) {
@@ -221,18 +221,18 @@ std::optional<std::size_t> segment_at(const reconstruct::FibulaInputs& inputs, c
     return {};
 }
 
-DrapedPaddle drape(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
-                   const reconstruct::Flap& flap, std::span<const Vec3> curve, const rope::Obstacle* bone,
+DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
+                   const reconstruction::Flap& flap, std::span<const Vec3> curve, const rope::Obstacle* bone,
                    const DrapeSettings& settings) {
     if (!flap.paddle) throw Error("the plan has no skin paddle");
-    const reconstruct::SkinPaddle& paddle = *flap.paddle;
+    const reconstruction::SkinPaddle& paddle = *flap.paddle;
     const Pose leg = paddle_in_leg(paddle, inputs);
     const Defect defect = defect_of(curve, bone);
     DrapedPaddle draped;
     draped.defect_area = defect.area;
     draped.normal = defect.frame.rotate({0.0, 0.0, 1.0});
 
-    for (const reconstruct::Perforator& p : flap.perforators) {
+    for (const reconstruction::Perforator& p : flap.perforators) {
         const auto segment = segment_at(inputs, plan, p.at);
         const double along = leg.inverse().apply(p.at).x;
         if (!segment || std::abs(along) > 0.5 * paddle.length) {

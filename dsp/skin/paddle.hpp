@@ -4,8 +4,8 @@
 // Research use: the mechanics of the skin and the load that presses it on are assumed (SheetSettings, DrapeSettings).
 #pragma once
 
-#include "dsp/reconstruct/fibula_plan.hpp"
-#include "dsp/reconstruct/flap.hpp"
+#include "dsp/reconstruction/fibula_plan.hpp"
+#include "dsp/reconstruction/flap.hpp"
 #include "dsp/rope/obstacle.hpp"
 #include "dsp/skin/sheet.hpp"
 
@@ -52,18 +52,18 @@ struct DrapedPaddle {
 
 /// The paddle's own frame in the leg: x along the donor's line, z away from it through the paddle's middle. Throws Error
 /// when the middle lies on the line.
-Pose paddle_in_leg(const reconstruct::SkinPaddle& paddle, const reconstruct::FibulaInputs& inputs);
+Pose paddle_in_leg(const reconstruction::SkinPaddle& paddle, const reconstruction::FibulaInputs& inputs);
 
 /// The segment on whose bone a place of the donor lies, by its position along the donor's line.
-std::optional<std::size_t> segment_at(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
+std::optional<std::size_t> segment_at(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
                                       const Vec3& place);
 
 /// Lays the paddle over `defect`, a closed curve in the frame of the jaw (at least three points that span an area), with its
 /// long axis along the defect's, in the direction that stretches the perforators less. The sheet starts clear of the bone
 /// and settles under pressure on a bed through the curve and on `bone` (may be null). Perforators pull when they are
 /// stretched. Throws Error for a paddle or curve that cannot be laid.
-DrapedPaddle drape(const reconstruct::FibulaInputs& inputs, const reconstruct::FibulaPlan& plan,
-                   const reconstruct::Flap& flap, std::span<const Vec3> defect, const rope::Obstacle* bone,
+DrapedPaddle drape(const reconstruction::FibulaInputs& inputs, const reconstruction::FibulaPlan& plan,
+                   const reconstruction::Flap& flap, std::span<const Vec3> defect, const rope::Obstacle* bone,
                    const DrapeSettings& settings = {});
 
 /// The draped paddle as a closed shell of its thickness, m, frame of the jaw.

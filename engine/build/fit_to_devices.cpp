@@ -66,7 +66,7 @@ void GenerationBuilder::fit_to_devices() {
 void GenerationBuilder::scale_forces() {
     for (const analyse::FeltSpring& spring : analyse::felt_springs(plan())) {
         const auto n = static_cast<std::size_t>(spring.node);
-        const compile::PlanNode& tool = plan().nodes[n];
+        const compile::ScheduleNode& tool = plan().nodes[n];
         const auto scale = tool.params.find("device_scale");
         if (scale == tool.params.end() || std::ranges::find(plan().patch.nodes[n].settings, "device_scale",
                                                             &OptionText::name) != plan().patch.nodes[n].settings.end())

@@ -43,8 +43,8 @@ std::vector<bool> nodes_before(const Generation& generation, const Counts& count
 /// What node `i` adds to the force: all but parameters that ramp and requests. Assets are in its structure.
 std::uint64_t hash_of_node(const Generation& generation, std::size_t i) {
     const LiveNode& node = *generation.nodes[i];
-    const compile::PlanNode& planned = generation.plan.nodes[i];
-    const compile::PlanGroup& group = generation.plan.groups[static_cast<std::size_t>(planned.group)];
+    const compile::ScheduleNode& planned = generation.plan.nodes[i];
+    const compile::ScheduleGroup& group = generation.plan.groups[static_cast<std::size_t>(planned.group)];
     Hash hash;
     for (const std::string_view text : {std::string_view(node.name), std::string_view(node.type->name),
                                         std::string_view(node.structure), std::string_view(group.name)})
@@ -59,11 +59,11 @@ std::uint64_t hash_of_node(const Generation& generation, std::size_t i) {
     return hash.value();
 }
 
-std::uint64_t hash_of_wire(const Generation& generation, const compile::PlanWire& wire) {
-    const compile::PlanNode& to = generation.plan.nodes[static_cast<std::size_t>(wire.to_node)];
+std::uint64_t hash_of_wire(const Generation& generation, const compile::ScheduleWire& wire) {
+    const compile::ScheduleNode& to = generation.plan.nodes[static_cast<std::size_t>(wire.to_node)];
     Hash hash;
     if (wire.from_node >= 0) {
-        const compile::PlanNode& from = generation.plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        const compile::ScheduleNode& from = generation.plan.nodes[static_cast<std::size_t>(wire.from_node)];
         hash.add_text(from.name);
         hash.add_text(from.outputs[static_cast<std::size_t>(wire.from_output)].name);
     } else hash.add_word(generation.constants.at(to.inputs[static_cast<std::size_t>(wire.to_input)].port));
@@ -80,10 +80,10 @@ std::uint64_t hash_of_wire(const Generation& generation, const compile::PlanWire
 std::string name_source(const Generation& generation, const std::vector<compile::Dependence>& dependence, int group,
                         compile::Dependence kind) {
     std::string name;
-    for (const compile::PlanWire& wire : generation.plan.wires) {
+    for (const compile::ScheduleWire& wire : generation.plan.wires) {
         if (wire.from_node < 0) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
-        const compile::PlanNode& node = generation.plan.nodes[from];
+        const compile::ScheduleNode& node = generation.plan.nodes[from];
         if (node.group != group || generation.plan.nodes[to].group == group) continue;
         if (dependence[from] != kind || dependence[to] == compile::Dependence::none) continue;
         if (name.empty() || node.name < name) name = node.name;
@@ -93,7 +93,7 @@ std::string name_source(const Generation& generation, const std::vector<compile:
 }
 
 std::string name_of(const Generation& generation, std::size_t node) {
-    const compile::PlanNode& planned = generation.plan.nodes[node];
+    const compile::ScheduleNode& planned = generation.plan.nodes[node];
     return fmt::format("node '{}' of the group '{}'", planned.name,
                        generation.plan.groups[static_cast<std::size_t>(planned.group)].name);
 }
@@ -145,7 +145,7 @@ std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSl
         for (std::size_t g = 0; g < of_group.size(); ++g) {
             // A device's own group is watched through its commits.
             if (of_group[g] != kind || generation.groups[g]->index == slot.group) continue;
-            const compile::PlanGroup& group = generation.plan.groups[g];
+            const compile::ScheduleGroup& group = generation.plan.groups[g];
             const bool is_force = kind == compile::Dependence::force;
             sources.push_back({.group = generation.groups[g].get(),
                                .latency = group.latency,
@@ -161,13 +161,13 @@ std::vector<ValueSource> sources_of(const Generation& generation, const DeviceSl
 
 Flicks warm_up_of(const Generation& generation, const DeviceSlot& slot) {
     const std::vector<compile::Dependence> dependence = dependence_of(generation, slot);
-    const compile::Plan& plan = generation.plan;
+    const compile::Schedule& plan = generation.plan;
     std::vector<Flicks> of_group(plan.groups.size());
     Flicks warm_up = 0;
-    for (const compile::PlanWire& wire : plan.wires) {
+    for (const compile::ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0 || dependence[static_cast<std::size_t>(wire.to_node)] == compile::Dependence::none)
             continue;
-        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        const compile::ScheduleNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
         const ValueType& type = *from.outputs[static_cast<std::size_t>(wire.from_output)].port->type;
         if (type.version || &type == &value::event) continue;
         const auto group = static_cast<std::size_t>(from.group);
@@ -191,7 +191,7 @@ std::uint64_t hash_of_force_path(const Generation& generation, const DeviceSlot&
     std::vector<std::uint64_t> parts;  // whatever the order in the text
     for (std::size_t i = 0; i < dependence.size(); ++i)
         if (dependence[i] != compile::Dependence::none) parts.push_back(hash_of_node(generation, i));
-    for (const compile::PlanWire& wire : generation.plan.wires)
+    for (const compile::ScheduleWire& wire : generation.plan.wires)
         if (dependence[static_cast<std::size_t>(wire.to_node)] != compile::Dependence::none)
             parts.push_back(hash_of_wire(generation, wire));
     std::ranges::sort(parts);

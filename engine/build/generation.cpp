@@ -14,7 +14,7 @@
 
 namespace tactus::build {
 
-GenerationBuilder::GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context)
+GenerationBuilder::GenerationBuilder(compile::Schedule plan, const Generation* before, BuildContext& context)
     : before_(before), context_(context), made_(std::make_unique<Generation>()) {
     made_->plan = std::move(plan);
     made_->number = before ? before->number + 1 : 0;
@@ -22,9 +22,9 @@ GenerationBuilder::GenerationBuilder(compile::Plan plan, const Generation* befor
 
 namespace {
 
-std::unordered_set<const Param*> driven_params(const compile::Plan& plan) {
+std::unordered_set<const Param*> driven_params(const compile::Schedule& plan) {
     std::unordered_set<const Param*> driven;
-    for (const compile::PlanWire& wire : plan.wires)
+    for (const compile::ScheduleWire& wire : plan.wires)
         if (wire.to_input < 0 && wire.from_node >= 0) driven.insert(wire.param);
     return driven;
 }
@@ -49,7 +49,7 @@ std::unique_ptr<Generation> GenerationBuilder::build() {
     allocate();
     prepare();
     drives_.resize(plan().nodes.size());
-    for (const compile::PlanWire& wire : plan().wires) connect(wire);
+    for (const compile::ScheduleWire& wire : plan().wires) connect(wire);
     finish_links();
     make_steps();
     make_programs();
@@ -57,7 +57,7 @@ std::unique_ptr<Generation> GenerationBuilder::build() {
 }
 
 void GenerationBuilder::note_patch_values() {
-    for (const compile::PlanNode& node : plan().nodes) {
+    for (const compile::ScheduleNode& node : plan().nodes) {
         auto& values = made_->patch_values.emplace_back();
         for (const auto& [name, param] : node.params) values[name] = param->value;
     }
@@ -67,7 +67,7 @@ void GenerationBuilder::form_groups() {
     std::unordered_map<std::string_view, std::shared_ptr<run::GroupRuntime>> old_groups;
     if (before_)
         for (const auto& old : before_->groups) old_groups.emplace(old->plan->name, old);
-    for (const compile::PlanGroup& group : plan().groups) {
+    for (const compile::ScheduleGroup& group : plan().groups) {
         int frames = 1;
         if (group.has_audio)
             frames = context_.block > 0 ? context_.block
@@ -96,7 +96,7 @@ void GenerationBuilder::form_groups() {
 void GenerationBuilder::find_survivors() {
     std::vector<std::string> structures = structures_of(plan());
     for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
-        compile::PlanNode& node = plan().nodes[i];
+        compile::ScheduleNode& node = plan().nodes[i];
         std::string& structure = structures[i];
         std::shared_ptr<LiveNode> live;
         if (const auto found = nodes_before_.find(node.name); found != nodes_before_.end()) {
@@ -110,8 +110,8 @@ void GenerationBuilder::find_survivors() {
             live->type = node.type;
             live->group = &group_of(node);
             live->structure = std::move(structure);
-            for (const compile::PlanInput& input : node.inputs) live->inputs.push_back(input.port);
-            for (const compile::PlanOutput& output : node.outputs) live->outputs.push_back(output.port);
+            for (const compile::ScheduleInput& input : node.inputs) live->inputs.push_back(input.port);
+            for (const compile::ScheduleOutput& output : node.outputs) live->outputs.push_back(output.port);
             live->params = node.params;
             live->instance = std::move(node.instance);
             // Analyses of the plan still ask the node.
@@ -132,7 +132,7 @@ void GenerationBuilder::prepare() {
             playing.insert(playing.end(), sounds.begin(), sounds.end());
     context_.host.expect_sounds(plan());
     context_.host.keep_sounds(std::move(playing));
-    const auto is_hand = [](const compile::PlanNode& node) {
+    const auto is_hand = [](const compile::ScheduleNode& node) {
         return node.type->role == NodeRole::hand_source || node.type->role == NodeRole::hand_sink;
     };
     // Devices are opened first: other nodes are prepared with parameters that fit them.
@@ -145,7 +145,7 @@ void GenerationBuilder::prepare() {
 
 void GenerationBuilder::prepare_node(std::size_t i) {
     if (made_->survived[i]) return;
-    const compile::PlanNode& node = plan().nodes[i];
+    const compile::ScheduleNode& node = plan().nodes[i];
     // A node reads its assets without a check: only their loader knows why one is missing.
     for (const AssetParam* asset : node.assets)
         if (!asset->name.empty() && !asset->loaded)
@@ -179,7 +179,7 @@ bool Generation::settled() const {
     return std::ranges::all_of(links, [](const auto& link) { return link->settled(); });
 }
 
-std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context) {
+std::unique_ptr<Generation> build_generation(compile::Schedule plan, const Generation* before, BuildContext& context) {
     flush_denormals_to_zero();
     return GenerationBuilder(std::move(plan), before, context).build();
 }

@@ -9,7 +9,7 @@
 #include "engine/observe/observer.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "engine/run/param_ramps.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -60,7 +60,7 @@ struct BuildContext {
 
 struct Generation {
     std::int64_t number = 0;
-    compile::Plan plan;
+    compile::Schedule plan;
     std::vector<std::map<std::string, double>> patch_values;  ///< of each node's parameters, SI
     std::vector<std::shared_ptr<LiveNode>> nodes;  ///< as plan.nodes
     std::vector<bool> survived;  ///< as plan.nodes
@@ -88,6 +88,6 @@ struct Generation {
 
 /// Builds the generation that follows `before` (null: the first). Does not modify the running one. Throws Error, also
 /// for an asset that is not loaded.
-std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context);
+std::unique_ptr<Generation> build_generation(compile::Schedule plan, const Generation* before, BuildContext& context);
 
 }  // namespace tactus::build

@@ -21,12 +21,12 @@ namespace tactus::build {
 /// survives, its compiled copy is never prepared: it only provides the new wiring of the live node's inputs.
 class GenerationBuilder {
 public:
-    GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context);
+    GenerationBuilder(compile::Schedule plan, const Generation* before, BuildContext& context);
     std::unique_ptr<Generation> build();
 
 private:
-    compile::Plan& plan() { return made_->plan; }
-    run::GroupRuntime& group_of(const compile::PlanNode& node) {
+    compile::Schedule& plan() { return made_->plan; }
+    run::GroupRuntime& group_of(const compile::ScheduleNode& node) {
         return *made_->groups[static_cast<std::size_t>(node.group)];
     }
     GroupProgram& program_of(int group) { return *made_->programs[static_cast<std::size_t>(group)]; }
@@ -56,13 +56,13 @@ private:
     // generation_wires.cpp
     void allocate();
     std::byte* memory(std::size_t bytes);
-    void connect(const compile::PlanWire& wire);
-    void connect_constant(const compile::PlanWire& wire);
-    void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
-    void connect_events(const compile::PlanWire& wire, const Output& source, Input& target);
+    void connect(const compile::ScheduleWire& wire);
+    void connect_constant(const compile::ScheduleWire& wire);
+    void connect_delay(const compile::ScheduleWire& wire, const Output& source, Input* target, int group_index);
+    void connect_events(const compile::ScheduleWire& wire, const Output& source, Input& target);
     /// Returns the merger of the events of an input of a live node.
     EventMerge& merge_into(Input* target, int group);
-    run::Link& link_for(const compile::PlanWire& wire);
+    run::Link& link_for(const compile::ScheduleWire& wire);
     /// Returns true if the producer's values change so often that they would split each call of the consumer, an audio
     /// group.
     bool changes_within_calls(int producer, int consumer) const;

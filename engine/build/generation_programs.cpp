@@ -38,9 +38,9 @@ void GenerationBuilder::make_steps() {
 
 std::vector<bool> GenerationBuilder::vary_within_call() const {
     std::vector<bool> vary(made_->plan.nodes.size());
-    for (const compile::PlanWire& wire : made_->plan.wires) {
+    for (const compile::ScheduleWire& wire : made_->plan.wires) {
         if (wire.from_node < 0) continue;
-        const compile::PlanNode& node = made_->plan.nodes[static_cast<std::size_t>(wire.to_node)];
+        const compile::ScheduleNode& node = made_->plan.nodes[static_cast<std::size_t>(wire.to_node)];
         const int from = made_->plan.nodes[static_cast<std::size_t>(wire.from_node)].group;
         const bool changes = from == node.group || changes_within_calls(from, node.group);
         const InputKind kind =
@@ -60,7 +60,7 @@ void GenerationBuilder::record(std::size_t g) {
 
 /// Delayed wires are laid out before the first step that may read them.
 void GenerationBuilder::make_stretches(std::size_t g) {
-    const compile::PlanGroup& group = plan().groups[g];
+    const compile::ScheduleGroup& group = plan().groups[g];
     GroupProgram& program = *made_->programs[g];
     if (program.delays.empty()) {
         program.stretches.push_back({.first = 0, .count = program.steps.size(), .inner = {}, .before = {}});
@@ -68,17 +68,17 @@ void GenerationBuilder::make_stretches(std::size_t g) {
     }
     std::unordered_map<const void*, std::size_t> places;  // of the step that reads an input or a parameter
     for (std::size_t i = 0; i < program.steps.size(); ++i) {
-        const compile::PlanNode& node = plan().nodes[static_cast<std::size_t>(group.order[i])];
-        for (const compile::PlanInput& input : node.inputs) places.emplace(input.port, i);
+        const compile::ScheduleNode& node = plan().nodes[static_cast<std::size_t>(group.order[i])];
+        for (const compile::ScheduleInput& input : node.inputs) places.emplace(input.port, i);
         for (const auto& [name, param] : node.params) places.emplace(param, i);
     }
     std::unordered_map<const Output*, std::size_t> sources;
     for (std::size_t i = 0; i < program.steps.size(); ++i)
-        for (const compile::PlanOutput& output : plan().nodes[static_cast<std::size_t>(group.order[i])].outputs)
+        for (const compile::ScheduleOutput& output : plan().nodes[static_cast<std::size_t>(group.order[i])].outputs)
             sources.emplace(output.port, i);
     std::map<std::size_t, Stretch> stretches;  // by the first step
     stretches[0];
-    for (const compile::PlanCycle& cycle : group.cycles) {
+    for (const compile::ScheduleCycle& cycle : group.cycles) {
         const auto first = static_cast<std::size_t>(cycle.first);
         stretches[first].longest = cycle.longest;
         stretches.try_emplace(first + static_cast<std::size_t>(cycle.count));
@@ -104,7 +104,7 @@ void GenerationBuilder::make_stretches(std::size_t g) {
 }
 
 void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool varies) {
-    const compile::PlanNode& node = plan().nodes[index];
+    const compile::ScheduleNode& node = plan().nodes[index];
     LiveNode& running = *made_->nodes[index];
     StepWires& wires = program.wires.emplace_back();
     for (const Drive& drive : drives_[index]) wires.drives.push_back({live(drive.param), drive.values, drive.stride});
@@ -201,7 +201,7 @@ void GenerationBuilder::make_ramps() {
 }
 
 void GenerationBuilder::assign_devices(std::size_t index) {
-    const compile::PlanNode& node = plan().nodes[index];
+    const compile::ScheduleNode& node = plan().nodes[index];
     GroupProgram& program = program_of(node.group);
     for (const auto& [slot, use] : made_->nodes[index]->uses.devices) {
         if (std::ranges::find(program.devices, slot) == program.devices.end()) program.devices.push_back(slot);
@@ -273,13 +273,13 @@ void GenerationBuilder::find_outputs_before(GroupProgram& program, const GroupPr
 }
 
 void GenerationBuilder::rewire(std::size_t index) {
-    const compile::PlanNode& node = plan().nodes[index];
+    const compile::ScheduleNode& node = plan().nodes[index];
     const LiveNode& running = *made_->nodes[index];
     GroupProgram& program = program_of(node.group);
     for (std::size_t k = 0; k < node.inputs.size(); ++k)
         program.wiring.emplace_back(running.inputs[k], node.inputs[k].port);
     const std::size_t old = nodes_before_.at(node.name);
-    const compile::PlanNode& old_node = before_->plan.nodes[old];
+    const compile::ScheduleNode& old_node = before_->plan.nodes[old];
     for (const auto& [name, param] : node.params) {
         Param* const runs = running.params.at(name);
         if (param->max != old_node.params.at(name)->max)

@@ -36,7 +36,7 @@ void GenerationBuilder::allocate() {
     std::size_t room = layout.bytes + compile::value_alignment;
     auto* block = static_cast<std::byte*>(std::align(compile::value_alignment, layout.bytes, start, room));
     for (std::size_t n = 0; n < plan().nodes.size(); ++n) {
-        const compile::PlanNode& node = plan().nodes[n];
+        const compile::ScheduleNode& node = plan().nodes[n];
         const run::GroupRuntime& group = group_of(node);
         for (std::size_t k = 0; k < node.outputs.size(); ++k) {
             Output& port = *node.outputs[k].port;
@@ -51,7 +51,7 @@ void GenerationBuilder::allocate() {
                 program_of(node.group)
                     .moved.push_back({made_->nodes[n]->outputs[k], port.data, keeps_value ? count * size : 0});
         }
-        for (const compile::PlanInput& input : node.inputs) {
+        for (const compile::ScheduleInput& input : node.inputs) {
             if (!input.port->type) continue;
             const bool is_signal = input.port->type == &value::signal && input.port->kind != InputKind::batch;
             if (is_signal) {
@@ -66,10 +66,10 @@ void GenerationBuilder::allocate() {
     }
 }
 
-run::Link& GenerationBuilder::link_for(const compile::PlanWire& wire) {
-    const compile::PlanNode &from = plan().nodes[static_cast<std::size_t>(wire.from_node)],
+run::Link& GenerationBuilder::link_for(const compile::ScheduleWire& wire) {
+    const compile::ScheduleNode &from = plan().nodes[static_cast<std::size_t>(wire.from_node)],
                             &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
-    const compile::PlanGroup& producer = plan().groups[static_cast<std::size_t>(from.group)];
+    const compile::ScheduleGroup& producer = plan().groups[static_cast<std::size_t>(from.group)];
     const Flicks latency = compile::wire_latency(producer, wire);
     auto& known = links_made_[{&group_of(from), &group_of(to), latency}];
     if (known) return *known;
@@ -90,7 +90,7 @@ bool GenerationBuilder::changes_within_calls(int producer, int consumer) const {
     return to.plan->has_audio && 2 * made_->plan.groups[static_cast<std::size_t>(producer)].period <= call;
 }
 
-void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
+void GenerationBuilder::connect_constant(const compile::ScheduleWire& wire) {
     Input& input =
         *plan().nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
     const patch::PatchAsset* asset = assets_.at(wire.asset);
@@ -108,7 +108,7 @@ void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
     made_->constants[&input] = constant.content;
 }
 
-void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Output& source, Input* target,
+void GenerationBuilder::connect_delay(const compile::ScheduleWire& wire, const Output& source, Input* target,
                                       int group_index) {
     const run::GroupRuntime& group = *made_->groups[static_cast<std::size_t>(group_index)];
     DelayLine& line = *program_of(group_index).delays.emplace_back(std::make_unique<DelayLine>());
@@ -139,8 +139,8 @@ void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Outpu
     target->stride = stride;
 }
 
-void GenerationBuilder::connect_events(const compile::PlanWire& wire, const Output& source, Input& target) {
-    const compile::PlanNode& from = plan().nodes[static_cast<std::size_t>(wire.from_node)];
+void GenerationBuilder::connect_events(const compile::ScheduleWire& wire, const Output& source, Input& target) {
+    const compile::ScheduleNode& from = plan().nodes[static_cast<std::size_t>(wire.from_node)];
     EventFeed feed;
     feed.name = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
     feed.delay = wire.delay;
@@ -161,10 +161,10 @@ EventMerge& GenerationBuilder::merge_into(Input* target, int group) {
     return *merge;
 }
 
-void GenerationBuilder::connect(const compile::PlanWire& wire) {
+void GenerationBuilder::connect(const compile::ScheduleWire& wire) {
     if (wire.from_node < 0) return connect_constant(wire);
-    compile::PlanNode& to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
-    const compile::PlanNode& from = plan().nodes[static_cast<std::size_t>(wire.from_node)];
+    compile::ScheduleNode& to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
+    const compile::ScheduleNode& from = plan().nodes[static_cast<std::size_t>(wire.from_node)];
     const Output& source = *from.outputs[static_cast<std::size_t>(wire.from_output)].port;
     Input* target = wire.to_input < 0 ? nullptr : to.inputs[static_cast<std::size_t>(wire.to_input)].port;
     if (from.group != to.group) {

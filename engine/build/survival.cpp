@@ -30,8 +30,8 @@ private:
 };
 
 /// What the wire into an input means for its node.
-void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std::string& text) {
-    const compile::PlanInput& input =
+void describe_wire(const compile::Schedule& plan, const compile::ScheduleWire& wire, std::string& text) {
+    const compile::ScheduleInput& input =
         plan.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)];
     // A batch input was prepared for the rate of its source.
     if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
@@ -40,7 +40,7 @@ void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std
     if (!plan.nodes[static_cast<std::size_t>(wire.to_node)].outputs.empty()) return;
     std::string source = wire.asset;
     if (wire.from_node >= 0) {
-        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        const compile::ScheduleNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
         source = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
     }
     text += fmt::format("{} from {}\n", input.name, source);
@@ -48,18 +48,18 @@ void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std
 
 }  // namespace
 
-std::vector<std::string> structures_of(const compile::Plan& plan) {
+std::vector<std::string> structures_of(const compile::Schedule& plan) {
     std::vector<std::string> texts;
     texts.reserve(plan.nodes.size());
-    for (const compile::PlanNode& node : plan.nodes) {
+    for (const compile::ScheduleNode& node : plan.nodes) {
         std::string& text = texts.emplace_back(fmt::format("{} seed {}\n", node.type->name, plan.patch.seed));
         Describer describer(text);
         node.type->visit(node.instance.get(), describer);
-        for (const compile::PlanInput& input : node.inputs)
+        for (const compile::ScheduleInput& input : node.inputs)
             if (input.port->kind == InputKind::any && input.port->type)
                 text += fmt::format("{} takes {}\n", input.name, input.port->type->name);
     }
-    for (const compile::PlanWire& wire : plan.wires)
+    for (const compile::ScheduleWire& wire : plan.wires)
         if (wire.to_input >= 0) describe_wire(plan, wire, texts[static_cast<std::size_t>(wire.to_node)]);
     return texts;
 }

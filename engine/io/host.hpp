@@ -7,7 +7,7 @@
 #include "engine/io/sound_card.hpp"
 #include "engine/io/sound_heard.hpp"
 #include "engine/io/streams.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 #include "graph/patch/patch.hpp"
 
 #include <filesystem>
@@ -61,7 +61,7 @@ public:
     /// the run goes on.
     void begin(const patch::Patch& patch);
     /// Announces the channels that nodes of the plan will request, so that a card is opened with all of its channels.
-    void expect_sounds(const compile::Plan& plan);
+    void expect_sounds(const compile::Schedule& plan);
     /// Reserves the channels of surviving nodes; the others are available to newly prepared nodes.
     void keep_sounds(std::vector<SoundChannel*> in_use) { sounds_in_use_ = std::move(in_use); }
     /// Sets the context of the node that is prepared next: its group, its location in the patch, and the record of its

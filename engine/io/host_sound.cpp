@@ -132,14 +132,14 @@ const SoundInPort& EngineHost::listen(const SoundPlace& place, Flicks period,
     return uses_->heard.back()->port;
 }
 
-void EngineHost::expect_sounds(const compile::Plan& plan) {
+void EngineHost::expect_sounds(const compile::Schedule& plan) {
     channel_names_.clear();
     const auto note = [](std::vector<std::string>& names, int channel, const std::string& name) {
         const auto index = static_cast<std::size_t>(channel - 1);
         if (index >= names.size()) names.resize(index + 1);
         names[index] = name;
     };
-    for (const compile::PlanNode& node : plan.nodes) {
+    for (const compile::ScheduleNode& node : plan.nodes) {
         if (const std::optional<compile::SoundTarget> target = compile::sound_target(node))
             note(channel_names_[target->card].outputs, target->channel, node.name);
         if (const std::optional<compile::SoundTarget> source = compile::sound_source(node))

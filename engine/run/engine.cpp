@@ -71,7 +71,7 @@ Engine::Parts::Parts(const EngineOptions& options_)
         };
 }
 
-Engine::Engine(compile::Plan plan, const EngineOptions& options)
+Engine::Engine(compile::Schedule plan, const EngineOptions& options)
     : plan_hash_(hash_of(plan.patch)), parts_(std::make_shared<Parts>(options)) {
     if (options.replay && options.replay->plan_hash != plan_hash_)
         throw Error("the timing log was made with another patch or other settings; replay needs the same");
@@ -82,7 +82,7 @@ Engine::Engine(compile::Plan plan, const EngineOptions& options)
 
 Engine::~Engine() = default;
 
-void Engine::schedule(compile::Plan plan, Flicks when) { parts_->timeline.schedule(std::move(plan), when); }
+void Engine::schedule(compile::Schedule plan, Flicks when) { parts_->timeline.schedule(std::move(plan), when); }
 
 void Engine::schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value) {
     parts_->timeline.schedule_change(id, node, param, value);
@@ -117,7 +117,7 @@ void Engine::run_live(const LiveOptions& options) {
     run->run();
 }
 
-void Engine::edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told) {
+void Engine::edit(std::function<compile::Schedule()> make, std::function<void(const EditOutcome&)> told) {
     parts_->edits.edit(std::move(make), std::move(told));
 }
 

@@ -23,14 +23,14 @@ public:
     using Pausing = run::Pausing;
 
     /// Takes ownership of the plan, prepares every node and connects the wires. Assets must be loaded. Throws Error.
-    Engine(compile::Plan plan, const EngineOptions& options);
+    Engine(compile::Schedule plan, const EngineOptions& options);
     ~Engine();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
     /// Before an offline run: schedules a plan for logical time `when`, or for the time in the replayed log. Times must
     /// increase. Throws Error.
-    void schedule(compile::Plan plan, Flicks when);
+    void schedule(compile::Schedule plan, Flicks when);
     /// Before an offline run: schedules a parameter change by its number in the replayed log, in the plan scheduled
     /// last.
     void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
@@ -51,7 +51,7 @@ public:
 
     /// During a live run, from `watch`: `make` compiles a plan on another thread, which then takes over. `told`
     /// receives the outcome on the control thread. Edits run one after another; only the newest pending edit is kept.
-    void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
+    void edit(std::function<compile::Schedule()> make, std::function<void(const EditOutcome&)> told);
     /// During a live run, from `watch`, or between two `advance`: sets a parameter, "0.8 N/mm", 3 ms ahead. A parameter
     /// on which a force depends ramps from then on (param_ramps.hpp). Returns the logical time. Throws Error on unknown
     /// names, structural or driven parameters, and values out of range.
@@ -88,7 +88,7 @@ public:
     PortHashes port_hashes() const;
 
     /// The running plan, or the last one.
-    const compile::Plan& plan() const { return parts_->timeline.now().plan; }
+    const compile::Schedule& plan() const { return parts_->timeline.now().plan; }
     /// Every group that ever ran, those of the first plan first.
     const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return parts_->timeline.groups(); }
     /// The nodes of the running plan. Control thread.

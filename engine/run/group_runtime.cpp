@@ -14,7 +14,7 @@
 
 namespace tactus::run {
 
-GroupRuntime::GroupRuntime(const compile::PlanGroup& description, int number, int frames)
+GroupRuntime::GroupRuntime(const compile::ScheduleGroup& description, int number, int frames)
     : plan(&description_),
       index(number),
       max_frames(frames),

@@ -8,7 +8,7 @@
 #include "engine/run/decisions.hpp"
 #include "engine/run/pause_window.hpp"
 #include "engine/take/timing_log.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -21,12 +21,12 @@ class GroupRuntime {
 public:
     /// `number` is the group's number in the log, `frames` the maximum of activations per call. Starts with the virtual
     /// clock.
-    GroupRuntime(const compile::PlanGroup& description, int number, int frames);
+    GroupRuntime(const compile::ScheduleGroup& description, int number, int frames);
     ~GroupRuntime();
     GroupRuntime(const GroupRuntime&) = delete;
     GroupRuntime& operator=(const GroupRuntime&) = delete;
 
-    const compile::PlanGroup* plan;  ///< name, period and the like; its nodes change with the program
+    const compile::ScheduleGroup* plan;  ///< name, period and the like; its nodes change with the program
     const int index;
     const int max_frames;
     std::atomic<std::int64_t> end{0};  ///< activations before this one run; only lowered during a run
@@ -161,7 +161,7 @@ private:
 
     static constexpr int timed_every = 64;  ///< nodes are timed in one call out of this many
 
-    compile::PlanGroup description_;
+    compile::ScheduleGroup description_;
     Ring<build::GroupProgram*> programs_{64};
     ChangeQueue changes_;
     ParamRamps ramps_;

@@ -4,7 +4,7 @@
 // from there.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -28,7 +28,7 @@ LiveEdits::~LiveEdits() {
     if (building_ && building_->thread.joinable()) building_->thread.join();
 }
 
-void LiveEdits::edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told) {
+void LiveEdits::edit(std::function<compile::Schedule()> make, std::function<void(const EditOutcome&)> told) {
     waiting_ = Edit{std::move(make), std::move(told)};
 }
 
@@ -203,7 +203,7 @@ LiveEdits::Setting LiveEdits::setting_of(const std::string& node, const std::str
     if (found->second->is_structural)
         throw Error(fmt::format("'{}.{}' is structural: change it in the patch", node, param));
     const auto& compiled = now.plan.nodes[static_cast<std::size_t>(at)].params.at(param);
-    for (const compile::PlanWire& wire : now.plan.wires)
+    for (const compile::ScheduleWire& wire : now.plan.wires)
         if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
     // The group's thread may change the range of the live parameter when it takes the plan over.

@@ -28,7 +28,7 @@ public:
     ~LiveEdits();
 
     /// See Engine.
-    void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
+    void edit(std::function<compile::Schedule()> make, std::function<void(const EditOutcome&)> told);
     /// Setting a parameter of a sub-patch sets all inner parameters that it controls, or none if one of them cannot be
     /// set.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
@@ -51,7 +51,7 @@ public:
 
 private:
     struct Edit {
-        std::function<compile::Plan()> make;
+        std::function<compile::Schedule()> make;
         std::function<void(const EditOutcome&)> told;
     };
     /// The state of building a plan.

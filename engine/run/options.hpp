@@ -5,7 +5,7 @@
 #include "engine/io/frames.hpp"
 #include "engine/io/host.hpp"
 #include "engine/take/take_writer.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <atomic>
 #include <cstdint>

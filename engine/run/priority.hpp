@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/core/time.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ inline int priority_of(compile::Criticality criticality, Flicks call_period) noe
     return of_fastest - levels * static_cast<int>(criticality) - (levels - 1 - octaves);
 }
 
-inline int priority_of(const compile::Plan& plan, const compile::PlanGroup& group) noexcept {
+inline int priority_of(const compile::Schedule& plan, const compile::ScheduleGroup& group) noexcept {
     return priority_of(group.criticality, compile::call_period(plan, group));
 }
 

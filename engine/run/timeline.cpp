@@ -26,7 +26,7 @@ std::int64_t tick_at(double time, Flicks period) {
 
 }  // namespace
 
-void Timeline::begin(compile::Plan plan) {
+void Timeline::begin(compile::Schedule plan) {
     now_ = build::build_generation(std::move(plan), nullptr, context_);
     recorder_.keep_opened();
     add(*now_, 0);
@@ -63,7 +63,7 @@ void Timeline::set_end(GroupRuntime& group) const {
     group.end = std::min(group.end.load(), options_.replay->end_of(index, group.plan->period));
 }
 
-void Timeline::schedule(compile::Plan plan, Flicks when) {
+void Timeline::schedule(compile::Schedule plan, Flicks when) {
     std::unique_ptr<build::Generation> next = build_next(std::move(plan));
     recorder_.keep_opened();
     add(*next, when);
@@ -71,7 +71,7 @@ void Timeline::schedule(compile::Plan plan, Flicks when) {
     scheduled_.push_back(std::exchange(now_, std::move(next)));
 }
 
-std::unique_ptr<build::Generation> Timeline::build_next(compile::Plan plan) {
+std::unique_ptr<build::Generation> Timeline::build_next(compile::Schedule plan) {
     context_.host.begin(plan.patch);
     return build::build_generation(std::move(plan), now_.get(), context_);
 }

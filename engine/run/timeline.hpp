@@ -21,13 +21,13 @@ public:
         : options_(options), context_(context), recorder_(recorder) {}
 
     /// Sets the first plan. Throws Error.
-    void begin(compile::Plan plan);
+    void begin(compile::Schedule plan);
     /// Before an offline run: see Engine.
-    void schedule(compile::Plan plan, Flicks when);
+    void schedule(compile::Schedule plan, Flicks when);
     void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
 
     /// Builds the next plan, on any thread, during the run. Throws Error.
-    std::unique_ptr<build::Generation> build_next(compile::Plan plan);
+    std::unique_ptr<build::Generation> build_next(compile::Schedule plan);
     /// Live: lead time of a switch, so that hands are without force by then.
     static Flicks lead_of(const build::Generation& next);
     /// Time from the first fading activation of a device of `period` until its hand is without force: a fade lasts 10

@@ -59,14 +59,14 @@ std::string_view mode_name(patch::WireMode mode) {
 
 class Drawing {
 public:
-    explicit Drawing(const compile::Plan& plan) : plan_(plan), places_(plan.nodes.size()) {
+    explicit Drawing(const compile::Schedule& plan) : plan_(plan), places_(plan.nodes.size()) {
         find_columns();
         place();
     }
 
     std::string svg() {
         std::string wires;
-        for (const compile::PlanWire& wire : plan_.wires) wires += draw_wire(wire);
+        for (const compile::ScheduleWire& wire : plan_.wires) wires += draw_wire(wire);
         return fmt::format(
                    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
                    "height=\"{1:.0f}\" "
@@ -78,18 +78,18 @@ public:
     }
 
 private:
-    const compile::PlanNode& node(int index) const { return plan_.nodes[static_cast<std::size_t>(index)]; }
+    const compile::ScheduleNode& node(int index) const { return plan_.nodes[static_cast<std::size_t>(index)]; }
     Place& place_of(int index) { return places_[static_cast<std::size_t>(index)]; }
 
     /// Length of the longest path from a source, over forward wires. It orders the nodes of a group.
     void find_columns() {
         std::vector<std::vector<int>> after(plan_.nodes.size());
-        for (const compile::PlanWire& wire : plan_.wires) {
+        for (const compile::ScheduleWire& wire : plan_.wires) {
             if (wire.from_node < 0 || wire.mode == patch::WireMode::delay) continue;
             if (node(wire.from_node).group != node(wire.to_node).group) continue;
             after[static_cast<std::size_t>(wire.from_node)].push_back(wire.to_node);
         }
-        for (const compile::PlanGroup& group : plan_.groups)
+        for (const compile::ScheduleGroup& group : plan_.groups)
             for (const int from : group.order)
                 for (const int to : after[static_cast<std::size_t>(from)])
                     place_of(to).column = std::max(place_of(to).column, place_of(from).column + 1);
@@ -98,7 +98,7 @@ private:
     void place() {
         double y = title_height;
         int columns = 1;
-        for (const compile::PlanGroup& group : plan_.groups) {
+        for (const compile::ScheduleGroup& group : plan_.groups) {
             std::map<int, int> rows;
             int deepest = 1;
             for (const int index : group.order) {
@@ -119,7 +119,7 @@ private:
     std::string draw_lanes() const {
         std::string text;
         for (std::size_t i = 0; i < lanes_.size(); ++i) {
-            const compile::PlanGroup& group = plan_.groups[i];
+            const compile::ScheduleGroup& group = plan_.groups[i];
             const std::string rate =
                 format_quantity(rate_of(group.period), rate_of(group.period) >= 1000.0 ? "kHz" : "Hz");
             text += fmt::format(
@@ -166,10 +166,10 @@ private:
         return y + box_height * (static_cast<double>(port) + 1.0) / (static_cast<double>(ports) + 1.0);
     }
 
-    std::string draw_wire(const compile::PlanWire& wire) {
+    std::string draw_wire(const compile::ScheduleWire& wire) {
         if (wire.from_node < 0) return {};
         const Place &a = place_of(wire.from_node), &b = place_of(wire.to_node);
-        const compile::PlanNode &from = node(wire.from_node), &to = node(wire.to_node);
+        const compile::ScheduleNode &from = node(wire.from_node), &to = node(wire.to_node);
         const ValueType& type = *from.outputs[static_cast<std::size_t>(wire.from_output)].port->type;
         const double x1 = a.x + box_width,
                      y1 = docked(a.y, static_cast<std::size_t>(wire.from_output), from.outputs.size());
@@ -216,7 +216,7 @@ private:
                    x, height_ - 16);
     }
 
-    const compile::Plan& plan_;
+    const compile::Schedule& plan_;
     std::vector<Place> places_;
     std::vector<std::pair<double, double>> lanes_;  // top and height
     double width_ = 0, height_ = 0;
@@ -225,6 +225,6 @@ private:
 
 }  // namespace
 
-std::string draw_svg(const compile::Plan& plan) { return Drawing(plan).svg(); }
+std::string draw_svg(const compile::Schedule& plan) { return Drawing(plan).svg(); }
 
 }  // namespace tactus::analyse

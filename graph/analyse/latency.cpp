@@ -10,8 +10,8 @@
 
 namespace tactus::analyse {
 
-Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& consumer,
-                 const compile::PlanWire& wire) {
+Flicks worst_age(const compile::ScheduleGroup& producer, const compile::ScheduleGroup& consumer,
+                 const compile::ScheduleWire& wire) {
     // j·Pc − L runs through every multiple of the common divisor modulo Pp, so the oldest value has waited
     // Pp − gcd on top of the latency, plus what L itself is off that grid.
     const Flicks latency = compile::wire_latency(producer, wire);
@@ -23,17 +23,17 @@ Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& c
 namespace {
 
 /// What a wire adds to the age of a value.
-Flicks added_age(const compile::Plan& plan, const compile::PlanWire& wire) {
-    const compile::PlanGroup& producer =
+Flicks added_age(const compile::Schedule& plan, const compile::ScheduleWire& wire) {
+    const compile::ScheduleGroup& producer =
         plan.groups[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(wire.from_node)].group)];
-    const compile::PlanGroup& consumer =
+    const compile::ScheduleGroup& consumer =
         plan.groups[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(wire.to_node)].group)];
     return &producer != &consumer ? worst_age(producer, consumer, wire) : wire.delay * producer.period;
 }
 
 }  // namespace
 
-Ages ages_from(const compile::Plan& plan, int source) {
+Ages ages_from(const compile::Schedule& plan, int source) {
     Ages ages{std::vector<Flicks>(plan.nodes.size(), unreached), std::vector<int>(plan.nodes.size(), -1)};
     std::vector<std::vector<std::size_t>> leaving(plan.nodes.size());
     for (std::size_t w = 0; w < plan.wires.size(); ++w)
@@ -56,7 +56,7 @@ Ages ages_from(const compile::Plan& plan, int source) {
         const auto [round, w] = due.top();
         due.pop();
         is_due[w] = false;
-        const compile::PlanWire& wire = plan.wires[w];
+        const compile::ScheduleWire& wire = plan.wires[w];
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         const Flicks age = ages.age[from] + added_age(plan, wire);
         if (age >= ages.age[to]) continue;
@@ -67,9 +67,9 @@ Ages ages_from(const compile::Plan& plan, int source) {
     return ages;
 }
 
-std::vector<Flicks> ages_to(const compile::Plan& plan, int sink) {
-    std::vector<std::vector<const compile::PlanWire*>> entering(plan.nodes.size());
-    for (const compile::PlanWire& wire : plan.wires)
+std::vector<Flicks> ages_to(const compile::Schedule& plan, int sink) {
+    std::vector<std::vector<const compile::ScheduleWire*>> entering(plan.nodes.size());
+    for (const compile::ScheduleWire& wire : plan.wires)
         if (wire.from_node >= 0) entering[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
     std::vector<Flicks> ages(plan.nodes.size(), unreached);
     ages[static_cast<std::size_t>(sink)] = 0;
@@ -81,7 +81,7 @@ std::vector<Flicks> ages_to(const compile::Plan& plan, int sink) {
         const auto [age, node] = next.top();
         next.pop();
         if (age > ages[static_cast<std::size_t>(node)]) continue;
-        for (const compile::PlanWire* wire : entering[static_cast<std::size_t>(node)]) {
+        for (const compile::ScheduleWire* wire : entering[static_cast<std::size_t>(node)]) {
             const Flicks longer = age + added_age(plan, *wire);
             Flicks& known = ages[static_cast<std::size_t>(wire->from_node)];
             if (longer >= known) continue;
@@ -92,8 +92,8 @@ std::vector<Flicks> ages_to(const compile::Plan& plan, int sink) {
     return ages;
 }
 
-std::vector<PathLatency> path_latencies(const compile::Plan& plan) {
-    const auto is_sink = [](const compile::PlanNode& n) {
+std::vector<PathLatency> path_latencies(const compile::Schedule& plan) {
+    const auto is_sink = [](const compile::ScheduleNode& n) {
         return n.type->role == NodeRole::hand_sink || n.type->role == NodeRole::sound_sink ||
                n.type->role == NodeRole::file_sink;
     };

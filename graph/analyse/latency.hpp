@@ -2,7 +2,7 @@
 // The largest age, in logical time, of values that leave a patch.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <limits>
 #include <string>
@@ -17,7 +17,7 @@ struct PathLatency {
 };
 
 /// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
-Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& consumer, const compile::PlanWire& wire);
+Flicks worst_age(const compile::ScheduleGroup& producer, const compile::ScheduleGroup& consumer, const compile::ScheduleWire& wire);
 
 inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
 
@@ -27,13 +27,13 @@ struct Ages {
     std::vector<Flicks> age;
     std::vector<int> before;
 };
-Ages ages_from(const compile::Plan& plan, int source);
+Ages ages_from(const compile::Schedule& plan, int source);
 
 /// Per node: the age that a value gains on the quickest path from it to `sink`, or `unreached`.
-std::vector<Flicks> ages_to(const compile::Plan& plan, int sink);
+std::vector<Flicks> ages_to(const compile::Schedule& plan, int sink);
 
 /// Returns the quickest path from every device input to every output of the patch (device_output, audio_output,
 /// record), in order of names. Inside a group values are passed on in the same tick and do not age.
-std::vector<PathLatency> path_latencies(const compile::Plan& plan);
+std::vector<PathLatency> path_latencies(const compile::Schedule& plan);
 
 }  // namespace tactus::analyse

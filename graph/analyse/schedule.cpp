@@ -27,11 +27,11 @@ std::optional<double> response_of(const std::vector<ScheduledGroup>& groups, std
 
 }  // namespace
 
-std::vector<ScheduledGroup> schedule_of(const compile::Plan& plan, const std::vector<double>& cost_s) {
+std::vector<ScheduledGroup> schedule_of(const compile::Schedule& plan, const std::vector<double>& cost_s) {
     std::vector<ScheduledGroup> groups;
     for (const int g : compile::by_priority(plan)) {
         const auto index = static_cast<std::size_t>(g);
-        const compile::PlanGroup& group = plan.groups[index];
+        const compile::ScheduleGroup& group = plan.groups[index];
         groups.push_back({group.name, group.criticality, seconds(compile::call_period(plan, group)),
                           index < cost_s.size() ? cost_s[index] : 0.0, {}});
     }

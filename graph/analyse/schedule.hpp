@@ -2,7 +2,7 @@
 // Whether the groups of a plan meet their deadlines on one core, in the order of their priorities.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ struct ScheduledGroup {
 /// Returns the groups in the order of priority. `cost_s` has the measured cost of each group, in the order of
 /// plan.groups; missing entries count as 0. Response times are computed for fixed priorities on one core (Joseph and
 /// Pandya 1986), from R = C + sum of ceil(R / T) C over the groups before.
-std::vector<ScheduledGroup> schedule_of(const compile::Plan& plan, const std::vector<double>& cost_s);
+std::vector<ScheduledGroup> schedule_of(const compile::Schedule& plan, const std::vector<double>& cost_s);
 
 /// Largest total load of one core at which `count` groups meet all deadlines, whatever their periods: the
 /// rate-monotonic bound count (2^(1/count) − 1) (Liu and Layland 1973).

@@ -9,18 +9,18 @@ namespace tactus::analyse {
 namespace {
 
 bool is(const std::optional<compile::WireUnit>& unit, std::string_view text) {
-    return unit && unit->measure == expression::parse_measured_unit(text).measure;
+    return unit && unit->measure == formula::parse_measured_unit(text).measure;
 }
 
 }  // namespace
 
-Laws::Laws(const compile::Plan& plan, const DrivenParams& driven)
+Laws::Laws(const compile::Schedule& plan, const DrivenParams& driven)
     : plan_(plan),
       driven_(driven),
       units_(compile::find_units(plan)),
       wires_into_(plan.nodes.size()),
       wires_from_(plan.nodes.size()) {
-    for (const compile::PlanWire& wire : plan.wires) {
+    for (const compile::ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0 || wire.to_input < 0) continue;
         wires_into_[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
         wires_from_[static_cast<std::size_t>(wire.from_node)].push_back(&wire);
@@ -33,7 +33,7 @@ void Laws::find_units_given() {
     std::vector<std::size_t> known;
     for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
         if (units_.outputs[n].size() == 1) given_[n] = units_.outputs[n][0];
-        for (const compile::PlanWire* wire : wires_from_[n])
+        for (const compile::ScheduleWire* wire : wires_from_[n])
             if (!given_[n])
                 given_[n] =
                     units_.inputs[static_cast<std::size_t>(wire->to_node)][static_cast<std::size_t>(wire->to_input)];
@@ -43,7 +43,7 @@ void Laws::find_units_given() {
     for (std::size_t head = 0; head < known.size(); ++head) {
         const std::size_t reader = known[head];
         if (plan_.nodes[reader].type->units != UnitRule::same) continue;
-        for (const compile::PlanWire* wire : wires_into_[reader]) {
+        for (const compile::ScheduleWire* wire : wires_into_[reader]) {
             const auto from = static_cast<std::size_t>(wire->from_node);
             if (given_[from]) continue;
             given_[from] = given_[reader];
@@ -53,7 +53,7 @@ void Laws::find_units_given() {
 }
 
 std::optional<KnownLaw> Laws::of(std::size_t n, const std::vector<bool>& reached_by_hands) const {
-    const compile::PlanNode& node = plan_.nodes[n];
+    const compile::ScheduleNode& node = plan_.nodes[n];
     if (!node.type->slopes || node.outputs.size() != 1) return std::nullopt;
     for (const auto& [name, param] : node.params)
         if (driven_.contains(param)) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<KnownLaw> Laws::of(std::size_t n, const std::vector<bool>& reached
     KnownLaw law;
     double squares = 0.0;
     bool has_positions = false;
-    for (const compile::PlanWire* wire : wires_into_[n]) {
+    for (const compile::ScheduleWire* wire : wires_into_[n]) {
         if (!reached_by_hands[static_cast<std::size_t>(wire->from_node)]) continue;
         const auto input = static_cast<std::size_t>(wire->to_input);
         const auto slope = std::ranges::find(slopes, node.inputs[input].name, &PortSlope::input);

@@ -22,7 +22,7 @@ struct KnownLaw {
 class Laws {
 public:
     /// `driven` lists the parameters of `plan` that wires drive. Both must outlive this object.
-    Laws(const compile::Plan& plan, const DrivenParams& driven);
+    Laws(const compile::Schedule& plan, const DrivenParams& driven);
 
     /// Returns nothing if the law has no known bound: the node states no slope over an input that a hand reaches, a
     /// wire drives a parameter, a value is amplified, or the units are neither those of a spring or a damper nor
@@ -32,10 +32,10 @@ public:
 private:
     void find_units_given();
 
-    const compile::Plan& plan_;
+    const compile::Schedule& plan_;
     const DrivenParams& driven_;
-    compile::PlanUnits units_;
-    std::vector<std::vector<const compile::PlanWire*>> wires_into_, wires_from_;
+    compile::ScheduleUnits units_;
+    std::vector<std::vector<const compile::ScheduleWire*>> wires_into_, wires_from_;
     std::vector<std::optional<compile::WireUnit>>
         given_;  ///< unit of each node's output, stated or required by its readers
 };

@@ -19,15 +19,15 @@ namespace tactus::analyse {
 
 namespace {
 
-std::string setting_of(const compile::Plan& plan, std::size_t node, std::string_view name) {
+std::string setting_of(const compile::Schedule& plan, std::size_t node, std::string_view name) {
     for (const OptionText& given : plan.patch.nodes[node].settings)
         if (given.name == name) return given.text;
     return {};
 }
 
-DrivenParams driven_params(const compile::Plan& plan) {
+DrivenParams driven_params(const compile::Schedule& plan) {
     DrivenParams driven;
-    for (const compile::PlanWire& wire : plan.wires)
+    for (const compile::ScheduleWire& wire : plan.wires)
         if (wire.param) driven.insert(wire.param);
     return driven;
 }
@@ -38,13 +38,13 @@ bool is_felt(const Param& param) {
 }
 
 /// What a tool multiplies its forces on the device by, and with them its stiffness.
-double device_scale(const compile::PlanNode& node) {
+double device_scale(const compile::ScheduleNode& node) {
     const auto found = node.params.find("device_scale");
     return found != node.params.end() ? found->second->value : 1.0;
 }
 
 /// The node's largest stiffness: the value that a parameter has, or the largest while a wire drives it.
-std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const compile::PlanNode& node) {
+std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const compile::ScheduleNode& node) {
     std::optional<DeclaredStiffness> found;
     for (const auto& [name, param] : node.params) {
         if (!is_felt(*param)) continue;
@@ -55,7 +55,7 @@ std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const comp
 }
 
 /// Which nodes carry what some hand does.
-std::vector<bool> reached_by_hands(const compile::Plan& plan) {
+std::vector<bool> reached_by_hands(const compile::Schedule& plan) {
     std::vector<bool> reached(plan.nodes.size(), false);
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
         if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
@@ -69,7 +69,7 @@ std::vector<bool> reached_by_hands(const compile::Plan& plan) {
 /// The scale from the device to the scene on the quickest path from a source: the product of its workspaces.
 class Scales {
 public:
-    Scales(const compile::Plan& plan, const Ages& from_source)
+    Scales(const compile::Schedule& plan, const Ages& from_source)
         : plan_(plan), before_(from_source.before), nearest_(plan.nodes.size(), unknown) {}
 
     double of(std::size_t node) {
@@ -100,7 +100,7 @@ private:
         return found;
     }
 
-    const compile::Plan& plan_;
+    const compile::Schedule& plan_;
     const std::vector<int>& before_;
     std::vector<int> nearest_;  // workspace of each node that was asked for or passed
     std::vector<int> way_;
@@ -131,7 +131,7 @@ std::span<const DeviceClass> device_classes() {
     return classes;
 }
 
-std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
+std::vector<FeltSpring> felt_springs(const compile::Schedule& plan) {
     const DrivenParams driven = driven_params(plan);
     std::vector<FeltSpring> felt;
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
@@ -159,7 +159,7 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
     return felt;
 }
 
-std::vector<bool> between_hand_and_force(const compile::Plan& plan) {
+std::vector<bool> between_hand_and_force(const compile::Schedule& plan) {
     std::vector<bool> is_between(plan.nodes.size(), false);
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
         if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
@@ -174,7 +174,7 @@ std::vector<bool> between_hand_and_force(const compile::Plan& plan) {
     return is_between;
 }
 
-std::vector<std::string> unstated_laws(const compile::Plan& plan) {
+std::vector<std::string> unstated_laws(const compile::Schedule& plan) {
     const std::vector<bool> is_between = between_hand_and_force(plan);
     const DrivenParams driven = driven_params(plan);
     const Laws laws(plan, driven);
@@ -186,7 +186,7 @@ std::vector<std::string> unstated_laws(const compile::Plan& plan) {
     return names;
 }
 
-std::vector<ForceLoop> force_loops(const compile::Plan& plan,
+std::vector<ForceLoop> force_loops(const compile::Schedule& plan,
                                    const std::function<DeviceInfo(const std::string&)>& device_of) {
     const DrivenParams driven = driven_params(plan);
     std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;

@@ -2,7 +2,7 @@
 // Stable stiffness of a patch on a device, from the delay between a sample and its force.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 #include "graph/node/device.hpp"
 
 #include <cstdint>
@@ -57,14 +57,14 @@ struct FeltSpring {
 };
 
 /// Returns these parameters on all paths from a device_input to a device_output, ordered by node and name.
-std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
+std::vector<FeltSpring> felt_springs(const compile::Schedule& plan);
 
 /// Per node of the plan: true if it lies on a path from the device of a hand to a force on a hand.
-std::vector<bool> between_hand_and_force(const compile::Plan& plan);
+std::vector<bool> between_hand_and_force(const compile::Schedule& plan);
 
 /// Names of the nodes between a hand's device and its force that state no stiffness parameter and have no known bound
 /// on their slope, in the order of the patch.
-std::vector<std::string> unstated_laws(const compile::Plan& plan);
+std::vector<std::string> unstated_laws(const compile::Schedule& plan);
 
 /// Largest stable stiffness of a spring on a device of damping b in N·s/m, when the force is held for T = `period_s`
 /// and comes t_d = `delay_s` late: b / (T/2 + t_d), that is b / (T (½ + D)) for D periods of delay. Beyond it the
@@ -88,7 +88,7 @@ double damping_with_hand(const DeviceInfo& device);
 /// properties of a device by its name in the patch ("": the only one). A workspace on the path multiplies the stiffness
 /// by the square of its scale. A stiffness that a wire drives counts at most as the device's `max_stiffness`, because
 /// the engine clamps it during a run (engine/build/fit_to_devices.cpp).
-std::vector<ForceLoop> force_loops(const compile::Plan& plan,
+std::vector<ForceLoop> force_loops(const compile::Schedule& plan,
                                    const std::function<DeviceInfo(const std::string&)>& device_of);
 
 /// A class of devices, to compare a patch on other devices. Makers state neither damping nor delay (s): both are

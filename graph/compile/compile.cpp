@@ -11,8 +11,8 @@
 
 namespace tactus::compile {
 
-std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Problems& problems) {
-    Plan plan;
+std::optional<Schedule> compile(patch::Patch patch, Catalogue catalogue, patch::Problems& problems) {
+    Schedule plan;
     plan.patch = std::move(patch);
     const std::size_t earlier = problems.list.size();
     patch::flatten(plan.patch, problems);

@@ -77,19 +77,19 @@ private:
 };
 
 /// Where in its group each node stands.
-std::vector<int> places_of(const Plan& plan) {
+std::vector<int> places_of(const Schedule& plan) {
     std::vector<int> places(plan.nodes.size());
-    for (const PlanGroup& group : plan.groups)
+    for (const ScheduleGroup& group : plan.groups)
         for (std::size_t i = 0; i < group.order.size(); ++i)
             places[static_cast<std::size_t>(group.order[i])] = static_cast<int>(i);
     return places;
 }
 
 /// The wires within groups, as places in their orders.
-std::vector<GroupGraph> graphs_of(const Plan& plan, const std::vector<int>& places) {
+std::vector<GroupGraph> graphs_of(const Schedule& plan, const std::vector<int>& places) {
     std::vector<GroupGraph> graphs(plan.groups.size());
     for (std::size_t g = 0; g < plan.groups.size(); ++g) graphs[g].after.resize(plan.groups[g].order.size());
-    for (const PlanWire& wire : plan.wires) {
+    for (const ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         const int group = plan.nodes[from].group;
@@ -112,12 +112,12 @@ std::vector<int> order_of(const Components& components) {
 
 }  // namespace
 
-void order_feedback(Plan& plan) {
+void order_feedback(Schedule& plan) {
     const std::vector<int> places = places_of(plan);
     const std::vector<GroupGraph> graphs = graphs_of(plan, places);
     std::vector<int> cycle_of(plan.nodes.size(), -1);
     for (std::size_t g = 0; g < plan.groups.size(); ++g) {
-        PlanGroup& group = plan.groups[g];
+        ScheduleGroup& group = plan.groups[g];
         if (!group.has_audio || !graphs[g].has_delays) continue;
         const Components components(graphs[g]);
         const std::vector<int> nodes = group.order, order = order_of(components);
@@ -132,12 +132,12 @@ void order_feedback(Plan& plan) {
             group.cycles.push_back({static_cast<int>(i), static_cast<int>(end - i), std::numeric_limits<int>::max()});
         }
     }
-    for (const PlanWire& wire : plan.wires) {
+    for (const ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0 || wire.mode != patch::WireMode::delay) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         const bool same = plan.nodes[from].group == plan.nodes[to].group && cycle_of[from] == cycle_of[to];
         if (!same || cycle_of[from] < 0) continue;
-        PlanCycle& cycle = plan.groups[static_cast<std::size_t>(plan.nodes[from].group)]
+        ScheduleCycle& cycle = plan.groups[static_cast<std::size_t>(plan.nodes[from].group)]
                                .cycles[static_cast<std::size_t>(cycle_of[from])];
         cycle.longest = std::min(cycle.longest, wire.delay);
     }

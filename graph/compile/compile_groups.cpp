@@ -15,7 +15,7 @@ namespace tactus::compile {
 
 namespace {
 
-bool has_signal_port(const PlanNode& node) {
+bool has_signal_port(const ScheduleNode& node) {
     const auto is_signal = [](const auto& port) { return port.port->type == &value::signal; };
     return std::ranges::any_of(node.outputs, is_signal) || std::ranges::any_of(node.inputs, is_signal);
 }
@@ -35,28 +35,28 @@ Flicks parse_latency(const patch::PatchGroup& group, Flicks period) {
 /// Collects groups in the order in which nodes name them first.
 class GroupCollector {
 public:
-    GroupCollector(Plan& plan, const patch::Problems& problems) : plan_(plan), problems_(problems) {
+    GroupCollector(Schedule& plan, const patch::Problems& problems) : plan_(plan), problems_(problems) {
         for (const patch::PatchGroup& group : plan.patch.groups) declared_.emplace(group.name, &group);
     }
 
     /// Index of the group that `node` belongs to, made on first use.
     int group_of(const patch::PatchNode& node) {
-        PlanGroup group = node.group.empty() ? group_of_rate(node.rate) : named(node.group);
+        ScheduleGroup group = node.group.empty() ? group_of_rate(node.rate) : named(node.group);
         const auto [at, is_new] = made_.try_emplace(group.name, static_cast<int>(plan_.groups.size()));
         if (is_new) plan_.groups.push_back(std::move(group));
         return at->second;
     }
 
 private:
-    static PlanGroup group_of_rate(const std::string& text) {
-        PlanGroup group;
+    static ScheduleGroup group_of_rate(const std::string& text) {
+        ScheduleGroup group;
         group.period = patch::parse_rate(text);
         const double rate = rate_of(group.period);
         group.name = format_quantity(rate, rate >= 1000.0 ? "kHz" : "Hz");
         return group;
     }
 
-    PlanGroup named(const std::string& name) const {
+    ScheduleGroup named(const std::string& name) const {
         const auto found = declared_.find(name);
         if (found == declared_.end()) {
             std::vector<std::string> names;
@@ -65,7 +65,7 @@ private:
             throw Error(fmt::format("no group '{}' in [groups]{}", name, did_you_mean(name, names)));
         }
         const patch::PatchGroup& declared = *found->second;
-        PlanGroup group;
+        ScheduleGroup group;
         group.name = declared.name;
         group.period = patch::parse_rate(declared.rate);
         if (!declared.latency.empty()) group.latency = parse_latency(declared, group.period);
@@ -74,7 +74,7 @@ private:
         return group;
     }
 
-    Plan& plan_;
+    Schedule& plan_;
     const patch::Problems& problems_;
     std::unordered_map<std::string_view, const patch::PatchGroup*> declared_;
     std::unordered_map<std::string, int> made_;
@@ -82,7 +82,7 @@ private:
 
 }  // namespace
 
-void form_groups(Plan& plan, patch::Problems& problems) {
+void form_groups(Schedule& plan, patch::Problems& problems) {
     GroupCollector collector(plan, problems);
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
         const patch::PatchNode& patch_node = plan.patch.nodes[i];
@@ -95,23 +95,23 @@ void form_groups(Plan& plan, patch::Problems& problems) {
     std::vector<int> rank(plan.groups.size());
     std::iota(rank.begin(), rank.end(), 0);
     std::ranges::sort(rank, [&](int a, int b) {
-        const PlanGroup &ga = plan.groups[static_cast<std::size_t>(a)], &gb = plan.groups[static_cast<std::size_t>(b)];
+        const ScheduleGroup &ga = plan.groups[static_cast<std::size_t>(a)], &gb = plan.groups[static_cast<std::size_t>(b)];
         return ga.period != gb.period ? ga.period < gb.period : ga.name < gb.name;
     });
-    std::vector<PlanGroup> sorted;
+    std::vector<ScheduleGroup> sorted;
     std::vector<int> place(rank.size());
     for (const int old : rank) {
         place[static_cast<std::size_t>(old)] = static_cast<int>(sorted.size());
         sorted.push_back(std::move(plan.groups[static_cast<std::size_t>(old)]));
     }
     plan.groups = std::move(sorted);
-    for (PlanNode& node : plan.nodes) {
+    for (ScheduleNode& node : plan.nodes) {
         if (node.group < 0) continue;
         node.group = place[static_cast<std::size_t>(node.group)];
         if (node.type && has_signal_port(node)) plan.groups[static_cast<std::size_t>(node.group)].has_audio = true;
     }
     // Values live in an audio group for one sample; towards other groups its latency is the patch's quantum.
-    for (PlanGroup& group : plan.groups) {
+    for (ScheduleGroup& group : plan.groups) {
         if (group.latency == 0) group.latency = group.has_audio ? plan.patch.quantum : group.period;
         // A tenth of a second of catching up keeps a stalled machine's log short without losing what was cut or played.
         if (!group.backlog_given)
@@ -147,9 +147,9 @@ std::vector<int> find_cycle(const std::vector<int>& left, const std::vector<std:
 
 }  // namespace
 
-void order_nodes(Plan& plan, patch::Problems& problems) {
+void order_nodes(Schedule& plan, patch::Problems& problems) {
     std::vector<std::vector<int>> before(plan.nodes.size()), after(plan.nodes.size());
-    for (const PlanWire& wire : plan.wires) {
+    for (const ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0 || wire.mode == patch::WireMode::delay) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         if (plan.nodes[from].group != plan.nodes[to].group) continue;

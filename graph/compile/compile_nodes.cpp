@@ -17,7 +17,7 @@ namespace {
 /// Gathers a node's members and, by name, how a text sets each of them.
 class Collector : public MemberVisitor {
 public:
-    explicit Collector(PlanNode& node) : node_(node) {}
+    explicit Collector(ScheduleNode& node) : node_(node) {}
 
     void input(std::string_view name, Input& port) override { node_.inputs.push_back({std::string(name), &port, {}}); }
     void output(std::string_view name, Output& port) override { node_.outputs.push_back({std::string(name), &port}); }
@@ -73,7 +73,7 @@ private:
         setters_.push_back(std::move(setter));
     }
 
-    PlanNode& node_;
+    ScheduleNode& node_;
     std::vector<std::string> names_;
     std::vector<std::function<void(const OptionText&)>> setters_;
 };
@@ -90,7 +90,7 @@ const NodeType* find_type(const patch::PatchNode& node, Catalogue catalogue, pat
     return nullptr;
 }
 
-void check_assets(const PlanNode& node, const std::vector<std::string>& names,
+void check_assets(const ScheduleNode& node, const std::vector<std::string>& names,
                   const std::unordered_set<std::string_view>& known, patch::Problems& problems) {
     for (const AssetParam* asset : node.assets) {
         if (asset->name.empty()) {
@@ -110,7 +110,7 @@ public:
     Actuators(const std::vector<patch::PatchActuator>& list, patch::Problems& problems)
         : list_(list), problems_(problems) {}
 
-    void apply(const patch::PatchNode& node, const PlanNode& made, const Collector& collector) {
+    void apply(const patch::PatchNode& node, const ScheduleNode& made, const Collector& collector) {
         apply(node, made, collector, {"actuator", "actuators", ""});
         apply(node, made, collector, {"sensor", "sensors", "sensors."});
     }
@@ -135,7 +135,7 @@ private:
         const char *param, *table, *prefix;
     };
 
-    void apply(const patch::PatchNode& node, const PlanNode& made, const Collector& collector, const Kind& kind) {
+    void apply(const patch::PatchNode& node, const ScheduleNode& made, const Collector& collector, const Kind& kind) {
         const auto text = made.texts.find(kind.param);
         if (text == made.texts.end() || text->second->value.empty()) return;
         const std::string wanted = kind.prefix + text->second->value;
@@ -173,14 +173,14 @@ private:
 
 }  // namespace
 
-void resolve_nodes(Plan& plan, Catalogue catalogue, patch::Problems& problems) {
+void resolve_nodes(Schedule& plan, Catalogue catalogue, patch::Problems& problems) {
     plan.nodes.reserve(plan.patch.nodes.size());
     std::vector<std::string> assets;
     for (const patch::PatchAsset& asset : plan.patch.assets) assets.push_back(asset.name);
     const std::unordered_set<std::string_view> known(assets.begin(), assets.end());
     Actuators actuators(plan.patch.actuators, problems);
     for (const patch::PatchNode& patch_node : plan.patch.nodes) {
-        PlanNode& node = plan.nodes.emplace_back();
+        ScheduleNode& node = plan.nodes.emplace_back();
         node.name = patch_node.name;
         node.where = patch_node.where;
         node.type = find_type(patch_node, catalogue, problems);

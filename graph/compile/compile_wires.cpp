@@ -29,14 +29,14 @@ int index_of(const std::vector<Port>& ports, const std::string& name) {
     return found == ports.end() ? -1 : static_cast<int>(found - ports.begin());
 }
 
-std::string no_port(const PlanNode& node, const std::string& port, const std::vector<std::string>& candidates) {
+std::string no_port(const ScheduleNode& node, const std::string& port, const std::vector<std::string>& candidates) {
     return fmt::format("no port '{}' on node '{}'{}", port, node.name, did_you_mean(port, candidates));
 }
 
 /// What all wires are looked up in.
 struct WireContext {
-    explicit WireContext(const Plan& plan, const patch::Problems& problems_) : problems(problems_) {
-        for (const PlanNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
+    explicit WireContext(const Schedule& plan, const patch::Problems& problems_) : problems(problems_) {
+        for (const ScheduleNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
         for (const patch::PatchAsset& asset : plan.patch.assets) assets.insert(asset.name);
     }
 
@@ -58,10 +58,10 @@ using value::with_article;
 /// Both ends of one wire found, or what is wrong with it.
 class WireResolver {
 public:
-    WireResolver(Plan& plan, WireContext& context, const patch::PatchWire& source)
+    WireResolver(Schedule& plan, WireContext& context, const patch::PatchWire& source)
         : plan_(plan), context_(context), source_(source) {}
 
-    PlanWire resolve() {
+    ScheduleWire resolve() {
         wire_.mode = source_.mode;
         wire_.delay = source_.delay;
         wire_.where = source_.where;
@@ -85,7 +85,7 @@ public:
     }
 
 private:
-    PlanNode& node(int index) { return plan_.nodes[static_cast<std::size_t>(index)]; }
+    ScheduleNode& node(int index) { return plan_.nodes[static_cast<std::size_t>(index)]; }
 
     int find_node(const std::string& name) {
         const auto found = context_.nodes.find(name);
@@ -104,7 +104,7 @@ private:
             return;
         }
         wire_.from_node = find_node(source_.from_node);
-        PlanNode& from = node(wire_.from_node);
+        ScheduleNode& from = node(wire_.from_node);
         wire_.from_output = index_of(from.outputs, source_.from_port);
         if (wire_.from_output >= 0) return;
         if (index_of(from.inputs, source_.from_port) >= 0)
@@ -115,7 +115,7 @@ private:
 
     void find_target() {
         wire_.to_node = find_node(source_.to_node);
-        PlanNode& to = node(wire_.to_node);
+        ScheduleNode& to = node(wire_.to_node);
         wire_.to_input = index_of(to.inputs, source_.to_port);
         if (wire_.to_input >= 0) return;
         if (const auto param = to.params.find(source_.to_port); param != to.params.end()) {
@@ -136,7 +136,7 @@ private:
     bool crosses() { return wire_.from_node >= 0 && node(wire_.from_node).group != node(wire_.to_node).group; }
 
     void check_input() {
-        PlanInput& target = node(wire_.to_node).inputs[static_cast<std::size_t>(wire_.to_input)];
+        ScheduleInput& target = node(wire_.to_node).inputs[static_cast<std::size_t>(wire_.to_input)];
         Input& port = *target.port;
         if (port.connected && port.kind != InputKind::events)
             throw Error(fmt::format("input '{}' of node '{}' is already fed by another wire", target.name,
@@ -199,8 +199,8 @@ private:
             throw Error(fmt::format("events are never held or interpolated; leave 'as {}' out",
                                     wire_.mode == WireMode::hold ? "hold" : "linear"));
         if (is_held) wire_.mode = WireMode::batch;
-        const PlanNode& from = node(wire_.from_node);
-        const PlanGroup& group = plan_.groups[static_cast<std::size_t>(from.group)];
+        const ScheduleNode& from = node(wire_.from_node);
+        const ScheduleGroup& group = plan_.groups[static_cast<std::size_t>(from.group)];
         const std::int64_t waiting = crosses() ? wire_latency(group, wire_) / group.period : wire_.delay;
         const Flicks reading = plan_.groups[static_cast<std::size_t>(node(wire_.to_node).group)].period;
         if (reading / group.period > most_at_once)
@@ -233,33 +233,33 @@ private:
 
     static constexpr std::int64_t most_waiting = 10'000, most_at_once = 50'000;  // a tick's events take 776 bytes
 
-    Plan& plan_;
+    Schedule& plan_;
     WireContext& context_;
     const patch::PatchWire& source_;
-    PlanWire wire_;
+    ScheduleWire wire_;
     bool is_undecided_ = false;
 };
 
-void check_unconnected(const PlanNode& node, patch::Problems& problems) {
-    for (const PlanInput& input : node.inputs)
+void check_unconnected(const ScheduleNode& node, patch::Problems& problems) {
+    for (const ScheduleInput& input : node.inputs)
         if (!input.port->connected && !input.port->is_optional)
             problems.add(node.where, fmt::format("input '{}' of node '{}' is not connected ({})", input.name, node.name,
                                                  input.port->about));
 }
 
-bool carries_stream(const PlanNode& node) {
-    const auto stream_input = [](const PlanInput& i) {
+bool carries_stream(const ScheduleNode& node) {
+    const auto stream_input = [](const ScheduleInput& i) {
         return i.port->kind == InputKind::stream || (i.port->kind == InputKind::any && i.port->type == &value::signal);
     };
     return std::ranges::any_of(node.inputs, stream_input) ||
-           std::ranges::any_of(node.outputs, [](const PlanOutput& o) { return o.port->type == &value::signal; });
+           std::ranges::any_of(node.outputs, [](const ScheduleOutput& o) { return o.port->type == &value::signal; });
 }
 
 }  // namespace
 
-void resolve_wires(Plan& plan, patch::Problems& problems) {
+void resolve_wires(Schedule& plan, patch::Problems& problems) {
     // Without every node there is nothing sound to say about the wires between them.
-    for (const PlanNode& node : plan.nodes)
+    for (const ScheduleNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
     WireContext context(plan, problems);
     plan.wires.reserve(plan.patch.wires.size());
@@ -278,7 +278,7 @@ void resolve_wires(Plan& plan, patch::Problems& problems) {
     if (problems.list.size() == known)
         for (const auto& [where, message] : undecided) problems.add(where, message);
     const bool wires_are_sound = problems.list.size() == known;
-    for (PlanNode& node : plan.nodes) {
+    for (ScheduleNode& node : plan.nodes) {
         // A wire that is wrong leaves its input open: one slip, told once.
         if (wires_are_sound) check_unconnected(node, problems);
         node.takes_blocks = carries_stream(node);

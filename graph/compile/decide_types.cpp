@@ -10,21 +10,21 @@ namespace tactus::compile {
 
 namespace {
 
-bool is_open(const PlanNode& node) {
-    return std::ranges::any_of(node.outputs, [](const PlanOutput& o) { return o.port->type == &value::undecided; });
+bool is_open(const ScheduleNode& node) {
+    return std::ranges::any_of(node.outputs, [](const ScheduleOutput& o) { return o.port->type == &value::undecided; });
 }
 
 /// A wire into a node whose type is open.
 struct Feed {
     const Output* from = nullptr;
-    PlanNode* to = nullptr;
+    ScheduleNode* to = nullptr;
     const Input* input = nullptr;
 };
 
 /// Carries types along the feeds, from node to node.
 class Carrier {
 public:
-    void add(const PlanNode& from, const Feed& feed) {
+    void add(const ScheduleNode& from, const Feed& feed) {
         feeds_[&from].push_back(feed);
         all_.push_back(feed);
     }
@@ -42,10 +42,10 @@ public:
 
 private:
     /// The node's outputs have the type from now on, and its inputs, those without a wire too.
-    void decide(PlanNode& node, const ValueType& type) {
-        for (const PlanOutput& output : node.outputs)
+    void decide(ScheduleNode& node, const ValueType& type) {
+        for (const ScheduleOutput& output : node.outputs)
             if (output.port->type == &value::undecided) output.port->type = &type;
-        for (const PlanInput& input : node.inputs)
+        for (const ScheduleInput& input : node.inputs)
             if (input.port->kind == InputKind::any) input.port->type = &type;
         decided_.push_back(&node);
     }
@@ -58,24 +58,24 @@ private:
 
     void follow() {
         while (!decided_.empty()) {
-            const PlanNode* const node = decided_.back();
+            const ScheduleNode* const node = decided_.back();
             decided_.pop_back();
             if (const auto found = feeds_.find(node); found != feeds_.end())
                 for (const Feed& feed : found->second) take(feed);
         }
     }
 
-    std::unordered_map<const PlanNode*, std::vector<Feed>> feeds_;  // by the node that they come from
+    std::unordered_map<const ScheduleNode*, std::vector<Feed>> feeds_;  // by the node that they come from
     std::vector<Feed> all_;
-    std::vector<const PlanNode*> decided_;  // whose feeds are to be followed
+    std::vector<const ScheduleNode*> decided_;  // whose feeds are to be followed
 };
 
 }  // namespace
 
-void decide_types(Plan& plan) {
-    std::unordered_map<std::string_view, PlanNode*> nodes;
+void decide_types(Schedule& plan) {
+    std::unordered_map<std::string_view, ScheduleNode*> nodes;
     bool some_are_open = false;
-    for (PlanNode& node : plan.nodes) {
+    for (ScheduleNode& node : plan.nodes) {
         nodes.emplace(node.name, &node);
         some_are_open |= is_open(node);
     }
@@ -84,8 +84,8 @@ void decide_types(Plan& plan) {
     for (const patch::PatchWire& wire : plan.patch.wires) {
         const auto from = nodes.find(wire.from_node), to = nodes.find(wire.to_node);
         if (from == nodes.end() || to == nodes.end() || !is_open(*to->second)) continue;
-        const auto output = std::ranges::find(from->second->outputs, wire.from_port, &PlanOutput::name);
-        const auto input = std::ranges::find(to->second->inputs, wire.to_port, &PlanInput::name);
+        const auto output = std::ranges::find(from->second->outputs, wire.from_port, &ScheduleOutput::name);
+        const auto input = std::ranges::find(to->second->inputs, wire.to_port, &ScheduleInput::name);
         if (output == from->second->outputs.end() || input == to->second->inputs.end()) continue;
         if (input->port->kind == InputKind::any) carrier.add(*from->second, {output->port, to->second, input->port});
     }

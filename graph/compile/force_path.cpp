@@ -12,23 +12,23 @@ namespace tactus::compile {
 namespace {
 
 /// What passes this wire is of the world, whatever it is needed for.
-bool is_of_world(const Plan& plan, const PlanWire& wire) {
+bool is_of_world(const Schedule& plan, const ScheduleWire& wire) {
     if (wire.to_input < 0) return true;
     const Input& input =
         *plan.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
     return input.is_of_world || (input.type && input.type->version);
 }
 
-bool drives_device(const PlanNode& node) {
+bool drives_device(const ScheduleNode& node) {
     return node.type->role == NodeRole::hand_sink || node.type->role == NodeRole::motor_sink;
 }
 
 }  // namespace
 
-std::vector<Dependence> dependence_on(const Plan& plan, std::span<const int> sinks) {
+std::vector<Dependence> dependence_on(const Schedule& plan, std::span<const int> sinks) {
     std::vector<Dependence> dependence(plan.nodes.size(), Dependence::none);
-    std::vector<std::vector<const PlanWire*>> into(plan.nodes.size());
-    for (const PlanWire& wire : plan.wires)
+    std::vector<std::vector<const ScheduleWire*>> into(plan.nodes.size());
+    for (const ScheduleWire& wire : plan.wires)
         if (wire.from_node >= 0) into[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
     std::vector<std::size_t> to_visit;
     const auto raise = [&](int node, Dependence to) {
@@ -41,20 +41,20 @@ std::vector<Dependence> dependence_on(const Plan& plan, std::span<const int> sin
     while (!to_visit.empty()) {
         const std::size_t node = to_visit.back();
         to_visit.pop_back();
-        for (const PlanWire* wire : into[node])
+        for (const ScheduleWire* wire : into[node])
             raise(wire->from_node, is_of_world(plan, *wire) ? Dependence::world : dependence[node]);
     }
     return dependence;
 }
 
-void rank_groups(Plan& plan) {
+void rank_groups(Schedule& plan) {
     std::vector<int> sinks;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n)
         if (drives_device(plan.nodes[n])) sinks.push_back(static_cast<int>(n));
     const std::vector<Dependence> dependence = dependence_on(plan, sinks);
-    for (PlanGroup& group : plan.groups) group.criticality = group.has_audio ? Criticality::sound : Criticality::other;
+    for (ScheduleGroup& group : plan.groups) group.criticality = group.has_audio ? Criticality::sound : Criticality::other;
     const auto raise = [&plan](std::size_t node, Criticality to) {
-        PlanGroup& group = plan.groups[static_cast<std::size_t>(plan.nodes[node].group)];
+        ScheduleGroup& group = plan.groups[static_cast<std::size_t>(plan.nodes[node].group)];
         group.criticality = std::min(group.criticality, to);
     };
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
@@ -62,16 +62,16 @@ void rank_groups(Plan& plan) {
         else if (dependence[n] == Dependence::force) raise(n, Criticality::force_value);
         else if (dependence[n] == Dependence::world) raise(n, Criticality::world_value);
     }
-    for (PlanGroup& group : plan.groups)
+    for (ScheduleGroup& group : plan.groups)
         if (group.criticality <= Criticality::force_value && !group.backlog_given)
             group.backlog = static_cast<int>(call_period(plan, group) / group.period) - 1;
 }
 
-std::vector<int> by_priority(const Plan& plan) {
+std::vector<int> by_priority(const Schedule& plan) {
     std::vector<int> order(plan.groups.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::sort(order, {}, [&plan](int g) {
-        const PlanGroup& group = plan.groups[static_cast<std::size_t>(g)];
+        const ScheduleGroup& group = plan.groups[static_cast<std::size_t>(g)];
         return std::tuple(group.criticality, call_period(plan, group), std::string_view(group.name));
     });
     return order;

@@ -16,12 +16,12 @@ struct Life {
 };
 
 /// Where in its group each node stands; those of a cycle at its end, for they run several times in a call.
-std::vector<int> last_places_of(const Plan& plan) {
+std::vector<int> last_places_of(const Schedule& plan) {
     std::vector<int> place(plan.nodes.size());
-    for (const PlanGroup& group : plan.groups) {
+    for (const ScheduleGroup& group : plan.groups) {
         for (std::size_t i = 0; i < group.order.size(); ++i)
             place[static_cast<std::size_t>(group.order[i])] = static_cast<int>(i);
-        for (const PlanCycle& cycle : group.cycles)
+        for (const ScheduleCycle& cycle : group.cycles)
             for (int i = cycle.first; i < cycle.first + cycle.count; ++i)
                 place[static_cast<std::size_t>(group.order[static_cast<std::size_t>(i)])] =
                     cycle.first + cycle.count - 1;
@@ -29,15 +29,15 @@ std::vector<int> last_places_of(const Plan& plan) {
     return place;
 }
 
-std::vector<std::vector<Life>> lives_of(const Plan& plan) {
+std::vector<std::vector<Life>> lives_of(const Schedule& plan) {
     const std::vector<int> place = last_places_of(plan);
     std::vector<std::vector<Life>> lives;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
         auto& of_node = lives.emplace_back();
-        for (const PlanOutput& output : plan.nodes[n].outputs)
+        for (const ScheduleOutput& output : plan.nodes[n].outputs)
             of_node.push_back({output.port->type == &value::signal ? place[n] : Life::for_good});
     }
-    for (const PlanWire& wire : plan.wires) {
+    for (const ScheduleWire& wire : plan.wires) {
         if (wire.from_node < 0) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         Life& life = lives[from][static_cast<std::size_t>(wire.from_output)];
@@ -66,13 +66,13 @@ private:
 
 }  // namespace
 
-ValueLayout lay_out_values(const Plan& plan, std::span<const int> frames) {
+ValueLayout lay_out_values(const Schedule& plan, std::span<const int> frames) {
     const auto lives = lives_of(plan);
     ValueLayout layout;
-    for (const PlanNode& node : plan.nodes) layout.offsets.emplace_back(node.outputs.size());
+    for (const ScheduleNode& node : plan.nodes) layout.offsets.emplace_back(node.outputs.size());
     Placer placer;
     for (std::size_t g = 0; g < plan.groups.size(); ++g) {
-        const PlanGroup& group = plan.groups[g];
+        const ScheduleGroup& group = plan.groups[g];
         const auto count = static_cast<std::size_t>(group.has_audio ? frames[g] : 1);
         std::vector<std::size_t> released;                                  // places to give again
         std::vector<std::vector<std::size_t>> ending(group.order.size());  // places whose last reader is that step

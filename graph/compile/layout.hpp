@@ -2,7 +2,7 @@
 // Memory layout of the values of outputs: one block for all of them. The last pass of the compiler.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <cstddef>
 #include <span>
@@ -19,7 +19,7 @@ struct ValueLayout {
 /// that is read only within its group and call is reused after its last reader has run, so that a long chain stays in
 /// the nearest cache. Such a signal is valid only from its own step to that of its last reader. All other outputs keep
 /// their memory and their last value.
-ValueLayout lay_out_values(const Plan& plan, std::span<const int> frames);
+ValueLayout lay_out_values(const Schedule& plan, std::span<const int> frames);
 
 /// Alignment of the block.
 inline constexpr std::size_t value_alignment = 64;

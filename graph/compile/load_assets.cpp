@@ -23,11 +23,11 @@ void AssetCache::forget_changed() {
     std::erase_if(loaded_, [](const auto& one) { return one.second.stamp != stamp_of(one.first.second); });
 }
 
-void AssetCache::load(Plan& plan, patch::Problems& problems) {
+void AssetCache::load(Schedule& plan, patch::Problems& problems) {
     std::unordered_map<std::string_view, const patch::PatchAsset*> sources;
     for (const patch::PatchAsset& asset : plan.patch.assets) sources.emplace(asset.name, &asset);
     std::unordered_set<std::string> failed;
-    for (PlanNode& node : plan.nodes) {
+    for (ScheduleNode& node : plan.nodes) {
         for (AssetParam* asset : node.assets) {
             if (asset->name.empty()) continue;
             const patch::PatchAsset* source = sources.at(asset->name);

@@ -2,7 +2,7 @@
 // Loads the files that a patch names.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -18,7 +18,7 @@ class AssetCache {
 public:
     /// Loads the file of every asset parameter of the plan. A file that cannot be loaded is reported once, at its
     /// location in the patch.
-    void load(Plan& plan, patch::Problems& problems);
+    void load(Schedule& plan, patch::Problems& problems);
 
     /// Before a new run: removes assets whose files have changed since they were loaded. Plans that use them keep their
     /// copy.

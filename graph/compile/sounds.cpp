@@ -12,7 +12,7 @@ namespace tactus::compile {
 
 namespace {
 
-std::optional<SoundTarget> channel_of(const PlanNode& node) {
+std::optional<SoundTarget> channel_of(const ScheduleNode& node) {
     const auto channel = node.params.find("channel");
     const auto card = node.texts.find("card");
     if (channel == node.params.end() || card == node.texts.end() || channel->second->value < 1.0) return std::nullopt;
@@ -21,16 +21,16 @@ std::optional<SoundTarget> channel_of(const PlanNode& node) {
 
 }  // namespace
 
-std::optional<SoundTarget> sound_target(const PlanNode& node) {
+std::optional<SoundTarget> sound_target(const ScheduleNode& node) {
     return node.type && node.type->role == NodeRole::sound_sink ? channel_of(node) : std::nullopt;
 }
 
-std::optional<SoundTarget> sound_source(const PlanNode& node) {
+std::optional<SoundTarget> sound_source(const ScheduleNode& node) {
     return node.texts.contains("sensor") ? channel_of(node) : std::nullopt;
 }
 
-void join_heard_cards(Plan& plan) {
-    for (PlanNode& node : plan.nodes) {
+void join_heard_cards(Schedule& plan) {
+    for (ScheduleNode& node : plan.nodes) {
         if (!node.type || node.type->role != NodeRole::sound_sink) continue;
         const auto channel = node.params.find("channel");
         const auto card = node.texts.find("card");
@@ -38,10 +38,10 @@ void join_heard_cards(Plan& plan) {
         const auto on_card = [&](const std::optional<SoundTarget>& other) {
             return other && other->card == card->second->value;
         };
-        const bool is_heard = std::ranges::any_of(plan.nodes, [&](const PlanNode& other) {
+        const bool is_heard = std::ranges::any_of(plan.nodes, [&](const ScheduleNode& other) {
             return on_card(sound_source(other)) && other.group == node.group;
         });
-        const bool is_free = std::ranges::none_of(plan.nodes, [&](const PlanNode& other) {
+        const bool is_free = std::ranges::none_of(plan.nodes, [&](const ScheduleNode& other) {
             const std::optional<SoundTarget> target = sound_target(other);
             return on_card(target) && (target->channel == 1 || other.group != node.group);
         });
@@ -49,10 +49,10 @@ void join_heard_cards(Plan& plan) {
     }
 }
 
-void check_sounds(const Plan& plan, patch::Problems& problems) {
-    std::map<std::string, const PlanNode*> cards;
-    std::map<std::pair<std::string, int>, const PlanNode*> channels;
-    for (const PlanNode& node : plan.nodes) {
+void check_sounds(const Schedule& plan, patch::Problems& problems) {
+    std::map<std::string, const ScheduleNode*> cards;
+    std::map<std::pair<std::string, int>, const ScheduleNode*> channels;
+    for (const ScheduleNode& node : plan.nodes) {
         const std::optional<SoundTarget> target = sound_target(node), source = sound_source(node);
         if (!target && !source) continue;
         const auto& [card, channel] = target ? *target : *source;

@@ -9,16 +9,16 @@ namespace tactus::compile {
 
 namespace {
 
-using expression::Measure;
+using formula::Measure;
 using Sense = WireUnit::Sense;
 
 const Measure& per_second() {
-    static const Measure measure = expression::parse_measured_unit("1/s").measure;
+    static const Measure measure = formula::parse_measured_unit("1/s").measure;
     return measure;
 }
 
 Sense sense_of(const Measure& measure, std::string_view text) {
-    static const Measure work = expression::parse_measured_unit("N m").measure;
+    static const Measure work = formula::parse_measured_unit("N m").measure;
     if (measure == per_second()) return text.find("Hz") != text.npos ? Sense::hertz : Sense::per_second;
     if (measure == work) return text.find('J') != text.npos ? Sense::energy : Sense::torque;
     return Sense::any;
@@ -31,12 +31,12 @@ bool has_one_unit(const ValueType* type) {
 
 class Finder {
 public:
-    explicit Finder(const Plan& plan) : plan_(plan), wires_from_(plan.nodes.size()) {
-        for (const PlanNode& node : plan.nodes) {
+    explicit Finder(const Schedule& plan) : plan_(plan), wires_from_(plan.nodes.size()) {
+        for (const ScheduleNode& node : plan.nodes) {
             units.inputs.emplace_back(node.inputs.size());
             units.outputs.emplace_back(node.outputs.size());
         }
-        for (const PlanWire& wire : plan.wires) {
+        for (const ScheduleWire& wire : plan.wires) {
             if (wire.from_node < 0 || wire.to_input < 0) continue;
             wires_from_[static_cast<std::size_t>(wire.from_node)].push_back(&wire);
         }
@@ -45,7 +45,7 @@ public:
     void find() {
         stops.resize(plan_.nodes.size());
         for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
-            const PlanNode& node = plan_.nodes[n];
+            const ScheduleNode& node = plan_.nodes[n];
             for (std::size_t k = 0; k < node.inputs.size(); ++k)
                 if (has_one_unit(node.inputs[k].port->type))
                     units.inputs[n][k] = stated(node, node.inputs[k].name, node.inputs[k].port->unit);
@@ -57,15 +57,15 @@ public:
         while (!changed_.empty()) {
             const std::size_t n = changed_.back();
             changed_.pop_back();
-            for (const PlanWire* wire : wires_from_[n]) bring(*wire);
+            for (const ScheduleWire* wire : wires_from_[n]) bring(*wire);
         }
     }
 
-    PlanUnits units;
+    ScheduleUnits units;
     std::vector<bool> stops;  ///< nodes whose inputs disagree: nothing follows from them
 
 private:
-    static std::optional<WireUnit> stated(const PlanNode& node, const std::string& port, const char* unit) {
+    static std::optional<WireUnit> stated(const ScheduleNode& node, const std::string& port, const char* unit) {
         if (*unit != '\0') return stated_unit(unit);
         if (!node.type->unit_of) return std::nullopt;
         try {
@@ -75,7 +75,7 @@ private:
         }
     }
 
-    void bring(const PlanWire& wire) {
+    void bring(const ScheduleWire& wire) {
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         const auto& unit = units.outputs[from][static_cast<std::size_t>(wire.from_output)];
         auto& at = units.inputs[to][static_cast<std::size_t>(wire.to_input)];
@@ -87,7 +87,7 @@ private:
 
     /// Units of the outputs of a node, once those of its inputs suffice.
     void pass_on(std::size_t n) {
-        const PlanNode& node = plan_.nodes[n];
+        const ScheduleNode& node = plan_.nodes[n];
         if (node.type->units == UnitRule::none || stops[n]) return;
         const std::optional<WireUnit> unit = result(n);
         if (!unit) return;
@@ -102,7 +102,7 @@ private:
     }
 
     std::optional<WireUnit> result(std::size_t n) const {
-        const PlanNode& node = plan_.nodes[n];
+        const ScheduleNode& node = plan_.nodes[n];
         std::vector<const WireUnit*> known;
         bool all_are_known = true;
         for (std::size_t k = 0; k < node.inputs.size(); ++k) {
@@ -114,20 +114,20 @@ private:
         if (known.empty()) return std::nullopt;
         if (node.type->units == UnitRule::same) return *known.front();
         if (!all_are_known) return std::nullopt;
-        static const Measure second = expression::parse_measured_unit("s").measure;
+        static const Measure second = formula::parse_measured_unit("s").measure;
         Measure measure = known.front()->measure;
         try {
             switch (node.type->units) {
                 case UnitRule::product:
                     for (std::size_t i = 1; i < known.size(); ++i)
-                        measure = expression::combined(measure, known[i]->measure, 1);
+                        measure = formula::combined(measure, known[i]->measure, 1);
                     break;
                 case UnitRule::quotient:
                     for (std::size_t i = 1; i < known.size(); ++i)
-                        measure = expression::combined(measure, known[i]->measure, -1);
+                        measure = formula::combined(measure, known[i]->measure, -1);
                     break;
-                case UnitRule::rate: measure = expression::combined(measure, second, -1); break;
-                case UnitRule::integral: measure = expression::combined(measure, second, 1); break;
+                case UnitRule::rate: measure = formula::combined(measure, second, -1); break;
+                case UnitRule::integral: measure = formula::combined(measure, second, 1); break;
                 default: return std::nullopt;
             }
         } catch (const Error&) {
@@ -143,13 +143,13 @@ public:
     }
 
 private:
-    const Plan& plan_;
-    std::vector<std::vector<const PlanWire*>> wires_from_;
+    const Schedule& plan_;
+    std::vector<std::vector<const ScheduleWire*>> wires_from_;
     std::vector<std::size_t> changed_;  // nodes whose outputs are to be followed
 };
 
 std::string hint(const WireUnit& a, const WireUnit& b) {
-    static const Measure angular = expression::parse_measured_unit("rad/s").measure;
+    static const Measure angular = formula::parse_measured_unit("rad/s").measure;
     const auto is_rate = [](const WireUnit& u) { return u.measure == per_second() || u.measure == angular; };
     if (is_rate(a) && is_rate(b)) return "; 1 Hz is 2 pi rad/s, and 1/s is neither: convert by an expression";
     if (a.measure == b.measure) return "; a torque is no energy: convert by an expression";
@@ -158,7 +158,7 @@ std::string hint(const WireUnit& a, const WireUnit& b) {
 
 class Checker {
 public:
-    Checker(const Plan& plan, patch::Problems& problems)
+    Checker(const Schedule& plan, patch::Problems& problems)
         : plan_(plan), problems_(problems), stops_(plan.nodes.size(), false) {}
 
     void check() {
@@ -168,7 +168,7 @@ public:
             find();
             if (!tell_conflict()) break;
         }
-        for (const PlanWire& wire : plan_.wires)
+        for (const ScheduleWire& wire : plan_.wires)
             if (wire.from_node >= 0) check_wire(wire);
     }
 
@@ -189,9 +189,9 @@ private:
         return false;
     }
 
-    std::string name_of(const PlanWire& wire, bool source) const {
-        const PlanNode& from = plan_.nodes[static_cast<std::size_t>(wire.from_node)];
-        const PlanNode& to = plan_.nodes[static_cast<std::size_t>(wire.to_node)];
+    std::string name_of(const ScheduleWire& wire, bool source) const {
+        const ScheduleNode& from = plan_.nodes[static_cast<std::size_t>(wire.from_node)];
+        const ScheduleNode& to = plan_.nodes[static_cast<std::size_t>(wire.to_node)];
         if (source) return from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
         if (wire.to_input >= 0) return to.name + "." + to.inputs[static_cast<std::size_t>(wire.to_input)].name;
         for (const auto& [name, param] : to.params)
@@ -199,7 +199,7 @@ private:
         return to.name;
     }
 
-    void check_wire(const PlanWire& wire) {
+    void check_wire(const ScheduleWire& wire) {
         const auto& given =
             units_.outputs[static_cast<std::size_t>(wire.from_node)][static_cast<std::size_t>(wire.from_output)];
         const std::optional<WireUnit> taken =
@@ -213,7 +213,7 @@ private:
 
     /// The inputs of a sum, a choice and the like have one unit; otherwise the first that differs is a problem.
     bool agree(std::size_t n) {
-        const PlanNode& node = plan_.nodes[n];
+        const ScheduleNode& node = plan_.nodes[n];
         std::size_t first = node.inputs.size();
         for (std::size_t k = 0; k < node.inputs.size(); ++k) {
             const auto& unit = units_.inputs[n][k];
@@ -233,26 +233,26 @@ private:
         return true;
     }
 
-    const Plan& plan_;
+    const Schedule& plan_;
     patch::Problems& problems_;
     std::vector<bool> stops_;
-    PlanUnits units_;
+    ScheduleUnits units_;
 };
 
 }  // namespace
 
 std::optional<WireUnit> stated_unit(std::string_view text) {
     if (text.empty()) return std::nullopt;
-    const Measure measure = expression::parse_measured_unit(text).measure;
+    const Measure measure = formula::parse_measured_unit(text).measure;
     return WireUnit{measure, sense_of(measure, text), std::string(text)};
 }
 
-PlanUnits find_units(const Plan& plan) {
+ScheduleUnits find_units(const Schedule& plan) {
     Finder finder(plan);
     finder.find();
     return std::move(finder.units);
 }
 
-void check_units(const Plan& plan, patch::Problems& problems) { Checker(plan, problems).check(); }
+void check_units(const Schedule& plan, patch::Problems& problems) { Checker(plan, problems).check(); }
 
 }  // namespace tactus::compile

@@ -2,8 +2,8 @@
 // Units of the values on wires.
 #pragma once
 
-#include "dsp/expression/measure.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/formula/measure.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ struct WireUnit {
     /// Distinguishes quantities of equal dimension: turns and events per second, energy and torque.
     enum class Sense : std::uint8_t { any, hertz, per_second, energy, torque };
 
-    expression::Measure measure;
+    formula::Measure measure;
     Sense sense = Sense::any;  ///< `any` if derived from other ports
     std::string text;  ///< "N/m"
 
@@ -32,16 +32,16 @@ struct WireUnit {
 std::optional<WireUnit> stated_unit(std::string_view text);
 
 /// Units of each node's ports, in their order; empty where unknown. For numbers, signals and vectors only.
-struct PlanUnits {
+struct ScheduleUnits {
     std::vector<std::vector<std::optional<WireUnit>>> inputs;  ///< stated by the port, or that of its wire
     std::vector<std::vector<std::optional<WireUnit>>> outputs;  ///< stated, or derived from the inputs
 };
 
 /// Propagates the units that ports state through the nodes that declare a `UnitRule`. Requires resolved wires.
-PlanUnits find_units(const Plan& plan);
+ScheduleUnits find_units(const Schedule& plan);
 
 /// Reports each wire between ports of different known units, with both units, and each node whose inputs must have one
 /// unit but do not.
-void check_units(const Plan& plan, patch::Problems& problems);
+void check_units(const Schedule& plan, patch::Problems& problems);
 
 }  // namespace tactus::compile

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/cases/case_bones.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
 #include "assets/sound/response_file.hpp"
@@ -20,9 +20,9 @@ struct AssetLoader<bone::Bone> {
 };
 
 template <>
-struct AssetLoader<cases::CaseBones> {
+struct AssetLoader<plan::CaseBones> {
     static constexpr std::string_view name = "plan of a case";
-    static cases::CaseBones load(const std::string& path) { return cases::load_case(path); }
+    static plan::CaseBones load(const std::string& path) { return plan::load_case(path); }
 };
 
 template <>

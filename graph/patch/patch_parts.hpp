@@ -2,7 +2,7 @@
 // Finds signals of a patch by name, and reduces a patch to some of its nodes, for verbs that run only a part.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <string>
 #include <string_view>

@@ -3,7 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 #include "graph/compile/units.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/expression/formula.hpp"
-#include "dsp/expression/single.hpp"
+#include "graph/formula/formula.hpp"
+#include "graph/formula/single.hpp"
 #include "graph/node/node.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ private:
     Quick quick_ = Quick::none;  ///< a formula of signals that names only the first input, or the first two
     std::uint8_t uses_ = 0;      ///< a bit for each input that the formula names
     bool is_signal_ = false, has_ranges_ = false;
-    expression::Single single_;
+    formula::Single single_;
 
 public:
     AnyIn in2{optional, "the second name", types}, in3{optional, "the third name", types};
@@ -57,17 +57,17 @@ public:
     Text unit{"", "unit of the result, as \"N\"; empty for a bare number"};
 
     void prepare(const Setup& setup) {
-        const std::vector<expression::Variable> names = read_text(setup, inputs, expression::parse_variables);
+        const std::vector<formula::Variable> names = read_text(setup, inputs, formula::parse_variables);
         count_ = names.size();
         if (count_ == 0 || count_ > most_inputs) setup.fail("an expression has one to six inputs; 'inputs' names them");
-        const std::vector<expression::Constant> values = read_text(setup, constants, expression::parse_constants);
+        const std::vector<formula::Constant> values = read_text(setup, constants, formula::parse_constants);
         for (const auto& value : values)
-            if (std::ranges::find(names, value.name, &expression::Variable::name) != names.end())
+            if (std::ranges::find(names, value.name, &formula::Variable::name) != names.end())
                 throw Error(constants.where, "'" + value.name + "' is an input already");
-        expression::Formula compiled = read_text(
-            setup, formula, [&](const std::string& text) { return expression::compile_formula(text, names, values); });
-        const expression::Measure wanted = read_text(
-            setup, unit, [](const std::string& text) { return expression::parse_measured_unit(text).measure; });
+        formula::Formula compiled = read_text(
+            setup, formula, [&](const std::string& text) { return formula::compile_formula(text, names, values); });
+        const formula::Measure wanted = read_text(
+            setup, unit, [](const std::string& text) { return formula::parse_measured_unit(text).measure; });
         if (!(compiled.measure == wanted))
             throw Error(unit.value.empty() ? formula.where : unit.where,
                         "the formula gives " + compiled.measure.text() + ", but 'unit' says " + wanted.text());
@@ -79,7 +79,7 @@ public:
             has_ranges_ = has_ranges_ || has_range(i);
         }
         single_.prepare(compiled.program);
-        machine_ = expression::Machine(std::move(compiled.program));
+        machine_ = formula::Machine(std::move(compiled.program));
         is_signal_ = out.type == &value::signal;
         const bool is_quick = is_signal_ && !has_ranges_ && uses_ <= 3 && in1.connected;
         quick_ = !is_quick ? Quick::none : uses_ > 1 ? Quick::two : Quick::one;
@@ -88,25 +88,25 @@ public:
     void process(const Tick& tick) noexcept {
         if (tick.frames != 1 || quick_ == Quick::none) return process_any(tick);
         const double second = quick_ == Quick::two ? static_cast<double>(*in2.as<float>()) : 0.0;
-        *out.as<float>() = expression::sample_of(single_.run(static_cast<double>(*in1.as<float>()), second));
+        *out.as<float>() = formula::sample_of(single_.run(static_cast<double>(*in1.as<float>()), second));
     }
 
     /// The unit that `inputs` or `unit` gives a port; a name without one takes any.
     std::string unit_of(std::string_view port) const {
         if (port == "out") return unit.value;
-        const std::vector<expression::Variable> names = expression::parse_variables(inputs.value);
+        const std::vector<formula::Variable> names = formula::parse_variables(inputs.value);
         const auto at = static_cast<std::size_t>(port.back() - '1');
         return at < names.size() ? names[at].unit : "";
     }
 
     std::vector<PortSlope> slopes() const {
-        const std::vector<expression::Variable> names = expression::parse_variables(inputs.value);
-        const expression::Formula compiled =
-            expression::compile_formula(formula.value, names, expression::parse_constants(constants.value));
-        std::vector<expression::Interval> ranges;
-        for (const expression::Variable& name : names) ranges.push_back(name.range);
+        const std::vector<formula::Variable> names = formula::parse_variables(inputs.value);
+        const formula::Formula compiled =
+            formula::compile_formula(formula.value, names, formula::parse_constants(constants.value));
+        std::vector<formula::Interval> ranges;
+        for (const formula::Variable& name : names) ranges.push_back(name.range);
         std::vector<PortSlope> slopes;
-        for (const double bound : expression::slope_bounds(compiled.program, ranges)) {
+        for (const double bound : formula::slope_bounds(compiled.program, ranges)) {
             const std::string port = "in" + std::to_string(slopes.size() + 1);
             slopes.push_back({port, bound});
         }
@@ -131,7 +131,7 @@ private:
         float low = -std::numeric_limits<float>::infinity(), high = std::numeric_limits<float>::infinity();
     };
     /// The widest range of samples within the stated one.
-    static SampleRange samples_in(const expression::Interval& range) noexcept {
+    static SampleRange samples_in(const formula::Interval& range) noexcept {
         SampleRange out{static_cast<float>(range.low), static_cast<float>(range.high)};
         constexpr float most = std::numeric_limits<float>::infinity();
         if (static_cast<double>(out.low) < range.low) out.low = std::nextafter(out.low, most);
@@ -141,8 +141,8 @@ private:
     }
     static constexpr ValueKinds types = kinds::number | kinds::signal;
 
-    void check_wires(const Setup& setup, const std::vector<expression::Variable>& names,
-                     const expression::Program& program) {
+    void check_wires(const Setup& setup, const std::vector<formula::Variable>& names,
+                     const formula::Program& program) {
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
         uses_ = 0;
         for (std::size_t i = 0; i < std::size(ports); ++i) {
@@ -159,7 +159,7 @@ private:
             const double result = run_one<double>();
             *out.as<double>() = std::abs(result) <= std::numeric_limits<double>::max() ? result : 0.0;
         } else if (tick.frames == 1) {
-            *out.as<float>() = expression::sample_of(run_one<float>());
+            *out.as<float>() = formula::sample_of(run_one<float>());
         } else {
             process_samples(tick);
         }
@@ -186,9 +186,9 @@ private:
     void process_samples(const Tick& tick) noexcept {
         const AnyIn* const ports[] = {&in1, &in2, &in3, &in4, &in5, &in6};
         const float* places[most_inputs];
-        float clamped[most_inputs][expression::Machine::block];
-        for (int from = 0; from < tick.frames; from += expression::Machine::block) {
-            const int frames = std::min(tick.frames - from, expression::Machine::block);
+        float clamped[most_inputs][formula::Machine::block];
+        for (int from = 0; from < tick.frames; from += formula::Machine::block) {
+            const int frames = std::min(tick.frames - from, formula::Machine::block);
             for (std::size_t i = 0; i < count_; ++i) {
                 const bool is_used = (uses_ >> i & 1) != 0;
                 places[i] = is_used ? ports[i]->as<float>() + from : nullptr;
@@ -200,8 +200,8 @@ private:
         }
     }
 
-    expression::Machine machine_;
-    expression::Interval ranges_[most_inputs] = {};
+    formula::Machine machine_;
+    formula::Interval ranges_[most_inputs] = {};
     SampleRange sample_ranges_[most_inputs] = {};
     std::size_t count_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/expression/measure.hpp"
+#include "graph/formula/measure.hpp"
 #include "graph/node/node.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Gain {
 
     void prepare(const Setup& setup) {
         try {
-            static_cast<void>(expression::parse_measured_unit(unit.value));
+            static_cast<void>(formula::parse_measured_unit(unit.value));
         } catch (const Error& error) {
             throw Error(unit.where.line > 0 ? unit.where : setup.where, error.message());
         }

@@ -4,7 +4,7 @@
 // against the exact distance within three voxels of the surface, in voxels.
 #include "dsp/geometry/iso_surface.hpp"
 #include "dsp/volume/iso_distance.hpp"
-#include "tools/study/workers.hpp"
+#include "tools/analysis/workers.hpp"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -16,7 +16,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::study;
+using namespace tactus::analysis;
 
 namespace {
 

@@ -55,10 +55,10 @@ TACTUS_NODE(Echo, in, out)
 
 namespace {
 
-compile::Plan plan_of(const std::string& text, compile::Catalogue catalogue = nodes::catalogue()) {
+compile::Schedule plan_of(const std::string& text, compile::Catalogue catalogue = nodes::catalogue()) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "bench.toml", problems);
-    std::optional<compile::Plan> plan = compile::compile(patch, catalogue, problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, catalogue, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }

@@ -8,7 +8,7 @@
 #include "tests/campaign/limited_run.hpp"
 #include "tests/campaign/mutate.hpp"
 #include "tests/support/places.hpp"
-#include "tests/tools/view/display.hpp"
+#include "tests/tools/window/display.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

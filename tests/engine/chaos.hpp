@@ -38,7 +38,7 @@ struct PatchText {
 };
 
 /// Compiles and loads assets, into `assets` if it is given, with REQUIRE that there are no problems.
-compile::Plan compile_text(const std::string& toml, compile::AssetCache* assets = nullptr);
+compile::Schedule compile_text(const std::string& toml, compile::AssetCache* assets = nullptr);
 
 /// 48 kHz, 1 kHz, 150 Hz and 60 Hz groups, wired in cycles across rates, with every mode of delivery.
 std::string four_rates();

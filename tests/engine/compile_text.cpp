@@ -7,10 +7,10 @@
 
 namespace tactus::test {
 
-compile::Plan compile_text(const std::string& toml, compile::AssetCache* assets) {
+compile::Schedule compile_text(const std::string& toml, compile::AssetCache* assets) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(toml, "test.toml", problems);
-    std::optional<compile::Plan> plan;
+    std::optional<compile::Schedule> plan;
     if (problems.empty()) plan = compile::compile(patch, chaos_catalogue(), problems);
     compile::AssetCache own;
     if (plan) (assets ? *assets : own).load(*plan, problems);

@@ -109,7 +109,7 @@ struct Flight {
 
     /// What `check` finds of the loop.
     analyse::ForceLoop loop() const {
-        const compile::Plan plan = compile_text(toml());
+        const compile::Schedule plan = compile_text(toml());
         const auto loops = analyse::force_loops(plan, [](const std::string&) { return Performance{}.info; });
         REQUIRE(loops.size() == 1);
         return loops.front();

@@ -62,10 +62,10 @@ std::string voices(int nodes) {
     return "wires = [" + wires + "]\n" + text + "[[parts]]\npath = \"voice.toml\"\ntext = '''\n" + voice + "'''\n";
 }
 
-compile::Plan compiled(const std::string& text) {
+compile::Schedule compiled(const std::string& text) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "large.toml", problems);
-    std::optional<compile::Plan> plan =
+    std::optional<compile::Schedule> plan =
         problems.empty() ? compile::compile(patch, nodes::catalogue(), problems) : std::nullopt;
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(plan);
@@ -84,7 +84,7 @@ double time_per_node(std::string (*patch_of)(int), int nodes) {
     };
     const double begin = now();
     {
-        compile::Plan plan = compiled(text);
+        compile::Schedule plan = compiled(text);
         analyse::path_latencies(plan);
         analyse::force_loops(plan, [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; });
         REQUIRE_FALSE(analyse::draw_svg(plan).empty());

@@ -14,7 +14,7 @@ namespace {
 Report rendered(const char* text, double seconds) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "test.toml", problems);
-    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, nodes::catalogue(), problems);
     for (const Error& error : problems.list) FAIL(error.what());
     run::EngineOptions options;
     options.seconds = seconds;
@@ -117,7 +117,7 @@ rate = "4 Hz"
 )";
     const auto hash = [&](int threads, bool random_blocks) {
         patch::Problems problems;
-        std::optional<compile::Plan> plan =
+        std::optional<compile::Schedule> plan =
             compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
         for (const Error& error : problems.list) FAIL(error.what());
         run::EngineOptions options;

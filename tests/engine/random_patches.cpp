@@ -84,11 +84,11 @@ struct Source {
     const ValueType* type;
 };
 
-std::optional<compile::Plan> compiled(const std::string& toml) {
+std::optional<compile::Schedule> compiled(const std::string& toml) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(toml, "random.toml", problems);
     if (!problems.empty()) return std::nullopt;
-    std::optional<compile::Plan> plan = compile::compile(patch, chaos_catalogue(), problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, chaos_catalogue(), problems);
     if (!plan || !problems.empty()) return std::nullopt;
     compile::AssetCache assets;
     assets.load(*plan, problems);
@@ -97,7 +97,7 @@ std::optional<compile::Plan> compiled(const std::string& toml) {
 
 /// It compiles, and all its nodes accept their settings.
 bool can_run(const std::string& toml) {
-    std::optional<compile::Plan> plan = compiled(toml);
+    std::optional<compile::Schedule> plan = compiled(toml);
     if (!plan) return false;
     try {
         const run::Engine engine(std::move(*plan), {});

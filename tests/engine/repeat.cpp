@@ -13,7 +13,7 @@
 
 namespace tactus::test {
 
-void check_replays(const std::function<compile::Plan()>& plan, double seconds, const std::filesystem::path& log,
+void check_replays(const std::function<compile::Schedule()>& plan, double seconds, const std::filesystem::path& log,
                    const run::Engine::PortHashes& live) {
     const take::TimingLog recorded = take::TimingLog::load(log);
     for (const int threads : {1, 3})

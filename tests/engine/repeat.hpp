@@ -21,7 +21,7 @@ struct Repetition {
 Repetition repeat(const std::filesystem::path& take, int threads);
 
 /// Replays a log of a live run of `seconds` with threads and blocks of several numbers; checks every output.
-void check_replays(const std::function<compile::Plan()>& plan, double seconds, const std::filesystem::path& log,
+void check_replays(const std::function<compile::Schedule()>& plan, double seconds, const std::filesystem::path& log,
                    const run::Engine::PortHashes& live);
 
 /// A name in the temporary folder that nobody has used.

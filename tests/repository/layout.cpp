@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 const fs::path root = tactus::test::source_folder();
 constexpr std::array<std::string_view, 7> rooms{"dsp", "assets", "graph", "devices", "nodes", "engine", "tools"};
-constexpr std::array<std::string_view, 6> tool_rooms{"session", "study", "picture", "view", "command", "bench"};
+constexpr std::array<std::string_view, 7> tool_rooms{"run", "analysis", "render", "report", "window", "command", "bench"};
 
 std::string read(const fs::path& file) {
     std::ifstream stream(file);
@@ -269,7 +269,7 @@ TEST_CASE("rooms of tools include only what stands left of them") {
 }
 
 TEST_CASE("only commands read command lines and write JSON") {
-    for (const std::string_view room : {"session", "study", "picture", "view"})
+    for (const std::string_view room : {"run", "analysis", "render", "report", "window"})
         for (const fs::path& file : files_under("tools/" + std::string(room), {".cpp", ".hpp"})) {
             // A run leaves its summary behind as JSON.
             if (file.filename() == "summary.cpp") continue;
@@ -282,7 +282,7 @@ TEST_CASE("only commands read command lines and write JSON") {
 }
 
 TEST_CASE("studies print nothing") {
-    for (const fs::path& file : files_under("tools/study", {".cpp", ".hpp"})) {
+    for (const fs::path& file : files_under("tools/analysis", {".cpp", ".hpp"})) {
         const std::string text = read(file);
         CAPTURE(file.string());
         for (const std::string_view word : {"fmt::print", "stderr", "stdout", "std::cout", "std::cerr", "printf("})

@@ -2,7 +2,7 @@
 // Small node types, and compiling a patch of them.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 #include "tests/graph/patch_reading.hpp"
 
 namespace tactus {
@@ -11,7 +11,7 @@ namespace tactus {
 compile::Catalogue test_catalogue();
 
 struct Compiled {
-    std::optional<compile::Plan> plan;
+    std::optional<compile::Schedule> plan;
     std::string said;
 };
 
@@ -19,7 +19,7 @@ inline Compiled compiled(std::string_view text) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "p.toml", problems);
     if (!problems.empty()) return {std::nullopt, said(problems)};
-    std::optional<compile::Plan> plan = compile::compile(patch, test_catalogue(), problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, test_catalogue(), problems);
     return {std::move(plan), said(problems)};
 }
 
@@ -31,7 +31,7 @@ inline std::string a_node(std::string_view name, std::string_view type, std::str
 }
 
 /// Names of a group's nodes in the order they run, with blanks between.
-inline std::string order_of(const compile::Plan& plan, std::size_t group) {
+inline std::string order_of(const compile::Schedule& plan, std::size_t group) {
     std::string names;
     for (const int node : plan.groups[group].order)
         names += (names.empty() ? "" : " ") + plan.nodes[static_cast<std::size_t>(node)].name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assets for tests, made in memory: a ball of bone, a saw of two recordings and a short equaliser.
-#include "assets/reconstruct/reconstruction.hpp"
+#include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/task_asset.hpp"
@@ -54,24 +54,24 @@ std::shared_ptr<const void> coarse_ball() { return std::make_shared<const bone::
 
 std::shared_ptr<const void> sample_asset(std::string_view type_name) {
     if (type_name == AssetLoader<bone::Bone>::name) return std::make_shared<const bone::Bone>(ball());
-    if (type_name == AssetLoader<cases::CaseBones>::name) {
-        cases::CaseBones made;
+    if (type_name == AssetLoader<plan::CaseBones>::name) {
+        plan::CaseBones made;
         for (const char* name : {"ball", "other"}) {
             made.plan.fragments.push_back({name, name, 0, Vec3(1.0)});
             made.bones.push_back(ball());
             made.bones.back().points = contact::sample_surface(made.bones.back().distance, {.spacing = 1.5e-3});
         }
-        auto all = std::make_shared<reconstruct::Reconstruction>();
+        auto all = std::make_shared<reconstruction::Reconstruction>();
         all->inputs.planes = {{Vec3(-0.04, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}},
                               {Vec3(0.04, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}}};
         all->donor.file = "donor.stl";
-        cases::PlanStep step;
-        step.kind = cases::StepKind::reconstruct;
+        plan::PlanStep step;
+        step.kind = plan::StepKind::reconstruct;
         step.by = "command";
         step.fragments = {0, 1};
         step.reconstruction = std::move(all);
-        cases::add_step(made.plan, step);
-        return std::make_shared<const cases::CaseBones>(std::move(made));
+        plan::add_step(made.plan, step);
+        return std::make_shared<const plan::CaseBones>(std::move(made));
     }
     if (type_name == AssetLoader<sound::RecordingSet>::name) {
         sound::RecordingSet set;

@@ -2,7 +2,7 @@
 // A lane of background work in which nothing goes on.
 #pragma once
 
-#include "tools/study/beside.hpp"
+#include "tools/analysis/beside.hpp"
 
 #include <atomic>
 #include <memory>
@@ -12,7 +12,7 @@ namespace tactus::test {
 /// Keeps a lane busy until its end.
 class HeldLane {
 public:
-    explicit HeldLane(study::Lane lane) {
+    explicit HeldLane(analysis::Lane lane) {
         job_.begin(lane, [begun = begun_, goes_on = goes_on_] {
             *begun = true;
             begun->notify_all();
@@ -30,7 +30,7 @@ public:
 private:
     std::shared_ptr<std::atomic<bool>> begun_ = std::make_shared<std::atomic<bool>>(false),
                                        goes_on_ = std::make_shared<std::atomic<bool>>(false);
-    study::Beside<bool> job_;
+    analysis::Beside<bool> job_;
 };
 
 }  // namespace tactus::test

@@ -9,8 +9,8 @@
 #include "nodes/catalogue.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/engine_peers.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/summary.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/summary.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -53,9 +53,9 @@ patch::Patch read_chain(const std::string& text) {
     return patch;
 }
 
-compile::Plan compile_chain(const patch::Patch& patch) {
+compile::Schedule compile_chain(const patch::Patch& patch) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }
@@ -129,7 +129,7 @@ void bench_compile(int rounds, Json& rows) {
     double read = 1.0, compiled = 1.0, prepared = 1.0;
     for (int i = 0; i < 3 * rounds; ++i) {
         read = std::min(read, seconds_of([&] { read_chain(text); }));
-        std::optional<compile::Plan> plan;
+        std::optional<compile::Schedule> plan;
         compiled = std::min(compiled, seconds_of([&] { plan = compile_chain(patch); }));
         std::optional<run::Engine> engine;
         prepared = std::min(prepared, seconds_of([&] { engine.emplace(std::move(*plan), run::EngineOptions{}); }));
@@ -158,7 +158,7 @@ void bench_scaling(int rounds, Json& rows) {
                                        run::Engine engine(compile_chain(read_chain(text)), options);
                                        engine.render(1);
                                        engine.finish();
-                                       session::summary_json(engine, engine.report(), brief, false, {}, {});
+                                       run::summary_json(engine, engine.report(), brief, false, {}, {});
                                    }));
         }
     const auto add = [&](const char* name, const std::array<double, 2>& seconds) {
@@ -184,13 +184,13 @@ void bench_edit(int rounds, const std::filesystem::path& folder, Json& rows) {
     double read = 1e9, compiled = 1e9, built = 1e9;
     for (int i = 0; i < 2 * rounds; ++i) {
         file::write_whole_file(file, patch_of(nodes));
-        run::Engine engine(*session::plan_of(patch::load_patch(file, problems), {}, {}, nullptr, problems), {});
+        run::Engine engine(*run::plan_of(patch::load_patch(file, problems), {}, {}, nullptr, problems), {});
         file::write_whole_file(file, text);
         patch::Patch patch;
         read = std::min(read, seconds_of([&] { patch = patch::load_patch(file, problems); }));
-        std::optional<compile::Plan> plan;
+        std::optional<compile::Schedule> plan;
         compiled = std::min(compiled,
-                            seconds_of([&] { plan = session::plan_of(std::move(patch), {}, {}, nullptr, problems); }));
+                            seconds_of([&] { plan = run::plan_of(std::move(patch), {}, {}, nullptr, problems); }));
         built = std::min(built, seconds_of([&] { engine.schedule(std::move(*plan), flicks_per_second); }));
     }
     rows.push_back(row("edit: read", nodes, 0, read * 1e9 / nodes, nullptr));

@@ -49,7 +49,7 @@ double seconds_of(const std::string& text, int block, double length) {
     std::vector<const NodeType*> types(known.begin(), known.end());
     types.insert(types.end(), law_nodes().begin(), law_nodes().end());
     std::ranges::sort(types, {}, &NodeType::name);
-    std::optional<compile::Plan> plan = problems.empty() ? compile::compile(patch, types, problems) : std::nullopt;
+    std::optional<compile::Schedule> plan = problems.empty() ? compile::compile(patch, types, problems) : std::nullopt;
     if (!problems.empty()) throw problems.list.front();
     run::EngineOptions options;
     options.seconds = length;

@@ -79,7 +79,7 @@ Measured measure(const Opponent& opponent, Attack attack, const PeersChoice& cho
     const HostilePeer peer(opponent.line, attack);
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(patch_for(opponent, peer, choice), "peers.toml", problems);
-    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (!plan || !problems.empty()) throw Error(problems.empty() ? "no plan" : problems.list.front().what());
     run::EngineOptions options;
     options.seconds = choice.seconds;

@@ -9,14 +9,14 @@
 #include "dsp/saw/kerf_heat.hpp"
 #include "dsp/saw/published.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/saw_figure.hpp"
-#include "tools/study/saw/bone_trial.hpp"
-#include "tools/study/saw/burr_trial.hpp"
-#include "tools/study/saw/device_trial.hpp"
-#include "tools/study/saw/grid_study.hpp"
-#include "tools/study/saw/saw_trial.hpp"
-#include "tools/study/saw/solid_sweep.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/saw_figure.hpp"
+#include "tools/analysis/saw/bone_trial.hpp"
+#include "tools/analysis/saw/burr_trial.hpp"
+#include "tools/analysis/saw/device_trial.hpp"
+#include "tools/analysis/saw/grid_study.hpp"
+#include "tools/analysis/saw/saw_trial.hpp"
+#include "tools/analysis/saw/solid_sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ struct Row {
 
 struct Comparison {
     std::vector<Row> rows;
-    picture::SawFigure figure;
+    report::SawFigure figure;
 };
 
 /// Highest temperature rise of bone, K, at that distance from the middle of a cut at constant feed (mm/min), 6 mm below
@@ -93,7 +93,7 @@ Comparison compare() {
         for (const double rate : rates)
             removal.push_back(
                 width * 1e-3 *
-                study::run_saw_trial({.thrust = saw::lannin_2011::thrust, .blade_rate = rate, .width = width}).feed);
+                analysis::run_saw_trial({.thrust = saw::lannin_2011::thrust, .blade_rate = rate, .width = width}).feed);
         const double exponent = std::log(removal.back() / removal.front()) / std::log(rates.back() / rates.front());
         made.rows.push_back(
             {fmt::format("predicted: cutting rate ∝ speed^n, bone {:.0f} mm (Lannin 2011)", width * 1e3),
@@ -104,7 +104,7 @@ Comparison compare() {
     double least = HUGE_VAL, least_at = 0.0, at_yu = 0.0;
     for (const double rate : {120.0, 150.0, 180.0, 205.0, 228.0, 250.0, 285.0}) {
         const double thrust =
-            study::run_saw_trial({.feed = saw::yu_2023::feed, .blade_rate = rate, .settle = 3.0}).thrust;
+            analysis::run_saw_trial({.feed = saw::yu_2023::feed, .blade_rate = rate, .settle = 3.0}).thrust;
         made.figure.thrust.push_back({rate, thrust});
         if (thrust < least) {
             least = thrust;
@@ -126,7 +126,7 @@ Comparison compare() {
                                          warming(cycles, feed, wet, 1e-3)),
                              "distance not known"});
     for (const double thrust : {3.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0})
-        made.figure.feed.push_back({thrust, study::run_saw_trial({.thrust = thrust}).feed * 1e3});
+        made.figure.feed.push_back({thrust, analysis::run_saw_trial({.thrust = thrust}).feed * 1e3});
     return made;
 }
 
@@ -161,11 +161,11 @@ double carve_cost(bool fronts, int rounds) {
     const saw::CuttingLaw easy{
         .cutting = 0.0, .thrust_shallow = 1e-4, .thrust_deep = 2e-4, .rub = 0.0, .deepest = 1e-3};
     for (int round = 0; round < rounds; ++round) {
-        const study::SawTrial trial{.width = 0.046};
-        const auto bone = study::saw_block(trial);
+        const analysis::SawTrial trial{.width = 0.046};
+        const auto bone = analysis::saw_block(trial);
         carve::Carver carver;
         carve::CarveSettings settings;
-        if (fronts) settings = study::carve_settings_for(trial.shape);
+        if (fronts) settings = analysis::carve_settings_for(trial.shape);
         settings.tooth_pitch = trial.shape.pitch;
         carver.prepare(*bone, settings);
         saw::SawBlade blade(trial.shape, trial.stiffness);
@@ -196,8 +196,8 @@ double carve_cost(bool fronts, int rounds) {
 }
 
 Json costs(int rounds) {
-    const study::SawTrial trial{.width = 0.046};
-    const auto bone = study::saw_block(trial);
+    const analysis::SawTrial trial{.width = 0.046};
+    const auto bone = analysis::saw_block(trial);
     const contact::BladePoints points({trial.shape.length, trial.shape.height, trial.shape.thickness});
     const Quat down = glm::angleAxis(-0.5 * std::numbers::pi, Vec3(1.0, 0.0, 0.0));
     // Teeth 0.5 mm deep, a hand that moves 4 mm along the blade.
@@ -236,12 +236,12 @@ int bench_bones(const SawBenchChoice& choice) {
     constexpr double thrusts[] = {2.0, 4.0, 7.5, 12.0, 20.0};  // N
     Json all = Json::array();
     for (const std::string& file : choice.bones) {
-        const study::BoneTrial trial = study::run_bone_trial(bone::load_bone(file), thrusts);
+        const analysis::BoneTrial trial = analysis::run_bone_trial(bone::load_bone(file), thrusts);
         Json rows = Json::array();
         if (!choice.json)
             fmt::print("{}: {:.1f} mm thick, {:.1f} mm wide, voxels of {:.2f} mm\n", file, trial.site.thickness * 1e3,
                        trial.site.width * 1e3, trial.voxel * 1e3);
-        for (const study::BoneTrialRow& row : trial.rows) {
+        for (const analysis::BoneTrialRow& row : trial.rows) {
             rows.push_back({{"thrust_N", row.thrust},
                             {"feed_mm_per_s", row.feed * 1e3},
                             {"removed_mm3_per_s", row.removal * 1e9},
@@ -263,8 +263,8 @@ int bench_devices(const SawBenchChoice& choice) {
     if (!choice.json)
         fmt::print("{:<8} {:>6} {:>18} {:>16} {:>8} {:>10} {:>16} {:>9}\n", "device", "scale", "stiffness, tool",
                    "thrust of tool", "rubbing", "removed", "per N s above", "to ideal");
-    for (const study::DeviceTrial& trial : study::device_trials()) {
-        const study::DeviceTrialResult r = study::run_device_trial(trial);
+    for (const analysis::DeviceTrial& trial : analysis::device_trials()) {
+        const analysis::DeviceTrialResult r = analysis::run_device_trial(trial);
         if (ideal == 0.0) ideal = r.per_thrust;
         const double off = r.per_thrust / ideal - 1.0;
         rows.push_back({{"device", std::string(trial.model)},
@@ -305,12 +305,12 @@ int bench_rates(const SawBenchChoice& choice) {
                 tool, thrust, width * 1e3, thrust / width * 1e-3, depth * 1e6, energy * 1e-9, removal * 1e9);
     };
     for (const double thrust : {4.0, 5.0, 7.5, 10.0, 15.0}) {
-        const study::SawTrial saw{.thrust = thrust};
-        const study::SawTrialResult sawn = study::run_saw_trial(saw);
+        const analysis::SawTrial saw{.thrust = thrust};
+        const analysis::SawTrialResult sawn = analysis::run_saw_trial(saw);
         row("saw", sawn.thrust, sawn.teeth * saw.shape.kerf, sawn.feed / (2.0 * saw.blade_rate), sawn.along,
             sawn.removal);
-        const study::BurrTrial burr{.thrust = thrust, .settle = 0.5, .seconds = 0.5};
-        const study::BurrTrialResult milled = study::run_burr_trial(burr);
+        const analysis::BurrTrial burr{.thrust = thrust, .settle = 0.5, .seconds = 0.5};
+        const analysis::BurrTrialResult milled = analysis::run_burr_trial(burr);
         row("burr", milled.thrust, milled.width, milled.feed / (burr.shape.flutes * burr.turn_rate), milled.along,
             milled.removal);
     }
@@ -322,10 +322,10 @@ int bench_rates(const SawBenchChoice& choice) {
 int bench_grid(const SawBenchChoice& choice) {
     constexpr double voxels[] = {0.2e-3, 0.3e-3, 0.5e-3, 1e-3};
     Json rows = Json::array();
-    const std::vector<study::GridStudyRow> study = study::run_grid_study(voxels);
+    const std::vector<analysis::GridStudyRow> study = analysis::run_grid_study(voxels);
     double mean = 0.0;
-    for (const study::GridStudyRow& row : study) mean += row.removed / static_cast<double>(study.size());
-    for (const study::GridStudyRow& row : study) {
+    for (const analysis::GridStudyRow& row : study) mean += row.removed / static_cast<double>(study.size());
+    for (const analysis::GridStudyRow& row : study) {
         rows.push_back({{"voxel_mm", row.voxel * 1e3},
                         {"cut_in_mm", row.cut_in * 1e3},
                         {"removed_mm3", row.removed * 1e9},
@@ -347,14 +347,14 @@ int bench_grid(const SawBenchChoice& choice) {
 int bench_poses(const SawBenchChoice& choice) {
     Json rows = Json::array();
     bool is_solid = true;
-    const std::pair<const char*, bone::Bone> bones[] = {{"box", study::box_of_voxels(0.4e-3)},
+    const std::pair<const char*, bone::Bone> bones[] = {{"box", analysis::box_of_voxels(0.4e-3)},
                                                         {"jaw", library::make_mandible()}};
-    constexpr std::pair<const char*, study::SolidTool> tools[] = {{"blade", study::SolidTool::blade},
-                                                                  {"sagittal blade", study::SolidTool::sagittal},
-                                                                  {"burr", study::SolidTool::burr}};
+    constexpr std::pair<const char*, analysis::SolidTool> tools[] = {{"blade", analysis::SolidTool::blade},
+                                                                  {"sagittal blade", analysis::SolidTool::sagittal},
+                                                                  {"burr", analysis::SolidTool::burr}};
     for (const auto& [bone_name, bone] : bones)
         for (const auto& [name, tool] : tools) {
-            const study::SolidSweepResult r = study::run_solid_sweep(tool, bone, (choice.poses + 5) / 6);
+            const analysis::SolidSweepResult r = analysis::run_solid_sweep(tool, bone, (choice.poses + 5) / 6);
             is_solid = is_solid && r.silent == 0;
             rows.push_back({{"bone", bone_name},
                             {"tool", name},
@@ -387,7 +387,7 @@ int bench_saw(const SawBenchChoice& choice) {
     if (choice.poses > 0) return bench_poses(choice);
     const Comparison made = compare();
     const Json cost = costs(choice.rounds);
-    if (!choice.figure.empty()) picture::write_figure(picture::draw_saw_law(made.figure), choice.figure);
+    if (!choice.figure.empty()) report::write_figure(report::draw_saw_law(made.figure), choice.figure);
     if (choice.json) {
         Json rows = Json::array();
         for (const Row& r : made.rows)

@@ -2,7 +2,7 @@
 // Cost of random access to a take: repeating the run once, and then each jump.
 #include "assets/file/json.hpp"
 #include "tools/bench/bench.hpp"
-#include "tools/view/take_bench.hpp"
+#include "tools/window/desk/take_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ int bench_scrub(const ScrubBenchChoice& choice) {
         return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     };
     const auto begin = Clock::now();
-    view::TakeBench bench(choice.take);
+    window::TakeBench bench(choice.take);
     bench.go_to(bench.length());
     while (!bench.scene_is_there()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     const double repeated_ms = ms_since(begin);

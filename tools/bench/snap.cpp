@@ -12,7 +12,7 @@
 #include "tools/bench/snap_tally.hpp"
 #include "tools/bench/snap_whole_case.hpp"
 #include "tools/command/old_words.hpp"
-#include "tools/study/bones/fragment_file.hpp"
+#include "tools/analysis/bone/fragment_file.hpp"
 
 #include <fmt/format.h>
 
@@ -207,7 +207,7 @@ std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
 int bench_snap(const SnapBenchChoice& choice) {
     const std::vector<FractureCase> cases = chosen_cases(choice.cases);
     const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
-    const bone::Bone bone = choice.bone.empty() ? library::make_mandible() : study::bone_of_file(choice.bone);
+    const bone::Bone bone = choice.bone.empty() ? library::make_mandible() : analysis::bone_of_file(choice.bone);
     Json rows = whole_case_rows(choice, bone);
     if (!choice.json && !cases.empty())
         fmt::print(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/snap_cases.hpp"
 
-#include "assets/cases/break_bone.hpp"
-#include "assets/cases/paint.hpp"
+#include "assets/plan/break_bone.hpp"
+#include "assets/plan/paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
@@ -35,9 +35,9 @@ Piece scan_piece(const volume::Grid& solid, const contact::Voxmap& bone, const F
     const Random random{seed};
     Piece piece;
     piece.placement.orientation = any_turn(random, 0);
-    const volume::Grid distance = cases::scan_solid(solid, piece.placement, {.noise = kind.noise, .seed = seed});
+    const volume::Grid distance = plan::scan_solid(solid, piece.placement, {.noise = kind.noise, .seed = seed});
     piece.points = contact::sample_surface(distance, {.spacing = 0.42e-3});
-    cases::paint_fracture(piece.points, bone, piece.placement.inverse(), kind.spill);
+    plan::paint_fracture(piece.points, bone, piece.placement.inverse(), kind.spill);
     piece.surface = fit::make_fit_surface(piece.points, distance);
     return piece;
 }
@@ -58,7 +58,7 @@ const std::vector<FractureCase>& fracture_cases() {
 
 FracturePair make_fracture_pair(const volume::Grid& bone, const FractureKind& kind, std::uint64_t seed) {
     const std::vector<volume::Grid> solids =
-        cases::break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
+        plan::break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
     const contact::Voxmap map = contact::make_voxmap(bone);
     Piece moving = scan_piece(solids[0], map, kind, 2 * seed), fixed = scan_piece(solids[1], map, kind, 2 * seed + 1);
     return {std::move(moving.points), std::move(moving.surface), std::move(fixed.surface),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/batch.hpp"
 
-#include "tools/study/workers.hpp"
+#include "tools/analysis/workers.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
         const std::lock_guard lock(telling);
         line.show(count == 1 ? fmt::format("{:3.0f} %", 100.0 * share) : progress_bar(finished, count, what));
     };
-    study::on_threads(jobs)(static_cast<int>(count), [&](int n) {
+    analysis::on_threads(jobs)(static_cast<int>(count), [&](int n) {
         const auto index = static_cast<std::size_t>(n);
         try {
             job(index, tell);

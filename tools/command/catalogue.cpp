@@ -23,63 +23,63 @@
     X(equalise, vibration, vibrations)    \
     X(model, vibration, vibrations)       \
     X(exposure, vibration, vibrations)    \
-    X(import, bones, bones)               \
-    X(info, bones, bones)                 \
-    X(segment, bones, bones)              \
-    X(export, bones, bones)               \
-    X(register, bones, bones)             \
-    X(vessel, bones, bones)               \
-    X(fracture, bones, fractures)         \
-    X(fracture_surface, bones, fractures) \
-    X(snap, bones, fractures)             \
-    X(flap, bones, fractures)             \
-    X(plan, planning, fractures)          \
+    X(import, bone, bones)               \
+    X(info, bone, bones)                 \
+    X(segment, bone, bones)              \
+    X(export, bone, bones)               \
+    X(register, bone, bones)             \
+    X(vessel, bone, bones)               \
+    X(fracture, bone, fractures)         \
+    X(fracture_surface, bone, fractures) \
+    X(snap, bone, fractures)             \
+    X(flap, bone, fractures)             \
+    X(plan, plan, fractures)          \
     X(session, training, training)        \
     X(score, training, training)          \
     X(experiment, experiment, research)   \
-    X(gripper, grippers, grippers)        \
-    X(calibrate, displays, displays)      \
+    X(gripper, gripper, grippers)        \
+    X(calibrate, display, displays)      \
     X(devices, machine, machine)          \
     X(cache, machine, machine)            \
     X(bench, machine, machine)            \
     X(generate, machine, machine)
 
 #define TACTUS_PLAN_VERBS(X)         \
-    X(plan_new, planning)            \
-    X(plan_show, planning)           \
-    X(plan_check, planning)          \
-    X(plan_move, planning)           \
-    X(plan_group, planning)          \
-    X(plan_add, planning)            \
-    X(plan_remove, planning)         \
-    X(plan_ungroup, planning)        \
-    X(plan_lock, planning)           \
-    X(plan_unlock, planning)         \
-    X(plan_hide, planning)           \
-    X(plan_unhide, planning)         \
-    X(plan_repaint, planning)        \
-    X(plan_undo, planning)           \
-    X(plan_redo, planning)           \
-    X(plan_alternative, planning)    \
-    X(plan_snap, planning)           \
-    X(plan_settle, planning)         \
-    X(plan_accept, planning)         \
-    X(plan_assemble, planning)       \
-    X(plan_mirror, planning)         \
-    X(plan_gap, planning)            \
-    X(plan_export, planning)         \
-    X(plan_report, planning)         \
-    X(plan_fibula, reconstruct)      \
-    X(plan_reconstruct, reconstruct) \
-    X(plan_plate, reconstruct)       \
-    X(plan_implant, reconstruct)     \
-    X(plan_vessel, reconstruct)      \
-    X(plan_site, reconstruct)        \
-    X(plan_margin, reconstruct)      \
-    X(plan_limits, reconstruct)      \
-    X(plan_paddle, reconstruct)      \
-    X(plan_reach, reconstruct)       \
-    X(plan_guide, reconstruct)
+    X(plan_new, plan)            \
+    X(plan_show, plan)           \
+    X(plan_check, plan)          \
+    X(plan_move, plan)           \
+    X(plan_group, plan)          \
+    X(plan_add, plan)            \
+    X(plan_remove, plan)         \
+    X(plan_ungroup, plan)        \
+    X(plan_lock, plan)           \
+    X(plan_unlock, plan)         \
+    X(plan_hide, plan)           \
+    X(plan_unhide, plan)         \
+    X(plan_repaint, plan)        \
+    X(plan_undo, plan)           \
+    X(plan_redo, plan)           \
+    X(plan_alternative, plan)    \
+    X(plan_snap, plan)           \
+    X(plan_settle, plan)         \
+    X(plan_accept, plan)         \
+    X(plan_assemble, plan)       \
+    X(plan_mirror, plan)         \
+    X(plan_gap, plan)            \
+    X(plan_export, plan)         \
+    X(plan_report, plan)         \
+    X(plan_fibula, reconstruction)      \
+    X(plan_reconstruct, reconstruction) \
+    X(plan_plate, reconstruction)       \
+    X(plan_implant, reconstruction)     \
+    X(plan_vessel, reconstruction)      \
+    X(plan_site, reconstruction)        \
+    X(plan_margin, reconstruction)      \
+    X(plan_limits, reconstruction)      \
+    X(plan_paddle, reconstruction)      \
+    X(plan_reach, reconstruction)       \
+    X(plan_guide, reconstruction)
 
 #define TACTUS_EXPERIMENT_VERBS(X)    \
     X(experiment_run, experiment)     \

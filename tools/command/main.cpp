@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/catalogue.hpp"
-#include "tools/study/beside.hpp"
+#include "tools/analysis/beside.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,6 +14,6 @@ int main(int argc, char** argv) {
             break;
         }
     const int code = tactus::command::command_line(tactus::command::tactus_program(), argc, argv);
-    tactus::study::end_beside();
+    tactus::analysis::end_beside();
     return code;
 }

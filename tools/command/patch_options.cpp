@@ -7,12 +7,12 @@
 
 namespace tactus::command {
 
-void add_patch_options(VerbOptions& verb, session::PatchChoice& choice) {
+void add_patch_options(VerbOptions& verb, run::PatchChoice& choice) {
     verb.add("patch", choice.patch, "patch file, or a name in the library such as saw-training").required();
     add_override_options(verb, choice);
 }
 
-void add_override_options(VerbOptions& verb, session::PatchChoice& choice) {
+void add_override_options(VerbOptions& verb, run::PatchChoice& choice) {
     verb.add("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE").one_each();
     verb.add("--asset", choice.overrides.assets, "use another file for an asset: NAME=PATH").one_each();
     verb.add("--seed", choice.seed, "seed of the random numbers");
@@ -26,7 +26,7 @@ void add_device_scale(VerbOptions& verb, std::optional<double>& scale) {
         .range(0.01, 10.0);
 }
 
-void add_saw_options(VerbOptions& verb, session::SawChoice& saw) {
+void add_saw_options(VerbOptions& verb, run::SawChoice& saw) {
     const Option file =
         verb.add("--saw", saw.file, "sound of a saw, recording set or model: what the saw of the patch plays");
     verb.add(
@@ -38,12 +38,12 @@ void add_saw_options(VerbOptions& verb, session::SawChoice& saw) {
         .needs(file);
 }
 
-void use_saw(session::PatchChoice& choice, const session::SawChoice& saw) {
-    if (const std::string question = session::choose_saw(choice, saw); !question.empty())
+void use_saw(run::PatchChoice& choice, const run::SawChoice& saw) {
+    if (const std::string question = run::choose_saw(choice, saw); !question.empty())
         say(stderr, fmt::format("tactus: {}\n", question));
 }
 
-void add_site_options(VerbOptions& verb, session::SiteText& text) {
+void add_site_options(VerbOptions& verb, run::SiteText& text) {
     const Option site =
         verb.add("--site", text.site,
                  "X,Y,Z in mm, or with units as in \"12 mm, 3 mm, 4 mm\", in the bone's frame: where the saw "

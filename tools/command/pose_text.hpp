@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/fit/fit.hpp"
-#include "tools/study/bones/fragment_file.hpp"
-#include "tools/study/bones/surface_file.hpp"
+#include "tools/analysis/bone/fragment_file.hpp"
+#include "tools/analysis/bone/surface_file.hpp"
 
 #include <numbers>
 #include <string>
@@ -15,13 +15,13 @@ namespace tactus::command {
 /// {position_mm, quaternion_wxyz}, in a JSON type.
 template <class Json>
 Json pose_json(const Pose& pose) {
-    const study::PoseNumbers numbers = study::numbers_of(pose);
+    const analysis::PoseNumbers numbers = analysis::numbers_of(pose);
     return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
 }
 
 /// In a JSON type.
 template <class Json>
-Json motion_json(const study::Motion& motion) {
+Json motion_json(const analysis::Motion& motion) {
     return {{"distance_mm", 1e3 * motion.distance}, {"angle_deg", motion.angle_deg}};
 }
 

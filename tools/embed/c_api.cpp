@@ -60,7 +60,7 @@ std::string text_of(const char* given, const char* what) {
     return given;
 }
 
-tactus_patch* make_patch(session::PatchChoice choice) { return new tactus_patch{embed::Patch(std::move(choice))}; }
+tactus_patch* make_patch(run::PatchChoice choice) { return new tactus_patch{embed::Patch(std::move(choice))}; }
 
 embed::RunOptions options_of(const tactus_options* given) {
     embed::RunOptions options;
@@ -89,7 +89,7 @@ const char* tactus_version(void) { return TACTUS_VERSION; }
 
 tactus_patch* tactus_load(const char* name_or_path, tactus_error* error) {
     return guarded<tactus_patch*>(error, nullptr, [&] {
-        session::PatchChoice choice;
+        run::PatchChoice choice;
         choice.patch = text_of(name_or_path, "name of a patch");
         return make_patch(std::move(choice));
     });
@@ -97,7 +97,7 @@ tactus_patch* tactus_load(const char* name_or_path, tactus_error* error) {
 
 tactus_patch* tactus_parse(const char* toml, const char* folder, tactus_error* error) {
     return guarded<tactus_patch*>(error, nullptr, [&] {
-        session::PatchChoice choice;
+        run::PatchChoice choice;
         choice.text = text_of(toml, "text of a patch");
         choice.patch = (std::filesystem::path(folder ? folder : ".") / "patch").string();
         return make_patch(std::move(choice));

@@ -2,9 +2,9 @@
 #include "tools/embed/embedded.hpp"
 
 #include "dsp/core/error.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/results.hpp"
-#include "tools/session/summary.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/results.hpp"
+#include "tools/run/summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr double unlimited_s = 1e9;  // 30 years
 
 std::string one_per_line(const patch::Problems& problems) {
-    return fmt::format("{}", fmt::join(session::problem_lines(problems), "\n"));
+    return fmt::format("{}", fmt::join(run::problem_lines(problems), "\n"));
 }
 
 double rate_of(Flicks period) { return static_cast<double>(flicks_per_second) / static_cast<double>(period); }
@@ -31,33 +31,33 @@ double rate_of(Flicks period) { return static_cast<double>(flicks_per_second) / 
 PatchErrors::PatchErrors(const patch::Problems& problems)
     : Error(problems.list.front()), all_(one_per_line(problems)) {}
 
-Patch::Patch(session::PatchChoice choice) {
+Patch::Patch(run::PatchChoice choice) {
     add_host_driver();
     change(std::move(choice));
 }
 
-void Patch::change(session::PatchChoice changed) {
+void Patch::change(run::PatchChoice changed) {
     patch::Problems problems;
-    session::read_plan(changed, problems);
+    run::read_plan(changed, problems);
     if (!problems.empty()) throw PatchErrors(problems);
     choice_ = std::move(changed);
 }
 
 void Patch::configure(const std::string& setting) {
-    session::PatchChoice changed = choice_;
+    run::PatchChoice changed = choice_;
     changed.overrides.settings.push_back(setting);
     change(std::move(changed));
 }
 
 void Patch::use_asset(const std::string& asset) {
-    session::PatchChoice changed = choice_;
+    run::PatchChoice changed = choice_;
     changed.overrides.assets.push_back(asset);
     change(std::move(changed));
 }
 
 void Patch::attach_hand(const std::string& name, const DeviceInfo& info) {
     patch::Problems problems;
-    const patch::Patch read = session::read_choice(choice_, problems);
+    const patch::Patch read = run::read_choice(choice_, problems);
     std::vector<std::string> names;
     for (const patch::PatchDevice& device : read.devices) names.push_back(device.name);
     if (std::ranges::find(names, name) == names.end())
@@ -67,9 +67,9 @@ void Patch::attach_hand(const std::string& name, const DeviceInfo& info) {
     hands_.push_back({name, info});
 }
 
-compile::Plan Patch::plan(const std::vector<std::unique_ptr<HostHand>>& links, std::uint64_t seed) {
+compile::Schedule Patch::plan(const std::vector<std::unique_ptr<HostHand>>& links, std::uint64_t seed) {
     patch::Problems problems;
-    patch::Patch read = session::read_choice(choice_, problems);
+    patch::Patch read = run::read_choice(choice_, problems);
     for (std::size_t i = 0; i < hands_.size(); ++i)
         for (patch::PatchDevice& device : read.devices)
             if (device.name == hands_[i].name) {
@@ -78,7 +78,7 @@ compile::Plan Patch::plan(const std::vector<std::unique_ptr<HostHand>>& links, s
             }
     const std::optional<std::uint64_t> given = seed == 0 ? choice_.seed : seed;
     assets_.forget_changed();
-    std::optional<compile::Plan> plan = session::plan_of(std::move(read), choice_.overrides, given, &assets_, problems);
+    std::optional<compile::Schedule> plan = run::plan_of(std::move(read), choice_.overrides, given, &assets_, problems);
     if (!problems.empty()) throw PatchErrors(problems);
     return std::move(*plan);
 }
@@ -92,8 +92,8 @@ Run::Run(Patch& patch, RunOptions options)
         hand_names_.push_back(hand.name);
         hands_.push_back(std::make_unique<HostHand>(hand.info, options_.live));
     }
-    compile::Plan plan = patch.plan(hands_, options_.seed);
-    if (options_.folder) folder_.emplace(session::OutputChoice{*options_.folder});
+    compile::Schedule plan = patch.plan(hands_, options_.seed);
+    if (options_.folder) folder_.emplace(run::OutputChoice{*options_.folder});
     run::EngineOptions engine;
     engine.seconds = options_.seconds > 0.0 ? options_.seconds : unlimited_s;
     if (folder_) engine.folder = folder_->path();
@@ -299,14 +299,14 @@ void Run::finish() {
                                     options_.seconds > 0.0 ? options_.seconds : unlimited_s);
     engine_->complete();
     const Report report = engine_->report();
-    session::WrittenFiles written;
+    run::WrittenFiles written;
     if (folder_) {
-        written = session::write_results(report, folder_->path(), false);
+        written = run::write_results(report, folder_->path(), false);
         written.names.emplace_back("summary.json");
     }
     std::vector<std::string> losses = engine_->losses();
     losses.insert(losses.end(), written.losses.begin(), written.losses.end());
-    summary_ = session::summary_json(*engine_, report, seconds, options_.live, written.names, losses);
+    summary_ = run::summary_json(*engine_, report, seconds, options_.live, written.names, losses);
     if (folder_) folder_->write_summary(summary_);
     if (!losses.empty()) throw Error(fmt::format("{}", fmt::join(losses, "\n")));
 }

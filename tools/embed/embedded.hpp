@@ -6,8 +6,8 @@
 #include "engine/run/engine.hpp"
 #include "graph/compile/load_assets.hpp"
 #include "tools/embed/host_hand.hpp"
-#include "tools/session/output_folder.hpp"
-#include "tools/session/patch_choice.hpp"
+#include "tools/run/output_folder.hpp"
+#include "tools/run/patch_choice.hpp"
 
 #include <atomic>
 #include <condition_variable>
@@ -39,7 +39,7 @@ private:
 class Patch {
 public:
     /// Reads and compiles it. Throws PatchErrors.
-    explicit Patch(session::PatchChoice choice);
+    explicit Patch(run::PatchChoice choice);
 
     /// "blade.stiffness=0.5 N/mm". Throws PatchErrors; then nothing has changed.
     void configure(const std::string& setting);
@@ -56,12 +56,12 @@ public:
 
     /// For one run: the hands' devices are those of `links`, in the order of `hands`. Assets are loaded once and kept.
     /// Throws PatchErrors.
-    compile::Plan plan(const std::vector<std::unique_ptr<HostHand>>& links, std::uint64_t seed);
+    compile::Schedule plan(const std::vector<std::unique_ptr<HostHand>>& links, std::uint64_t seed);
 
 private:
-    void change(session::PatchChoice changed);
+    void change(run::PatchChoice changed);
 
-    session::PatchChoice choice_;
+    run::PatchChoice choice_;
     std::vector<Hand> hands_;
     compile::AssetCache assets_;
 };
@@ -135,7 +135,7 @@ private:
     RunOptions options_;
     std::vector<std::string> hand_names_;
     std::vector<std::unique_ptr<HostHand>> hands_;
-    std::optional<session::OutputFolder> folder_;
+    std::optional<run::OutputFolder> folder_;
     observe::Observer observer_;
     std::unique_ptr<run::Engine> engine_;
     std::deque<Output> outputs_;

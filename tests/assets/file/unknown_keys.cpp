@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A misspelt name in a file that a person writes would be a default that nobody asked for: every reader refuses it.
-#include "assets/cases/paint_file.hpp"
+#include "assets/plan/paint_file.hpp"
 #include "assets/display/display_file.hpp"
 #include "assets/display/touch_file.hpp"
 #include "assets/file/json.hpp"
-#include "assets/reconstruct/fibula_inputs.hpp"
-#include "assets/reconstruct/flap_files.hpp"
-#include "assets/reconstruct/reconstruction.hpp"
-#include "assets/segment/seeds_file.hpp"
+#include "assets/reconstruction/fibula_inputs.hpp"
+#include "assets/reconstruction/flap_files.hpp"
+#include "assets/reconstruction/reconstruction.hpp"
+#include "assets/segmentation/seeds_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
 #include "assets/table/deflection_file.hpp"
@@ -98,14 +98,14 @@ TEST_CASE("an unknown key anywhere in JSON that a person writes is refused with 
     const std::vector<std::pair<std::string, ReadText>> readers{
         {in_lines(inputs),
          [](const std::string& text) {
-             reconstruct::fibula_inputs_of_text(text, "f.json");
-             reconstruct::flap_of_inputs(Json::parse(text), "f.json");
+             reconstruction::fibula_inputs_of_text(text, "f.json");
+             reconstruction::flap_of_inputs(Json::parse(text), "f.json");
          }},
         {seed_text("seeds_file.seeds/two.json"),
-         [](const std::string& text) { segment::seeds_of_text(text, "f.json", segment::SeedsUse::segmentation); }},
+         [](const std::string& text) { segmentation::seeds_of_text(text, "f.json", segmentation::SeedsUse::segmentation); }},
         {seed_text("paint_file.seeds/strokes.json"), [](const std::string& text) {
              std::vector<contact::SurfacePoint> none;
-             cases::paint_from_text(none, text, "f.json", false);
+             plan::paint_from_text(none, text, "f.json", false);
          }}};
     int checked = 0;
     for (const auto& [given, read] : readers) {
@@ -136,7 +136,7 @@ TEST_CASE("a key without its unit, or in other letters, is refused with the key 
     for (const auto& [wrong, meant] : {std::pair{"kerf", "kerf_mm"}, std::pair{"roll_degrees", "roll_deg"},
                                        std::pair{"Leg", "leg"}, std::pair{"proximal_margin", "proximal_margin_mm"}}) {
         const std::string told =
-            message_of([](const std::string& text) { reconstruct::fibula_inputs_of_text(text, "f.json"); },
+            message_of([](const std::string& text) { reconstruction::fibula_inputs_of_text(text, "f.json"); },
                        "{\"" + std::string(wrong) + "\": 1," + inputs.substr(1));
         CHECK(told ==
               "f.json has the unknown key '" + std::string(wrong) + "' in line 1; did you mean '" + meant + "'?");
@@ -173,7 +173,7 @@ TEST_CASE("an unknown column of a table that this program defines is refused wit
         {"deflection.csv", of_file("d.csv", [](const auto& path) { table::load_deflection_table(path); })},
         {"calibration.csv", of_file("c.csv", [](const auto& path) { table::load_force_calibration(path); })},
         {"course.csv", [](const std::string& text) { vessel::read_course(text, "f.csv"); }},
-        {"course.csv", [](const std::string& text) { reconstruct::vessel_of_table(text, "f.csv"); }}};
+        {"course.csv", [](const std::string& text) { reconstruction::vessel_of_table(text, "f.csv"); }}};
     for (const auto& [name, read] : readers) {
         const std::string text = seed_text("tables.seeds/" + std::string(name));
         std::string changed = "# a comment\n";

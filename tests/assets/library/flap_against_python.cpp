@@ -2,16 +2,16 @@
 // Random flaps of the synthetic case against a check in Python that measures by brute force.
 #include "assets/library/flap_bones.hpp"
 #include "assets/library/flap_case.hpp"
-#include "assets/reconstruct/reconstruction.hpp"
+#include "assets/reconstruction/reconstruction.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/constants.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/reconstruct/cut.hpp"
-#include "dsp/reconstruct/flap_obstacle.hpp"
-#include "dsp/reconstruct/jaw_normal.hpp"
-#include "dsp/reconstruct/plate_line.hpp"
-#include "dsp/reconstruct/reach.hpp"
+#include "dsp/reconstruction/cut.hpp"
+#include "dsp/reconstruction/flap_obstacle.hpp"
+#include "dsp/reconstruction/jaw_normal.hpp"
+#include "dsp/reconstruction/plate_line.hpp"
+#include "dsp/reconstruction/reach.hpp"
 #include "dsp/rope/bone_field.hpp"
 #include "dsp/volume/surface_distance.hpp"
 #include "tests/support/catch.hpp"
@@ -37,7 +37,7 @@
 #include <vector>
 
 using namespace tactus;
-using namespace tactus::reconstruct;
+using namespace tactus::reconstruction;
 using file::Json;
 
 namespace {

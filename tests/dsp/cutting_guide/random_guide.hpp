@@ -4,7 +4,7 @@
 
 #include "dsp/core/constants.hpp"
 #include "dsp/cutting_guide/guide.hpp"
-#include "tests/dsp/reconstruct/donors.hpp"
+#include "tests/dsp/reconstruction/donors.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -30,7 +30,7 @@ inline cutting_guide::GuideDesign random_guide(unsigned seed, int segments) {
                origin(from(-0.1, 0.1), from(-0.1, 0.1), from(-0.1, 0.1));
     const double edge = from(0.0, 0.9), radius = from(6.0, 9.0), wave = from(0.0, 0.4);
     cutting_guide::GuideDesign design;
-    design.bone = reconstruct::closed_tube(origin, axis, 120.0 * mm, 60, 121, [&](double a, double s) {
+    design.bone = reconstruction::closed_tube(origin, axis, 120.0 * mm, 60, 121, [&](double a, double s) {
         return (radius + edge * std::cos(3.0 * a) + wave * std::sin(s / (9.0 * mm) + 2.0 * a)) * mm;
     });
     const Vec3 aside = glm::normalize(glm::cross(axis, Vec3(0.31, -0.7, 0.64)));

@@ -2,7 +2,7 @@
 #include "dsp/skin/paddle.hpp"
 
 #include "dsp/core/error.hpp"
-#include "tests/dsp/reconstruct/small_flap.hpp"
+#include "tests/dsp/reconstruction/small_flap.hpp"
 #include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
@@ -15,7 +15,7 @@
 #include <vector>
 
 using namespace tactus;
-using reconstruct::milli;
+using reconstruction::milli;
 using skin::DrapedPaddle;
 using skin::DrapeSettings;
 
@@ -32,14 +32,14 @@ std::vector<Vec3> ellipse(double a, double b, double height, const Vec3& centre 
 }
 
 struct PaddleCase {
-    reconstruct::FibulaInputs inputs = reconstruct::small_inputs();
-    reconstruct::FibulaPlan plan = reconstruct::plan_fibula(inputs);
-    reconstruct::Flap flap;
+    reconstruction::FibulaInputs inputs = reconstruction::small_inputs();
+    reconstruction::FibulaPlan plan = reconstruction::plan_fibula(inputs);
+    reconstruction::Flap flap;
     DrapeSettings settings;
 
     PaddleCase() {
         const double middle = 0.5 * (plan.segments[0].along_line[0] + plan.segments[0].along_line[1]);
-        flap.paddle = reconstruct::SkinPaddle{on_line(middle) + Vec3(0.0, 25 * milli, 0.0), 60 * milli, 40 * milli};
+        flap.paddle = reconstruction::SkinPaddle{on_line(middle) + Vec3(0.0, 25 * milli, 0.0), 60 * milli, 40 * milli};
         flap.perforators = {{"first", on_line(middle + 5 * milli) + Vec3(0.0, 7 * milli, 0.0)},
                             {"at the ankle", on_line(middle - 100 * milli)}};
         settings.sheet.columns = 19;

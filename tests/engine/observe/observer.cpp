@@ -72,7 +72,7 @@ struct Taster {
 };
 TACTUS_NODE(Taster, bone, sum)
 
-compile::Plan compiled(const std::string& toml) {
+compile::Schedule compiled(const std::string& toml) {
     static const std::vector<const NodeType*> types = [] {
         std::vector<const NodeType*> with(chaos_catalogue().begin(), chaos_catalogue().end());
         with.push_back(&node_type_Whittler());

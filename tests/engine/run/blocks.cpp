@@ -69,7 +69,7 @@ TACTUS_NODE(Dated, in, out)
 
 namespace {
 
-compile::Plan plan_of(const PatchText& text) {
+compile::Schedule plan_of(const PatchText& text) {
     static const std::vector<const NodeType*> types = [] {
         const compile::Catalogue all = chaos_catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
@@ -84,7 +84,7 @@ compile::Plan plan_of(const PatchText& text) {
             toml.replace(at, 4, "group");
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(toml, "test.toml", problems);
-    std::optional<compile::Plan> plan;
+    std::optional<compile::Schedule> plan;
     if (problems.empty()) plan = compile::compile(patch, types, problems);
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(problems.empty());

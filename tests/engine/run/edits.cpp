@@ -370,7 +370,7 @@ TEST_CASE("an edit that cannot be made leaves the old plan running", "[virtual]"
     live.watch = [&] {
         if (asked || engine.progress_seconds() < 0.05) return;
         asked = true;
-        engine.edit([]() -> compile::Plan { throw Error({"test.toml", 3, 4}, "no node 'x'"); },
+        engine.edit([]() -> compile::Schedule { throw Error({"test.toml", 3, 4}, "no node 'x'"); },
                     [&](const run::EditOutcome& outcome) {
                         if (outcome.error) errors.push_back(*outcome.error);
                     });

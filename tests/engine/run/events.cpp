@@ -90,7 +90,7 @@ TACTUS_NODE(Witness, in, sum, count, lost, keep)
 
 namespace {
 
-std::optional<compile::Plan> try_plan(const PatchText& text, patch::Problems& problems) {
+std::optional<compile::Schedule> try_plan(const PatchText& text, patch::Problems& problems) {
     static const std::vector<const NodeType*> types = [] {
         const compile::Catalogue all = chaos_catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
@@ -103,9 +103,9 @@ std::optional<compile::Plan> try_plan(const PatchText& text, patch::Problems& pr
     return compile::compile(patch, types, problems);
 }
 
-compile::Plan event_plan_of(const PatchText& text) {
+compile::Schedule event_plan_of(const PatchText& text) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = try_plan(text, problems);
+    std::optional<compile::Schedule> plan = try_plan(text, problems);
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(problems.empty());
     return std::move(*plan);

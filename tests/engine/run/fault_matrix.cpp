@@ -391,7 +391,7 @@ double ms_after_end(const FaultPatch& patch, int signal, bool is_alone) {
     const WatchedHost host;
     FaultPatch hosted = patch;
     hosted.driver = "driver = \"watched\"\nprocess = true\nlog = \"" + host.path() + "\"";
-    compile::Plan plan = compile_text(hosted.toml());
+    compile::Schedule plan = compile_text(hosted.toml());
     Ended* const ended = ended_memory();
     ended->at_ns = 0;
     const pid_t process = ::fork();

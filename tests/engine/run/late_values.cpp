@@ -21,8 +21,8 @@ using namespace tactus::test;
 
 namespace {
 
-compile::PlanGroup group_at(const char* name, Flicks period) {
-    compile::PlanGroup group;
+compile::ScheduleGroup group_at(const char* name, Flicks period) {
+    compile::ScheduleGroup group;
     group.name = name;
     group.period = group.latency = period;
     return group;
@@ -135,10 +135,10 @@ TEST_CASE("the sources of a force are the other groups on its path, those behind
         "[nodes.out]\ntype = \"device_output\"\nrate = \"1 kHz\"\ndevice = \"simulated\"\n";
     run::EngineOptions options;
     options.seconds = 0.1;
-    std::optional<compile::Plan> plan = compile_text(toml);
+    std::optional<compile::Schedule> plan = compile_text(toml);
     using compile::Criticality;
     std::vector<Criticality> ranks;
-    for (const compile::PlanGroup& group : plan->groups) ranks.push_back(group.criticality);
+    for (const compile::ScheduleGroup& group : plan->groups) ranks.push_back(group.criticality);
     CHECK(ranks == std::vector{Criticality::force_output, Criticality::force_value, Criticality::world_value,
                                Criticality::world_value, Criticality::other});
     CHECK(plan->groups[0].backlog == 0);

@@ -74,7 +74,7 @@ double read_too_late(const std::string& rate, const std::string& mode, const std
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "p.toml", problems);
     REQUIRE(problems.empty());
-    std::optional<compile::Plan> plan = compile::compile(patch, types, problems);
+    std::optional<compile::Schedule> plan = compile::compile(patch, types, problems);
     REQUIRE(plan);
     run::EngineOptions options;
     options.seconds = 0.2;

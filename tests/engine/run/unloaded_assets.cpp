@@ -14,9 +14,9 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-compile::Plan unloaded(const std::string& toml) {
+compile::Schedule unloaded(const std::string& toml) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan =
+    std::optional<compile::Schedule> plan =
         compile::compile(patch::read_patch(toml, "test.toml", problems), chaos_catalogue(), problems);
     REQUIRE(problems.empty());
     return std::move(*plan);

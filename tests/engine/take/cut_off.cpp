@@ -20,7 +20,7 @@ TEST_CASE("the take of a killed offline run can be replayed up to the last 64 Ki
     {
         take::TakeWriter take(folder,
                               {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 60.0, .live = false});
-        const compile::Plan plan = compile_text("[nodes.n]\ntype = \"chaos\"\nrate = \"1 kHz\"\n");
+        const compile::Schedule plan = compile_text("[nodes.n]\ntype = \"chaos\"\nrate = \"1 kHz\"\n");
         take.begin(plan.patch, 1);
         take::TimingRecord record;
         record.kind = take::TimingKind::device_sample;

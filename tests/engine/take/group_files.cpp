@@ -32,7 +32,7 @@ run::Engine::PortHashes rendered(const fs::path& folder, const std::vector<std::
     run::Engine engine(compile_text(texts.front()), options);
     for (std::size_t i = 1; i < texts.size(); ++i) {
         const Flicks when = static_cast<Flicks>(i) * flicks_per_second / 20;
-        const compile::Plan plan = compile_text(texts[i]);
+        const compile::Schedule plan = compile_text(texts[i]);
         take.edit(static_cast<std::int64_t>(i), when, plan.patch, take::TakeWriter::describe_assets(plan.patch));
         engine.schedule(compile_text(texts[i]), when);
     }

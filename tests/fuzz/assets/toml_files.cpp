@@ -7,12 +7,12 @@
 #include "assets/training/task_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/read_or_refuse.hpp"
-#include "tools/study/rig_matrix.hpp"
+#include "tools/analysis/rig_matrix.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "file.toml");
     tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::display::load_display_file(path); });
-    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::study::load_rig_matrix(path); });
+    tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::analysis::load_rig_matrix(path); });
     tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
     tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });
     tactus::read_or_refuse(file.path(), [](const auto& path) { tactus::sound::load_recording_set(path); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // paint_lines: any text is a script whose lines have what they need, or is refused with one message.
-#include "tools/view/paint/paint_lines.hpp"
+#include "tools/window/paint/paint_lines.hpp"
 #include "dsp/core/error.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
-        for (const auto& line : tactus::view::paint_lines({reinterpret_cast<const char*>(data), size}, "script")) {
+        for (const auto& line : tactus::window::paint_lines({reinterpret_cast<const char*>(data), size}, "script")) {
             if (line.words.empty()) std::abort();
             const std::string& what = line.words.front();
             if (what != "stroke" && what != "erase") continue;

@@ -32,7 +32,7 @@ TEST_CASE("the worst age is that of the schedule, for every ratio of rates") {
     for (const Flicks consumer : {1, 2, 3, 4, 6, 7, 10, 15})
         for (const Flicks producer : {1, 2, 3, 5, 6, 8, 12})
             for (const Flicks latency : {1, 2, 5, 6, 13}) {
-                compile::PlanGroup from, to;
+                compile::ScheduleGroup from, to;
                 from.period = producer;
                 from.latency = latency;
                 to.period = consumer;

@@ -15,10 +15,10 @@ namespace {
 
 constexpr Flicks step = flicks_per_second / 1000;
 
-compile::Plan plan_of(const std::vector<std::pair<Criticality, int>>& groups) {
-    compile::Plan plan;
+compile::Schedule plan_of(const std::vector<std::pair<Criticality, int>>& groups) {
+    compile::Schedule plan;
     for (const auto& [criticality, period] : groups) {
-        compile::PlanGroup& group = plan.groups.emplace_back();
+        compile::ScheduleGroup& group = plan.groups.emplace_back();
         group.name = std::to_string(plan.groups.size());
         group.criticality = criticality;
         group.period = period * step;
@@ -47,7 +47,7 @@ int simulated_response(const std::vector<analyse::ScheduledGroup>& groups, std::
 }  // namespace
 
 TEST_CASE("groups are ordered by criticality, then by their rate of calls, then by name") {
-    const compile::Plan plan = plan_of({{Criticality::other, 1},
+    const compile::Schedule plan = plan_of({{Criticality::other, 1},
                                         {Criticality::sound, 2},
                                         {Criticality::force_value, 4},
                                         {Criticality::force_output, 8},

@@ -213,7 +213,7 @@ TEST_CASE("a cycle in an audio group stands together, and the source of a delay 
         audio("x", "gain") + audio("y", "wave"));
     INFO(c.said);
     REQUIRE(c.plan);
-    const compile::PlanGroup& group = c.plan->groups[0];
+    const compile::ScheduleGroup& group = c.plan->groups[0];
     REQUIRE(group.cycles.size() == 1);
     CHECK(group.cycles[0].count == 3);
     CHECK(group.cycles[0].longest == 3);

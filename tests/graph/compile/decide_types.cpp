@@ -7,8 +7,8 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-const ValueType* type_of(const compile::Plan& plan, std::string_view name) {
-    for (const compile::PlanNode& node : plan.nodes)
+const ValueType* type_of(const compile::Schedule& plan, std::string_view name) {
+    for (const compile::ScheduleNode& node : plan.nodes)
         if (node.name == name) return node.outputs.front().port->type;
     return nullptr;
 }
@@ -26,7 +26,7 @@ TEST_CASE("a type travels through nodes of open type, in whatever order the wire
     CHECK(type_of(*c.plan, "p") == &value::number);
     CHECK(type_of(*c.plan, "r") == &value::number);
     // The input without a wire has the type too.
-    for (const compile::PlanNode& node : c.plan->nodes)
+    for (const compile::ScheduleNode& node : c.plan->nodes)
         if (node.name == "p") CHECK(node.inputs[1].port->type == &value::number);
 }
 

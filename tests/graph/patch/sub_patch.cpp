@@ -50,7 +50,7 @@ TEST_CASE("a patch as a node compiles to what it would be, written out") {
 
 TEST_CASE("parameters of a patch within reach all that they stand for, and replace what it says itself") {
     const auto factor = [](const Compiled& c, const char* node) {
-        const auto found = std::ranges::find(c.plan->nodes, node, &compile::PlanNode::name);
+        const auto found = std::ranges::find(c.plan->nodes, node, &compile::ScheduleNode::name);
         return found->params.at("stiffness")->value;
     };
     const Compiled both = compiled(using_pair("rate = \"1 kHz\"\nboth = \"5 N/m\"\n") + part("pair.toml", pair_text));
@@ -91,7 +91,7 @@ group = "inner"
     CHECK(order_of(*c.plan, 0) == "end s quad:a:first quad:a:second");
     CHECK(c.plan->groups[1].name == "quad:inner");
     CHECK(order_of(*c.plan, 1) == "quad:b:first quad:b:second");
-    for (const compile::PlanNode& node : c.plan->nodes)
+    for (const compile::ScheduleNode& node : c.plan->nodes)
         if (node.name.starts_with("quad:")) CHECK(node.params.at("stiffness")->value == 2.0);
     CHECK(patch::ends_within(c.plan->patch, "quad", "out").front().node == "quad:b:second");
     CHECK(patch::ends_within(c.plan->patch, "quad:a", "in").front().node == "quad:a:first");
@@ -112,7 +112,7 @@ TEST_CASE("a parameter with several targets reaches all of them from any depth")
         INFO(depth << ": " << c.said);
         REQUIRE(c.plan);
         int set = 0;
-        for (const compile::PlanNode& node : c.plan->nodes)
+        for (const compile::ScheduleNode& node : c.plan->nodes)
             if (node.name.starts_with("top:")) set += node.params.at("stiffness")->value == 9.0;
         CHECK(set == 2);
         const auto ends = patch::ends_within(c.plan->patch, "top", "both");

@@ -16,8 +16,8 @@ static const std::map<std::string_view, std::string_view>& only_in_bench() {
     static const std::map<std::string_view, std::string_view> all{
         {"dynamic_coupling",
          "a body of 100 kg without damping that goes through the middle of a wall is put back: 4 N"},
-        {"tumour_margin", "needs a plan of a case: tests/nodes/planning"},
-        {"vessel", "needs a plan of a case: tests/nodes/planning"},
+        {"tumour_margin", "needs a plan of a case: tests/nodes/plan"},
+        {"vessel", "needs a plan of a case: tests/nodes/plan"},
     };
     return all;
 }

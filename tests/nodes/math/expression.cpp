@@ -32,7 +32,7 @@ std::string refusal(const char* formula, const char* inputs = "x m", const char*
 }
 
 /// A hand that feels `law`, which is more TOML of the node; its in1 is a position, its in2 a speed.
-compile::Plan felt(const std::string& law, const std::string& more_wires = "") {
+compile::Schedule felt(const std::string& law, const std::string& more_wires = "") {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(
         "wires = [\"hand.pose -> place.in\", \"place.position -> where.in\", \"where.z -> law.in1\",\n"
@@ -49,14 +49,14 @@ compile::Plan felt(const std::string& law, const std::string& more_wires = "") {
             "law = { type = \"expression\", rate = \"1 kHz\", unit = \"N\", " +
             law + " }\n",
         "p.toml", problems);
-    std::optional<compile::Plan> plan;
+    std::optional<compile::Schedule> plan;
     if (problems.empty()) plan = compile::compile(patch, nodes::catalogue(), problems);
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(plan);
     return std::move(*plan);
 }
 
-std::vector<analyse::ForceLoop> loops_of(const compile::Plan& plan) {
+std::vector<analyse::ForceLoop> loops_of(const compile::Schedule& plan) {
     return analyse::force_loops(plan, [](const std::string&) { return DeviceInfo{.name = {}, .damping = 1.0}; });
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("an expression says what is missing") {
 
 TEST_CASE("the slope of a formula on the way to the hand is a stiffness that check judges") {
     const std::string speeds = ", \"hand.twist -> motion.in\", \"motion.linear -> speed.in\", \"speed.z -> law.in2\"";
-    const compile::Plan wall = felt(
+    const compile::Schedule wall = felt(
         "inputs = \"z m, v m/s\", constants = \"k = 2.5 N/mm, c = 2 N s/m\", formula = \"k * max(0 m, -z) - c * v\"",
         speeds);
     CHECK(analyse::unstated_laws(wall).empty());
@@ -126,20 +126,20 @@ TEST_CASE("the slope of a formula on the way to the hand is a stiffness that che
     // 1 N·s/m bears 2000 N/m at 1 kHz.
     CHECK(loops_of(wall)[0].verdict() == analyse::Verdict::too_stiff);
 
-    const compile::Plan jump =
+    const compile::Schedule jump =
         felt("inputs = \"z m, v m/s\", constants = \"k = 1 N/m\", formula = \"if(z < 0 m, -k * z, 0 N)\"", speeds);
     CHECK(analyse::unstated_laws(jump) == std::vector<std::string>{"law"});
     CHECK_FALSE(loops_of(jump)[0].declared);
 
     const std::string hertz = "constants = \"k = 4 N/m^1.5\", formula = \"k * max(0 m, -z)^1.5\", inputs = \"z m";
     CHECK(analyse::unstated_laws(felt(hertz + "\"")).size() == 1);
-    const compile::Plan within = felt(hertz + " from -1 m to 0 m\"");
+    const compile::Schedule within = felt(hertz + " from -1 m to 0 m\"");
     CHECK(analyse::unstated_laws(within).empty());
     CHECK(loops_of(within)[0].declared->newton_per_metre == Approx(6.0));
 }
 
 TEST_CASE("the slope of a curve is judged by what its force goes to") {
-    compile::Plan plan = felt("inputs = \"z m\", formula = \"z * (1 N/m)\"");
+    compile::Schedule plan = felt("inputs = \"z m\", formula = \"z * (1 N/m)\"");
     CHECK(loops_of(plan)[0].declared->newton_per_metre == Approx(1.0));
     const std::string curve =
         "wires = [\"hand.pose -> place.in\", \"place.position -> where.in\", \"where.z -> law.in\",\n"

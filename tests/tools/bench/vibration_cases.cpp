@@ -4,7 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tools/bench/vibration/machine_cases.hpp"
 #include "tools/bench/vibration/verdict_cases.hpp"
-#include "tools/study/vibration/verdict.hpp"
+#include "tools/analysis/vibration/verdict.hpp"
 
 #include <span>
 
@@ -29,7 +29,7 @@ TEST_CASE("random phases and bursts with the spectrum of a vibration are not the
     for (std::uint64_t seed = 2000; seed < 2003; ++seed)
         for (const auto kind : {bench::PairKind::copy, bench::PairKind::random_phase, bench::PairKind::burst}) {
             const bench::VerdictCase pair(seed, kind);
-            const study::Verdict verdict = study::judge(
+            const analysis::Verdict verdict = analysis::judge(
                 signal::compare(signal::Take(std::span<const double>(pair.reference), bench::VerdictCase::rate),
                                 signal::Take(std::span<const double>(pair.output), bench::VerdictCase::rate)),
                 0.0, {});

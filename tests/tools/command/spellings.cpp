@@ -3,8 +3,8 @@
 #include "tests/tools/run_command.hpp"
 #include "tools/command/old_words.hpp"
 #include "tools/command/options.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/view/script.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/window/script.hpp"
 
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
@@ -101,20 +101,20 @@ TEST_CASE("a display file is found by path, by name, in a library with the old f
     std::filesystem::create_directories(folder.path / "rigs");
     const auto now = folder.write("displays/mirror.toml", "");
     const auto own = folder.write("rigs/own.toml", "");
-    CHECK(session::find_display(now.string()) == now);
-    CHECK(session::find_display("mirror") == now);
-    CHECK(session::find_display((folder.path / "rigs/mirror.toml").string()) == now);
-    CHECK(session::find_display("own") == own);
-    CHECK(session::find_display(own.string()) == own);
-    CHECK_THROWS_WITH(session::find_display("mirrors"),
+    CHECK(run::find_display(now.string()) == now);
+    CHECK(run::find_display("mirror") == now);
+    CHECK(run::find_display((folder.path / "rigs/mirror.toml").string()) == now);
+    CHECK(run::find_display("own") == own);
+    CHECK(run::find_display(own.string()) == own);
+    CHECK_THROWS_WITH(run::find_display("mirrors"),
                       "no display 'mirrors': neither a file nor one of the library (mirror); did you mean 'mirror'?");
 }
 
 TEST_CASE("a script of the window understands 'display', and 'rig' without telling of it") {
     const Folder folder;
-    CHECK_NOTHROW(view::Script(folder.write("new", "display mirror\n")));
-    CHECK_NOTHROW(view::Script(folder.write("old", "rig mirror\n")));
-    CHECK_THROWS_WITH(view::Script(folder.write("wrong", "rigg mirror\n")),
+    CHECK_NOTHROW(window::Script(folder.write("new", "display mirror\n")));
+    CHECK_NOTHROW(window::Script(folder.write("old", "rig mirror\n")));
+    CHECK_THROWS_WITH(window::Script(folder.write("wrong", "rigg mirror\n")),
                       !Catch::Matchers::ContainsSubstring("'rig'"));
 }
 

@@ -2,7 +2,7 @@
 #include "assets/file/json.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/vibration/verdict_cases.hpp"
-#include "tools/study/vibration/verdict.hpp"
+#include "tools/analysis/vibration/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ int bench_verdicts(const VerdictsChoice& choice) {
             const signal::Comparison found =
                 signal::compare(signal::Take(std::span<const double>(one.reference), VerdictCase::rate),
                                 signal::Take(std::span<const double>(one.output), VerdictCase::rate));
-            const study::Verdict verdict = study::judge(found, 0.0, {});
+            const analysis::Verdict verdict = analysis::judge(found, 0.0, {});
             same += verdict.passed();
             for (const std::string& name : verdict.failed()) {
                 ++reasons[name];

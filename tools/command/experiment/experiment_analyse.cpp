@@ -6,8 +6,8 @@
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/experiment_page.hpp"
-#include "tools/study/experiment/analysis.hpp"
+#include "tools/report/figures/experiment_page.hpp"
+#include "tools/analysis/experiment/analysis.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -29,11 +29,11 @@ struct AnalyseChoice {
 
 Json optional_number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-Json comparison_result(const study::AnalysedComparison& one, double alpha) {
+Json comparison_result(const analysis::AnalysedComparison& one, double alpha) {
     Json json{{"comparison", one.label},
               {"subjects", one.differences.size()},
               {"logarithms", one.is_log},
-              {"verdict", study::verdict_of(one, alpha)},
+              {"verdict", analysis::verdict_of(one, alpha)},
               {"problem", one.problem}};
     if (!one.test) return json;
     json.update({{"difference", one.test->of.mean},
@@ -62,7 +62,7 @@ Json comparison_result(const study::AnalysedComparison& one, double alpha) {
     return json;
 }
 
-Json analysis_json(const study::ExperimentAnalysis& analysis) {
+Json analysis_json(const analysis::ExperimentAnalysis& analysis) {
     Json json{{"experiment", analysis.protocol.name},
               {"simulated", analysis.is_simulated},
               {"rehearsal", analysis.is_rehearsal},
@@ -70,7 +70,7 @@ Json analysis_json(const study::ExperimentAnalysis& analysis) {
               {"subjects", Json::array()},
               {"groups", Json::array()},
               {"comparisons", Json::array()}};
-    for (const study::AnalysedSubject& subject : analysis.subjects) {
+    for (const analysis::AnalysedSubject& subject : analysis.subjects) {
         Json one{{"subject", subject.entry.pseudonym},
                  {"trials", subject.trials},
                  {"marked", subject.marked},
@@ -78,7 +78,7 @@ Json analysis_json(const study::ExperimentAnalysis& analysis) {
                  {"excluded", subject.excluded},
                  {"thresholds", Json::array()},
                  {"means", subject.means}};
-        for (const study::SubjectThreshold& threshold : subject.thresholds)
+        for (const analysis::SubjectThreshold& threshold : subject.thresholds)
             one["thresholds"].push_back(
                 {{"condition", threshold.condition},
                  {"threshold", optional_number(threshold.threshold)},
@@ -91,7 +91,7 @@ Json analysis_json(const study::ExperimentAnalysis& analysis) {
                  {"max_level_error", threshold.max_level_error}});
         json["subjects"].push_back(one);
     }
-    for (const study::GroupValue& group : analysis.groups)
+    for (const analysis::GroupValue& group : analysis.groups)
         json["groups"].push_back({{"task", group.task},
                                   {"measure", group.measure},
                                   {"condition", group.condition},
@@ -100,7 +100,7 @@ Json analysis_json(const study::ExperimentAnalysis& analysis) {
                                   {"low", group.count > 1 ? Json(group.low) : Json()},
                                   {"high", group.count > 1 ? Json(group.high) : Json()},
                                   {"geometric", group.is_log}});
-    for (const study::AnalysedComparison& one : analysis.comparisons)
+    for (const analysis::AnalysedComparison& one : analysis.comparisons)
         json["comparisons"].push_back(comparison_result(one, analysis.protocol.alpha));
     return json;
 }
@@ -117,16 +117,16 @@ std::string unit_of(const experiment::Protocol& protocol, const std::string& tas
 
 std::string p_value(double p) { return p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p); }
 
-std::string analysis_text(const study::ExperimentAnalysis& analysis) {
+std::string analysis_text(const analysis::ExperimentAnalysis& analysis) {
     std::string out = fmt::format("{}{}\n{} of {} in the group\n", analysis.protocol.title,
                                   analysis.is_simulated   ? " (SIMULATED DATA)"
                                   : analysis.is_rehearsal ? " (REHEARSAL)"
                                                           : "",
                                   analysis.included, counted(analysis.subjects.size(), "subject"));
-    for (const study::AnalysedSubject& subject : analysis.subjects)
+    for (const analysis::AnalysedSubject& subject : analysis.subjects)
         if (!subject.excluded.empty())
             out += fmt::format("  {} is left out: {}\n", subject.entry.pseudonym, subject.excluded);
-    for (const study::GroupValue& group : analysis.groups) {
+    for (const analysis::GroupValue& group : analysis.groups) {
         if (group.count == 0) {
             out += fmt::format("{}{}, {}: no values\n", group.task.empty() ? "" : group.task + " ", group.measure,
                                group.condition);
@@ -142,7 +142,7 @@ std::string analysis_text(const study::ExperimentAnalysis& analysis) {
             fmt::format("{}{}, {}", group.task.empty() ? "" : group.task + " ", group.measure, group.condition),
             group.mean / factor, interval, unit.empty() ? "" : " " + unit, group.count);
     }
-    for (const study::AnalysedComparison& one : analysis.comparisons) {
+    for (const analysis::AnalysedComparison& one : analysis.comparisons) {
         if (!one.test) {
             out += fmt::format("{}: not tested: {}\n", one.label, one.problem);
             continue;
@@ -157,23 +157,23 @@ std::string analysis_text(const study::ExperimentAnalysis& analysis) {
                            one.is_log || unit.empty() ? "" : " " + unit, p_value(one.test->p), p_value(one.adjusted_p),
                            p_value(one.permutation->p),
                            one.equivalence ? ", equivalence " + p_value(one.equivalence->p) : std::string(),
-                           study::verdict_of(one, analysis.protocol.alpha));
+                           analysis::verdict_of(one, analysis.protocol.alpha));
     }
     return out;
 }
 
 int analyse(const AnalyseChoice& choice) {
-    const study::ExperimentAnalysis analysis = study::analyse_experiment(choice.folder, {choice.bootstrap});
-    study::write_bids(analysis, choice.folder);
+    const analysis::ExperimentAnalysis analysis = analysis::analyse_experiment(choice.folder, {choice.bootstrap});
+    analysis::write_bids(analysis, choice.folder);
     const Json json = analysis_json(analysis);
     file::write_whole_file(choice.folder / "results.json", json.dump(2) + "\n");
-    file::write_whole_file(choice.folder / "report.html", picture::experiment_page(analysis));
+    file::write_whole_file(choice.folder / "report.html", report::experiment_page(analysis));
     say(stdout, choice.json ? json.dump(2) + "\n" : analysis_text(analysis));
     if (!choice.checks_takes) {
         if (!choice.json) say(stdout, fmt::format("report: {}\n", (choice.folder / "report.html").string()));
         return done;
     }
-    const study::TakeCheck check = study::check_takes(choice.folder);
+    const analysis::TakeCheck check = analysis::check_takes(choice.folder);
     for (const std::string& difference : check.differences) say(stderr, fmt::format("tactus: {}\n", difference));
     if (!choice.json)
         say(stdout, fmt::format("takes: {} of {} computed again, {}\n", counted(check.values, "value"),

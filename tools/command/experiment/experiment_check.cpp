@@ -4,8 +4,8 @@
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/study/experiment/run_experiment.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ std::string order_text(const experiment::Protocol& protocol, std::size_t row) {
 }
 
 int check_experiment(const ExperimentCheck& choice) {
-    const experiment::Protocol protocol = experiment::load_protocol(session::find_experiment(choice.experiment));
+    const experiment::Protocol protocol = experiment::load_protocol(run::find_experiment(choice.experiment));
     const auto subjects = static_cast<std::size_t>(choice.subjects > 0 ? choice.subjects : protocol.subjects);
     say(stdout, fmt::format("{}\n{}, {}\n", protocol.title, counted(protocol.conditions.size(), "condition"),
                             protocol.is_psychophysics() ? "psychophysics" : counted(protocol.tasks.size(), "task")));
@@ -44,8 +44,8 @@ int check_experiment(const ExperimentCheck& choice) {
         for (std::size_t row = 0; row < subjects; ++row)
             say(stdout, fmt::format("subject {}: {}\n", row + 1, order_text(protocol, row)));
     compile::AssetCache assets;
-    study::check_levels(protocol, assets, choice.settings, [](const std::string& line) { say(stdout, line); });
-    study::check_tasks(protocol, assets, choice.settings);
+    analysis::check_levels(protocol, assets, choice.settings, [](const std::string& line) { say(stdout, line); });
+    analysis::check_tasks(protocol, assets, choice.settings);
     say(stdout, "no errors\n");
     return done;
 }

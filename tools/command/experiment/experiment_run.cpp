@@ -7,12 +7,12 @@
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/run_session.hpp"
-#include "tools/session/stop_signals.hpp"
-#include "tools/study/experiment/run_experiment.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/run_session.hpp"
+#include "tools/run/stop_signals.hpp"
+#include "tools/analysis/experiment/run_experiment.hpp"
 #include "tools/terminal.hpp"
-#include "tools/view/view.hpp"
+#include "tools/window/view.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ public:
         return false;
     }
 
-    std::optional<study::Answered> ask(const experiment::Protocol& protocol) {
+    std::optional<analysis::Answered> ask(const experiment::Protocol& protocol) {
         const experiment::Response& response = protocol.response;
         std::string text = protocol.question.empty() ? std::string("Your answer?") : protocol.question;
         for (std::size_t i = 0; i < response.keys.size(); ++i)
@@ -62,25 +62,25 @@ public:
             const auto found = std::ranges::find(response.keys, std::string(1, *key));
             if (found == response.keys.end()) continue;
             const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-            return study::Answered{static_cast<int>(found - response.keys.begin()), time.count()};
+            return analysis::Answered{static_cast<int>(found - response.keys.begin()), time.count()};
         }
         return std::nullopt;
     }
 
-    study::LiveEnd perform(const session::RunChoice& choice, const experiment::Condition& condition,
+    analysis::LiveEnd perform(const run::RunChoice& choice, const experiment::Condition& condition,
                            std::atomic<bool>& over) {
-        study::LiveEnd end;
+        analysis::LiveEnd end;
         if (has_window_) {
-            view::ViewedRunChoice viewed;
-            static_cast<session::RunChoice&>(viewed) = choice;
+            window::ViewedRunChoice viewed;
+            static_cast<run::RunChoice&>(viewed) = choice;
             viewed.view.wanted = true;
-            if (!condition.display.empty()) viewed.view.sight.display = session::find_display(condition.display);
+            if (!condition.display.empty()) viewed.view.sight.display = run::find_display(condition.display);
             viewed.view.sight.offset = condition.offset;
-            if (view::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
+            if (window::view_run(viewed, over) == output_lost) end.losses.emplace_back("files of the run were lost");
             end.summary = file::read_whole_file(choice.out / "summary.json");
             return end;
         }
-        session::RunSession run(choice, assets_);
+        run::RunSession run(choice, assets_);
         LiveLine line;
         run.run({[&] {
                      line.show(fmt::format("{:.1f} s of {:.1f} s", run.engine().progress_seconds(), *choice.seconds));
@@ -102,9 +102,9 @@ private:
     compile::AssetCache assets_;
 };
 
-int run_one(const study::ExperimentChoice& choice, const study::ExperimentHooks& hooks, const std::atomic<bool>& stop,
+int run_one(const analysis::ExperimentChoice& choice, const analysis::ExperimentHooks& hooks, const std::atomic<bool>& stop,
             bool is_only) {
-    const study::ExperimentEnd end = study::run_experiment(choice, hooks, stop);
+    const analysis::ExperimentEnd end = analysis::run_experiment(choice, hooks, stop);
     for (const std::string& loss : end.losses) say(stderr, fmt::format("tactus: {}\n", loss));
     say(stdout,
         fmt::format("{}: {}{}{}; {}\n", choice.subject, counted(static_cast<std::size_t>(end.trials), "trial"),
@@ -118,8 +118,8 @@ int run_one(const study::ExperimentChoice& choice, const study::ExperimentHooks&
 }
 
 int run_experiment_verb(const ExperimentRunChoice& options) {
-    study::ExperimentChoice choice;
-    choice.protocol = experiment::load_protocol(session::find_experiment(options.experiment));
+    analysis::ExperimentChoice choice;
+    choice.protocol = experiment::load_protocol(run::find_experiment(options.experiment));
     choice.out = options.out.empty() ? fs::path(choice.protocol.name + "-data") : options.out;
     choice.settings = options.settings;
     choice.assets = options.assets;
@@ -127,7 +127,7 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     if (options.registration) choice.registration = 1e-3 * *options.registration;
     if (!options.model.empty())
         choice.model = experiment::load_observer_model(
-            session::find_observer_model(options.model),
+            run::find_observer_model(options.model),
             choice.protocol.stimulus ? choice.protocol.stimulus->level_unit() : std::string());
     if (options.simulated > 0 && !choice.model) throw Error("--subjects needs --simulate: people come one at a time");
     if (options.simulated > 0 && !options.subject.empty())
@@ -135,19 +135,19 @@ int run_experiment_verb(const ExperimentRunChoice& options) {
     if (options.simulated == 0 && options.subject.empty()) throw Error("--subject PSEUDONYM is missing");
     if (options.drops_takes && !choice.model)
         throw Error("--no-takes is for simulated subjects: a person's trials cannot be had again");
-    const std::atomic<bool>& stop = session::stop_on_signals();
+    const std::atomic<bool>& stop = run::stop_on_signals();
     compile::AssetCache assets;
-    study::check_levels(choice.protocol, assets, {}, nullptr);
-    study::check_tasks(choice.protocol, assets, choice.settings);
+    analysis::check_levels(choice.protocol, assets, {}, nullptr);
+    analysis::check_tasks(choice.protocol, assets, choice.settings);
     Person person(options.has_window, stop);
     LiveLine line;
-    study::ExperimentHooks hooks;
+    analysis::ExperimentHooks hooks;
     hooks.say = [&](const std::string& text) { say(stdout, text); };
     hooks.confirm = [&](const std::string& text, char key) { return person.confirm(text, key); };
     hooks.ask = [&](const experiment::Protocol& protocol) { return person.ask(protocol); };
-    hooks.perform = [&](const session::RunChoice& run, const experiment::Condition& condition,
+    hooks.perform = [&](const run::RunChoice& run, const experiment::Condition& condition,
                         std::atomic<bool>& over) { return person.perform(run, condition, over); };
-    hooks.progress = [&](const study::TrialSpec& spec, int trials, int blocks) {
+    hooks.progress = [&](const analysis::TrialSpec& spec, int trials, int blocks) {
         if (choice.model)
             line.show(fmt::format("{}: trial {}, block {} of {}", choice.subject, trials, spec.block + 1, blocks));
     };

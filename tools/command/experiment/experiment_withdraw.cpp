@@ -2,7 +2,7 @@
 // tactus experiment withdraw: deletes a subject.
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/study/experiment/experiment_folder.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ Action declare_experiment_withdraw(VerbOptions& verb) {
     verb.add("folder", choice->folder, "folder of the experiment's data").required();
     verb.add("--subject", choice->subject, "pseudonym of the subject").required();
     return [choice] {
-        study::ExperimentFolder folder(choice->folder);
+        analysis::ExperimentFolder folder(choice->folder);
         folder.withdraw(choice->subject);
         say(stdout,
             fmt::format("{} was deleted; the next new subject inherits the order. Delete copies and results that "

@@ -7,11 +7,11 @@
 #include "tools/command/run/check_schedule.hpp"
 #include "tools/command/run/check_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/z_width_figure.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/study/passivity/z_width.hpp"
-#include "tools/study/patch_stiffness.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/z_width_figure.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/analysis/passivity/z_width.hpp"
+#include "tools/analysis/patch_stiffness.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ using file::Json;
 namespace {
 
 struct CheckChoice {
-    session::PatchChoice patch;
+    run::PatchChoice patch;
     bool json = false, z_width = false;
     std::string z_width_figure;
 };
@@ -45,27 +45,27 @@ std::function<DeviceInfo(const std::string&)> devices_of(const io::EngineHost& h
 }
 
 /// Of each device that a node drives, as an ideal one, and of the simulated devices.
-std::vector<study::ZWidthCurve> z_width_of(const io::EngineHost& host) {
-    study::ZWidthGrid grid;
-    std::vector<study::ZWidthDevice> devices;
+std::vector<analysis::ZWidthCurve> z_width_of(const io::EngineHost& host) {
+    analysis::ZWidthGrid grid;
+    std::vector<analysis::ZWidthDevice> devices;
     for (const auto& slot : host.devices) {
         if (slot->port.info.fingers > 0) continue;
-        devices.push_back(study::ideal_device(slot->name + ", ideal", slot->port.info));
+        devices.push_back(analysis::ideal_device(slot->name + ", ideal", slot->port.info));
         const double rate = rate_of(slot->period);
         if (std::ranges::find(grid.rates, rate) == grid.rates.end()) grid.rates.push_back(rate);
     }
     std::ranges::sort(grid.rates);
-    for (study::ZWidthDevice& device : study::modelled_devices()) devices.push_back(std::move(device));
+    for (analysis::ZWidthDevice& device : analysis::modelled_devices()) devices.push_back(std::move(device));
     LiveLine line;
-    return study::z_width(devices, grid, [&line](std::size_t done, std::size_t all) {
+    return analysis::z_width(devices, grid, [&line](std::size_t done, std::size_t all) {
         line.show(fmt::format("walls: {} of {}", done, all));
     });
 }
 
 /// Of a patch that has no problems.
-compile::Plan plan_again(const session::PatchChoice& patch, compile::AssetCache& assets) {
+compile::Schedule plan_again(const run::PatchChoice& patch, compile::AssetCache& assets) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = session::read_plan(patch, problems);
+    std::optional<compile::Schedule> plan = run::read_plan(patch, problems);
     if (plan) assets.load(*plan, problems);
     if (!plan || !problems.empty()) throw Error("the patch has changed");
     return std::move(*plan);
@@ -74,10 +74,10 @@ compile::Plan plan_again(const session::PatchChoice& patch, compile::AssetCache&
 int check(const CheckChoice& choice) {
     patch::Problems problems;
     compile::AssetCache assets;
-    std::optional<compile::Plan> plan;
+    std::optional<compile::Schedule> plan;
     Json json;
     try {
-        plan = session::read_plan(choice.patch, problems);
+        plan = run::read_plan(choice.patch, problems);
         if (plan) assets.load(*plan, problems);
         json = check_json(plan, problems);
         // Finds errors that only `prepare` can find: devices, file names, sizes.
@@ -87,8 +87,8 @@ int check(const CheckChoice& choice) {
             const run::Engine engine(std::move(*plan), options);
             const auto loops = analyse::force_loops(engine.plan(), devices_of(engine.host()));
             json["paths"] = paths_json(engine.plan(), loops);
-            json["contact"] = contact_json(study::contact_laws(engine));
-            json["device_classes"] = classes_json(study::class_verdicts(loops));
+            json["contact"] = contact_json(analysis::contact_laws(engine));
+            json["device_classes"] = classes_json(analysis::class_verdicts(loops));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
             const std::vector<double> costs = measured_costs([&] { return plan_again(choice.patch, assets); });
@@ -102,10 +102,10 @@ int check(const CheckChoice& choice) {
             if (const Json sound = sound_json(engine.plan()); !sound.is_null()) json["sound"] = sound;
             json["outputs"] = outputs_json(engine.nodes(), loops, json["warnings"]);
             if (choice.z_width || !choice.z_width_figure.empty()) {
-                const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());
+                const std::vector<analysis::ZWidthCurve> curves = z_width_of(engine.host());
                 json["z_width"] = z_width_json(curves);
                 if (!choice.z_width_figure.empty())
-                    picture::write_figure(picture::draw_z_width(curves), choice.z_width_figure);
+                    report::write_figure(report::draw_z_width(curves), choice.z_width_figure);
             }
         }
     } catch (const Error& error) {
@@ -116,7 +116,7 @@ int check(const CheckChoice& choice) {
     }
     if (choice.json) fmt::print("{}\n", json.dump(2));
     else {
-        for (const std::string& line : session::problem_lines(problems)) fmt::print(stderr, "{}\n", line);
+        for (const std::string& line : run::problem_lines(problems)) fmt::print(stderr, "{}\n", line);
         print_check(json);
     }
     if (!problems.empty()) return bad_input;

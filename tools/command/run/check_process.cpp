@@ -15,12 +15,12 @@ namespace tactus::command {
 
 namespace {
 
-bool uses_device(const compile::PlanNode& node) {
+bool uses_device(const compile::ScheduleNode& node) {
     constexpr std::array<std::string_view, 4> users{"device_input", "device_output", "gripper_input", "gripper_output"};
     return std::ranges::find(users, node.type->name) != users.end();
 }
 
-std::string named_by(const compile::Plan& plan, std::size_t node) {
+std::string named_by(const compile::Schedule& plan, std::size_t node) {
     for (const OptionText& given : plan.patch.nodes[node].settings)
         if (given.name == "device") return given.text;
     return {};
@@ -28,7 +28,7 @@ std::string named_by(const compile::Plan& plan, std::size_t node) {
 
 /// The device that a node uses, or "" when it uses none. One that names none means the only one of the patch, or the only
 /// one that others name.
-std::string device_of(const compile::Plan& plan, std::size_t node) {
+std::string device_of(const compile::Schedule& plan, std::size_t node) {
     if (!uses_device(plan.nodes[node])) return {};
     if (std::string named = named_by(plan, node); !named.empty()) return named;
     if (plan.patch.devices.size() == 1) return plan.patch.devices.front().name;
@@ -38,7 +38,7 @@ std::string device_of(const compile::Plan& plan, std::size_t node) {
     return {};
 }
 
-std::optional<DeviceProcess> process_of(const compile::Plan& plan, std::size_t node) {
+std::optional<DeviceProcess> process_of(const compile::Schedule& plan, std::size_t node) {
     const std::string name = device_of(plan, node);
     const auto declared = std::ranges::find(plan.patch.devices, name, &patch::PatchDevice::name);
     if (declared == plan.patch.devices.end()) return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<DeviceProcess> process_of(const compile::Plan& plan, std::size_t n
 
 }  // namespace
 
-std::vector<DeviceProcess> device_processes(const compile::Plan& plan) {
+std::vector<DeviceProcess> device_processes(const compile::Schedule& plan) {
     std::vector<DeviceProcess> all;
     for (std::size_t node = 0; node < plan.nodes.size(); ++node)
         if (auto process = process_of(plan, node);

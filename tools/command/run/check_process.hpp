@@ -2,7 +2,7 @@
 // Which devices of a patch have a process of their own.
 #pragma once
 
-#include "graph/compile/plan.hpp"
+#include "graph/compile/schedule.hpp"
 
 #include <string>
 #include <vector>
@@ -17,6 +17,6 @@ struct DeviceProcess {
 };
 
 /// Those that nodes of the plan use. Throws Error on options that cannot be read.
-std::vector<DeviceProcess> device_processes(const compile::Plan& plan);
+std::vector<DeviceProcess> device_processes(const compile::Schedule& plan);
 
 }  // namespace tactus::command

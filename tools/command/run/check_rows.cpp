@@ -47,7 +47,7 @@ Json processes_json(const std::vector<DeviceProcess>& processes) {
 
 }  // namespace
 
-Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
+Json paths_json(const compile::Schedule& plan, const std::vector<analyse::ForceLoop>& loops) {
     std::map<std::pair<std::string_view, std::string_view>, const analyse::ForceLoop*> by_ends;
     for (const analyse::ForceLoop& loop : loops)
         by_ends.emplace(std::pair<std::string_view, std::string_view>(loop.from, loop.to), &loop);
@@ -62,11 +62,11 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
     return paths;
 }
 
-Json sound_json(const compile::Plan& plan) {
+Json sound_json(const compile::Schedule& plan) {
     const bool plays = std::ranges::any_of(
-        plan.nodes, [](const compile::PlanNode& node) { return node.type->role == NodeRole::sound_sink; });
+        plan.nodes, [](const compile::ScheduleNode& node) { return node.type->role == NodeRole::sound_sink; });
     const bool hears = std::ranges::any_of(
-        plan.nodes, [](const compile::PlanNode& node) { return compile::sound_source(node).has_value(); });
+        plan.nodes, [](const compile::ScheduleNode& node) { return compile::sound_source(node).has_value(); });
     if (!plays && !hears) return {};
     Json json{{"buffer_ms", 1e3 * io::AudioChoice{}.margin_s},
               {"card", nullptr},
@@ -85,7 +85,7 @@ Json sound_json(const compile::Plan& plan) {
     return json;
 }
 
-Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {
+Json check_json(const std::optional<compile::Schedule>& plan, const patch::Problems& problems) {
     Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
     for (const Error& error : problems.list)
         json["errors"].push_back({{"file", error.where().file},
@@ -93,7 +93,7 @@ Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems&
                                   {"column", error.where().column},
                                   {"message", error.message()}});
     if (!plan) return json;
-    for (const compile::PlanGroup& group : plan->groups) {
+    for (const compile::ScheduleGroup& group : plan->groups) {
         Json nodes = Json::array();
         for (const int node : group.order) nodes.push_back(plan->nodes[static_cast<std::size_t>(node)].name);
         json["groups"].push_back({{"name", group.name},
@@ -154,11 +154,11 @@ Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes,
     return outputs;
 }
 
-Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
+Json z_width_json(const std::vector<analysis::ZWidthCurve>& curves) {
     const auto n_mm = [](double value) { return std::isfinite(value) ? Json(value * 1e-3) : Json(); };
     Json rows = Json::array();
-    for (const study::ZWidthCurve& curve : curves)
-        for (const study::ZWidthPoint& point : curve.points)
+    for (const analysis::ZWidthCurve& curve : curves)
+        for (const analysis::ZWidthPoint& point : curve.points)
             rows.push_back({{"device", curve.device},
                             {"rate_hz", curve.rate},
                             {"delay_ms", curve.delay * 1e3},
@@ -172,9 +172,9 @@ Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
     return rows;
 }
 
-Json contact_json(const std::vector<study::NodeContactLaw>& laws) {
+Json contact_json(const std::vector<analysis::NodeContactLaw>& laws) {
     Json rows = Json::array();
-    for (const study::NodeContactLaw& law : laws) {
+    for (const analysis::NodeContactLaw& law : laws) {
         Json row{{"node", law.node}, {"law", law.by_point ? "point" : "area"}};
         if (law.by_point) row["stiffness_N_per_mm_per_point"] = law.stiffness * 1e-3;
         else row["stiffness_N_per_mm_per_mm2"] = law.stiffness * 1e-9;
@@ -185,9 +185,9 @@ Json contact_json(const std::vector<study::NodeContactLaw>& laws) {
     return rows;
 }
 
-Json classes_json(const std::vector<study::ClassVerdict>& verdicts) {
+Json classes_json(const std::vector<analysis::ClassVerdict>& verdicts) {
     Json rows = Json::array();
-    for (const study::ClassVerdict& v : verdicts)
+    for (const analysis::ClassVerdict& v : verdicts)
         rows.push_back({{"from", v.from},
                         {"to", v.to},
                         {"class", v.device.name},

@@ -5,8 +5,8 @@
 #include "assets/file/json.hpp"
 #include "engine/build/generation.hpp"
 #include "graph/analyse/stiffness.hpp"
-#include "tools/study/passivity/z_width.hpp"
-#include "tools/study/patch_stiffness.hpp"
+#include "tools/analysis/passivity/z_width.hpp"
+#include "tools/analysis/patch_stiffness.hpp"
 
 #include <memory>
 #include <optional>
@@ -15,13 +15,13 @@
 namespace tactus::command {
 
 /// Errors, groups, paths and processes of devices. Without a plan the errors alone.
-file::Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems);
+file::Json check_json(const std::optional<compile::Schedule>& plan, const patch::Problems& problems);
 
 /// One row per path; loops through a hand also have a stiffness.
-file::Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops);
+file::Json paths_json(const compile::Schedule& plan, const std::vector<analyse::ForceLoop>& loops);
 
 /// What a sound card adds to the latency of paths that end there; null when nothing is played.
-file::Json sound_json(const compile::Plan& plan);
+file::Json sound_json(const compile::Schedule& plan);
 
 /// The position loops of admittance controllers: gain and stability limit.
 file::Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
@@ -32,11 +32,11 @@ file::Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nod
                         const std::vector<analyse::ForceLoop>& loops, file::Json& warnings);
 
 /// By which law each node's bodies touch.
-file::Json contact_json(const std::vector<study::NodeContactLaw>& laws);
+file::Json contact_json(const std::vector<analysis::NodeContactLaw>& laws);
 
-file::Json classes_json(const std::vector<study::ClassVerdict>& verdicts);
+file::Json classes_json(const std::vector<analysis::ClassVerdict>& verdicts);
 
-file::Json z_width_json(const std::vector<study::ZWidthCurve>& curves);
+file::Json z_width_json(const std::vector<analysis::ZWidthCurve>& curves);
 
 /// True when no path exceeds its stiffness limit and no loop is unstable.
 bool is_stable(const file::Json& found);

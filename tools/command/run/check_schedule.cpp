@@ -33,7 +33,7 @@ double bound_up_to(std::size_t last) {
 
 }  // namespace
 
-std::vector<double> measured_costs(const std::function<compile::Plan()>& plan) {
+std::vector<double> measured_costs(const std::function<compile::Schedule()>& plan) {
     try {
         run::EngineOptions options;
         options.seconds = measured_s;
@@ -52,7 +52,7 @@ std::vector<double> measured_costs(const std::function<compile::Plan()>& plan) {
     }
 }
 
-Json schedule_json(const compile::Plan& plan, const std::vector<double>& cost_s) {
+Json schedule_json(const compile::Schedule& plan, const std::vector<double>& cost_s) {
     Json rows = Json::array();
     const std::vector<analyse::ScheduledGroup> groups = analyse::schedule_of(plan, cost_s);
     double before = 0.0;  // load of the more critical groups
@@ -79,7 +79,7 @@ Json schedule_json(const compile::Plan& plan, const std::vector<double>& cost_s)
     return rows;
 }
 
-std::vector<std::string> schedule_warnings(const compile::Plan& plan, const std::vector<double>& cost_s) {
+std::vector<std::string> schedule_warnings(const compile::Schedule& plan, const std::vector<double>& cost_s) {
     std::vector<std::string> warnings;
     for (const analyse::ScheduledGroup& group : analyse::schedule_of(plan, cost_s))
         if (group.criticality <= compile::Criticality::force_value && !group.fits())

@@ -3,7 +3,7 @@
 #include "assets/file/whole_file.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/load_plan.hpp"
+#include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -15,14 +15,14 @@ namespace tactus::command {
 namespace {
 
 struct DrawChoice {
-    session::PatchChoice patch;
+    run::PatchChoice patch;
     std::filesystem::path out;
 };
 
-int draw(const session::PatchChoice& choice, const std::filesystem::path& out) {
+int draw(const run::PatchChoice& choice, const std::filesystem::path& out) {
     patch::Problems problems;
-    const std::optional<compile::Plan> plan = session::read_plan(choice, problems);
-    session::throw_problems(problems);
+    const std::optional<compile::Schedule> plan = run::read_plan(choice, problems);
+    run::throw_problems(problems);
     const std::string svg = analyse::draw_svg(*plan);
     if (out.empty()) fmt::print("{}", svg);
     else file::write_whole_file(out, svg);

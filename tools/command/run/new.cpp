@@ -5,7 +5,7 @@
 #include "graph/edit/patch_paths.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/load_plan.hpp"
+#include "tools/run/load_plan.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,7 +35,7 @@ std::vector<std::string> example_names() {
     for (const char* folder : folders) {
         const auto begin = static_cast<std::ptrdiff_t>(names.size());
         std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(session::library_folder() / folder, ignored))
+        for (const auto& entry : fs::directory_iterator(run::library_folder() / folder, ignored))
             if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
         std::sort(names.begin() + begin, names.end());
     }
@@ -44,10 +44,10 @@ std::vector<std::string> example_names() {
 
 fs::path find_example(const std::string& name) {
     for (const char* folder : folders)
-        if (const fs::path file = session::library_folder() / folder / (name + ".toml"); fs::exists(file)) return file;
+        if (const fs::path file = run::library_folder() / folder / (name + ".toml"); fs::exists(file)) return file;
     const std::vector<std::string> names = example_names();
     throw Error(names.empty()
-                    ? fmt::format("the library {} has no examples; build first", session::library_folder().string())
+                    ? fmt::format("the library {} has no examples; build first", run::library_folder().string())
                     : fmt::format("--from: no example '{}'{}; there are {}", name, did_you_mean(name, names),
                                   fmt::join(names, ", ")));
 }

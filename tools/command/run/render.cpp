@@ -2,13 +2,13 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/scene/frames.hpp"
-#include "tools/session/device_scale.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/output_folder.hpp"
-#include "tools/session/results.hpp"
-#include "tools/session/stop_signals.hpp"
-#include "tools/session/summary.hpp"
+#include "tools/render/frames.hpp"
+#include "tools/run/device_scale.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/output_folder.hpp"
+#include "tools/run/results.hpp"
+#include "tools/run/stop_signals.hpp"
+#include "tools/run/summary.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@
 
 namespace tactus::command {
 
-using namespace session;
-using namespace picture;
+using namespace run;
+using namespace render;
 
 namespace {
 
@@ -56,7 +56,7 @@ int render(const RenderChoice& choice) {
         options.seconds = log->seconds;
     }
     compile::AssetCache assets;
-    compile::Plan plan = load_plan(choice, assets);
+    compile::Schedule plan = load_plan(choice, assets);
     OutputFolder folder({choice.out, choice.overwrite});
     options.folder = folder.path();
     const std::atomic<bool>& interrupted = stop_on_signals();
@@ -139,9 +139,9 @@ void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
 Action add_render(VerbOptions& verb) {
     const auto choice = std::make_shared<RenderChoice>();
     add_patch_options(verb, *choice);
-    const auto site = std::make_shared<session::SiteText>();
+    const auto site = std::make_shared<run::SiteText>();
     add_site_options(verb, *site);
-    const auto saw = std::make_shared<session::SawChoice>();
+    const auto saw = std::make_shared<run::SawChoice>();
     add_saw_options(verb, *saw);
     const auto scale = std::make_shared<std::optional<double>>();
     add_device_scale(verb, *scale);
@@ -156,9 +156,9 @@ Action add_render(VerbOptions& verb) {
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");
     return [choice, site, saw, scale] {
-        session::choose_site(*choice, *site);
+        run::choose_site(*choice, *site);
         use_saw(*choice, *saw);
-        session::choose_device_scale(*choice, *scale);
+        run::choose_device_scale(*choice, *scale);
         return render(*choice);
     };
 }

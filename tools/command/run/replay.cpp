@@ -6,11 +6,11 @@
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/output_folder.hpp"
-#include "tools/session/replayed_take.hpp"
-#include "tools/session/results.hpp"
-#include "tools/session/summary.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/output_folder.hpp"
+#include "tools/run/replayed_take.hpp"
+#include "tools/run/results.hpp"
+#include "tools/run/summary.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@
 
 namespace tactus::command {
 
-using namespace session;
+using namespace run;
 
 namespace {
 

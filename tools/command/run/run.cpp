@@ -2,14 +2,14 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/device_scale.hpp"
-#include "tools/session/force_news.hpp"
-#include "tools/session/live_table.hpp"
-#include "tools/session/run_session.hpp"
-#include "tools/session/stop_signals.hpp"
-#include "tools/session/summary.hpp"
+#include "tools/run/device_scale.hpp"
+#include "tools/run/force_news.hpp"
+#include "tools/run/live_table.hpp"
+#include "tools/run/run_session.hpp"
+#include "tools/run/stop_signals.hpp"
+#include "tools/run/summary.hpp"
 #include "tools/terminal.hpp"
-#include "tools/view/view.hpp"
+#include "tools/window/view.hpp"
 
 #include <fmt/format.h>
 
@@ -18,13 +18,13 @@
 
 namespace tactus::command {
 
-using namespace session;
+using namespace run;
 
 namespace {
 
-int run(const view::ViewedRunChoice& choice) {
+int run(const window::ViewedRunChoice& choice) {
     const std::atomic<bool>& interrupted = stop_on_signals();
-    if (choice.view.wanted) return view::view_run(choice, interrupted);
+    if (choice.view.wanted) return window::view_run(choice, interrupted);
     if (!choice.view.scan.empty()) throw Error("--scan: slices of a scan are shown in the window; add --view");
     compile::AssetCache assets;
     RunSession session(choice, assets);
@@ -78,11 +78,11 @@ int run(const view::ViewedRunChoice& choice) {
 namespace {
 
 Action add_run(VerbOptions& verb) {
-    const auto choice = std::make_shared<view::ViewedRunChoice>();
+    const auto choice = std::make_shared<window::ViewedRunChoice>();
     add_patch_options(verb, *choice);
-    const auto site = std::make_shared<session::SiteText>();
+    const auto site = std::make_shared<run::SiteText>();
     add_site_options(verb, *site);
-    const auto saw = std::make_shared<session::SawChoice>();
+    const auto saw = std::make_shared<run::SawChoice>();
     add_saw_options(verb, *saw);
     const auto scale = std::make_shared<std::optional<double>>();
     add_device_scale(verb, *scale);
@@ -106,9 +106,9 @@ Action add_run(VerbOptions& verb) {
     add_view_options(verb, choice->view);
     verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
     return [choice, site, saw, scale] {
-        session::choose_site(*choice, *site);
+        run::choose_site(*choice, *site);
         use_saw(*choice, *saw);
-        session::choose_device_scale(*choice, *scale);
+        run::choose_device_scale(*choice, *scale);
         return run(*choice);
     };
 }

@@ -2,7 +2,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/control_socket.hpp"
+#include "tools/run/control_socket.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ struct SetChoice {
 int set(const SetChoice& choice) {
     for (const std::string& setting : choice.settings) {
         if (setting.find('\n') != std::string::npos) throw Error("a setting must be one line: NODE.PARAM=VALUE");
-        const std::string answer = session::ask_run(choice.process, "set " + setting);
+        const std::string answer = run::ask_run(choice.process, "set " + setting);
         if (answer.starts_with("error ")) throw Error(answer.substr(6));
         fmt::print("{}\n", answer);
     }

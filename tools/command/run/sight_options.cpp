@@ -3,7 +3,7 @@
 
 namespace tactus::command {
 
-void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Option* what) {
+void add_sight_options(VerbOptions& verb, render::SightChoice& choice, const Option* what) {
     const auto add = [&](const char* name, auto& value, const char* about) {
         Option option = verb.add(name, value, about);
         if (what) option.needs(*what);
@@ -21,7 +21,7 @@ void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Op
         "shift of the picture against the haptic position: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
 }
 
-void add_view_options(VerbOptions& verb, view::ViewChoice& choice) {
+void add_view_options(VerbOptions& verb, window::ViewChoice& choice) {
     verb.add("--view-script", choice.script, "run the commands in this file in the window");
     verb.add("--reference", choice.reference, "sound file whose spectrum is drawn below those of the signals");
     add_sight_options(verb, choice.sight, nullptr);

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "tools/command/options.hpp"
-#include "tools/view/view_choice.hpp"
+#include "tools/window/view_choice.hpp"
 
 namespace tactus::command {
 
 /// The options require `what`, unless it is null.
-void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Option* what);
+void add_sight_options(VerbOptions& verb, render::SightChoice& choice, const Option* what);
 /// Options of the window.
-void add_view_options(VerbOptions& verb, view::ViewChoice& choice);
+void add_view_options(VerbOptions& verb, window::ViewChoice& choice);
 
 }  // namespace tactus::command

@@ -3,7 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/control_socket.hpp"
+#include "tools/run/control_socket.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ int trigger(const TriggerChoice& choice) {
         // A button is down for 20 ms. Without a pause a second press of the same button would only prolong the first.
         if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(60));
         if (node.find('\n') != std::string::npos) throw Error("the name of a button must be one line");
-        const std::string answer = session::ask_run(choice.process, "trigger " + node);
+        const std::string answer = run::ask_run(choice.process, "trigger " + node);
         if (answer.starts_with("error ")) throw Error(answer.substr(6));
         fmt::print("{}\n", answer);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/view.hpp"
+#include "tools/window/view.hpp"
 #include "tools/command/run/sight_options.hpp"
-#include "tools/session/stop_signals.hpp"
+#include "tools/run/stop_signals.hpp"
 
 #include <memory>
 
@@ -9,10 +9,10 @@ namespace tactus::command {
 
 namespace {
 
-int view_file(const view::FileViewChoice& choice) { return view::view_file(choice, session::stop_on_signals()); }
+int view_file(const window::FileViewChoice& choice) { return window::view_file(choice, run::stop_on_signals()); }
 
 Action declare_view(VerbOptions& verb) {
-    const auto choice = std::make_shared<view::FileViewChoice>();
+    const auto choice = std::make_shared<window::FileViewChoice>();
     verb.add(
         "file", choice->file,
         "folder of a take, made with --record, or a patch or a plan of a case, which is opened and not run (default: a "

@@ -6,7 +6,7 @@
 #include "tools/command/options.hpp"
 #include "tools/command/training/score_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/training_page.hpp"
+#include "tools/report/figures/training_page.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -25,24 +25,24 @@ struct ScoreChoice {
     bool json = false;
 };
 
-std::vector<study::ScoredRun> scored(const std::vector<fs::path>& folders, const fs::path& task) {
-    std::vector<study::ScoredRun> runs;
+std::vector<analysis::ScoredRun> scored(const std::vector<fs::path>& folders, const fs::path& task) {
+    std::vector<analysis::ScoredRun> runs;
     for (const fs::path& folder : folders)
-        for (const fs::path& attempt : study::attempts_in(folder)) runs.push_back(study::score_run(attempt, task));
+        for (const fs::path& attempt : analysis::attempts_in(folder)) runs.push_back(analysis::score_run(attempt, task));
     return runs;
 }
 
 int score(const ScoreChoice& choice) {
-    const std::vector<study::ScoredRun> runs = scored(choice.runs, choice.task);
-    const std::vector<study::ScoredRun> others = scored(choice.reference, choice.task);
-    for (const study::ScoredRun& other : others)
+    const std::vector<analysis::ScoredRun> runs = scored(choice.runs, choice.task);
+    const std::vector<analysis::ScoredRun> others = scored(choice.reference, choice.task);
+    for (const analysis::ScoredRun& other : others)
         if (other.task.title != runs.back().task.title)
             throw Error(fmt::format("--reference {}: was at the task '{}', not at '{}'", other.name, other.task.title,
                                     runs.back().task.title));
-    const std::vector<study::ReferenceMeasure> group =
-        others.empty() ? std::vector<study::ReferenceMeasure>{} : study::reference_of(others);
+    const std::vector<analysis::ReferenceMeasure> group =
+        others.empty() ? std::vector<analysis::ReferenceMeasure>{} : analysis::reference_of(others);
     if (!choice.csv.empty()) file::write_whole_file(choice.csv, score_csv(runs));
-    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::training_page(runs, group));
+    if (!choice.report.empty()) file::write_whole_file(choice.report, report::training_page(runs, group));
     say(stdout, choice.json ? score_json(runs, group) : score_text(runs, group));
     return done;
 }

@@ -18,7 +18,7 @@ constexpr const char* not_validated = "not validated";
 
 Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json json_of(const study::Score& s) {
+Json json_of(const analysis::Score& s) {
     Json json{
         {"plane", {{"rms_mm", or_null(s.rms_mm)}, {"max_mm", or_null(s.max_mm)}, {"angle_deg", or_null(s.angle_deg)}}},
         {"over_mm3", s.over_mm3},
@@ -38,35 +38,35 @@ Json json_of(const study::Score& s) {
         {"seconds", s.seconds},
         {"path_mm", s.path_mm},
         {"heat_s", or_null(s.heat_s)}};
-    for (const study::SparedScore& one : s.spared)
+    for (const analysis::SparedScore& one : s.spared)
         json["spared"].push_back(
             {{"name", one.name}, {"injured_mm3", one.injured_mm3}, {"closest_mm", one.closest_mm}});
     json["validity"] = not_validated;
     return json;
 }
 
-Json row_of(const study::ScoredRun& run, std::span<const study::ReferenceMeasure> reference) {
+Json row_of(const analysis::ScoredRun& run, std::span<const analysis::ReferenceMeasure> reference) {
     Json json{{"run", run.name}, {"task", run.task.title}};
     if (!run.trainee.empty()) json["trainee"] = run.trainee;
     json.update(json_of(run.score));
     if (reference.empty()) return json;
     Json percentiles = Json::object();
-    const auto all = study::measures();
+    const auto all = analysis::measures();
     for (std::size_t n = 0; n < all.size(); ++n)
-        percentiles[all[n].name] = or_null(study::percentile(all[n], all[n].of(run.score), reference[n]));
+        percentiles[all[n].name] = or_null(analysis::percentile(all[n], all[n].of(run.score), reference[n]));
     json["percentiles"] = percentiles;
     return json;
 }
 
 }  // namespace
 
-std::string score_json(const study::ScoredRun& run) { return json_of(run.score).dump(2) + "\n"; }
+std::string score_json(const analysis::ScoredRun& run) { return json_of(run.score).dump(2) + "\n"; }
 
-std::string score_json(std::span<const study::ScoredRun> runs, std::span<const study::ReferenceMeasure> reference) {
+std::string score_json(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> reference) {
     if (runs.size() == 1 && reference.empty()) return score_json(runs.front());
     Json json{{"version", 1}, {"validity", not_validated}, {"rows", Json::array()}, {"learning", Json::array()}};
-    for (const study::ScoredRun& run : runs) json["rows"].push_back(row_of(run, reference));
-    for (const study::LearningCurve& curve : study::learning_curves(runs)) {
+    for (const analysis::ScoredRun& run : runs) json["rows"].push_back(row_of(run, reference));
+    for (const analysis::LearningCurve& curve : analysis::learning_curves(runs)) {
         Json values = Json::array();
         for (const auto& value : curve.values) values.push_back(or_null(value));
         json["learning"].push_back({{"task", curve.task},
@@ -76,7 +76,7 @@ std::string score_json(std::span<const study::ScoredRun> runs, std::span<const s
     }
     if (!reference.empty()) {
         json["reference"] = Json::array();
-        for (const study::ReferenceMeasure& one : reference)
+        for (const analysis::ReferenceMeasure& one : reference)
             json["reference"].push_back({{"measure", one.measure},
                                          {"n", one.values.size()},
                                          {"mean", one.values.empty() ? Json(nullptr) : Json(one.mean)},
@@ -85,13 +85,13 @@ std::string score_json(std::span<const study::ScoredRun> runs, std::span<const s
     return json.dump(2) + "\n";
 }
 
-std::string score_csv(std::span<const study::ScoredRun> runs) {
+std::string score_csv(std::span<const analysis::ScoredRun> runs) {
     std::string text = "run,trainee,task";
-    for (const study::Measure& measure : study::measures()) text += "," + measure.name;
+    for (const analysis::Measure& measure : analysis::measures()) text += "," + measure.name;
     text += ",validity\n";
-    for (const study::ScoredRun& run : runs) {
+    for (const analysis::ScoredRun& run : runs) {
         text += fmt::format("{},{},{}", csv_field(run.name), csv_field(run.trainee), csv_field(run.task.title));
-        for (const study::Measure& measure : study::measures()) {
+        for (const analysis::Measure& measure : analysis::measures()) {
             const auto value = measure.of(run.score);
             text += value ? fmt::format(",{:.6g}", *value) : ",";
         }
@@ -100,20 +100,20 @@ std::string score_csv(std::span<const study::ScoredRun> runs) {
     return text;
 }
 
-std::string score_text(std::span<const study::ScoredRun> runs, std::span<const study::ReferenceMeasure> reference) {
+std::string score_text(std::span<const analysis::ScoredRun> runs, std::span<const analysis::ReferenceMeasure> reference) {
     std::string text;
-    const auto all = study::measures();
-    for (const study::ScoredRun& run : runs) {
+    const auto all = analysis::measures();
+    for (const analysis::ScoredRun& run : runs) {
         text += fmt::format("{}: {}\n", run.name, run.task.title);
         for (std::size_t n = 0; n < all.size(); ++n) {
             const auto value = all[n].of(run.score);
             text += fmt::format("  {:<28} {:>10}", all[n].name, value ? fmt::format("{:.4g}", *value) : "-");
             if (!reference.empty())
-                if (const auto rank = study::percentile(all[n], value, reference[n]))
+                if (const auto rank = analysis::percentile(all[n], value, reference[n]))
                     text += fmt::format("   percentile {:.0f} of {}", *rank, reference[n].values.size());
             text += "\n";
         }
-        for (const study::SparedScore& one : run.score.spared)
+        for (const analysis::SparedScore& one : run.score.spared)
             if (one.injured_mm3 > 0.0) text += fmt::format("  injured: {}, {:.3g} mm³\n", one.name, one.injured_mm3);
         if (run.score.device_scale != 1.0)
             text += fmt::format("  forces are those of the tool; those on the device were {:g} times as large\n",
@@ -123,7 +123,7 @@ std::string score_text(std::span<const study::ScoredRun> runs, std::span<const s
                 "  the force was limited {:.0f} % of the time in contact: the device gave less than the tool "
                 "wanted\n",
                 100.0 * run.score.limited);
-        if (run.score.shown_share && *run.score.shown_share < study::complete_share)
+        if (run.score.shown_share && *run.score.shown_share < analysis::complete_share)
             text += "  the blade was in the bone without force on the hand: do not compare this attempt with others\n";
     }
     return text + "scores are not validated\n";

@@ -9,15 +9,15 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/training/score_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/session/device_scale.hpp"
-#include "tools/session/load_plan.hpp"
-#include "tools/session/rendered_run.hpp"
-#include "tools/session/run_session.hpp"
-#include "tools/session/stop_signals.hpp"
-#include "tools/session/summary.hpp"
-#include "tools/session/training_session.hpp"
+#include "tools/run/device_scale.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/run/rendered_run.hpp"
+#include "tools/run/run_session.hpp"
+#include "tools/run/stop_signals.hpp"
+#include "tools/run/summary.hpp"
+#include "tools/run/training_session.hpp"
 #include "tools/terminal.hpp"
-#include "tools/view/view.hpp"
+#include "tools/window/view.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@
 
 namespace tactus::command {
 
-using namespace session;
+using namespace run;
 
 namespace {
 
@@ -35,7 +35,7 @@ struct SessionChoice {
     std::vector<std::string> tasks;
     std::string trainee;
     fs::path out;
-    view::ViewedRunChoice run;  // what all attempts share
+    window::ViewedRunChoice run;  // what all attempts share
     std::optional<double> device_scale;
     SawChoice saw;
     bool offline = false, is_new = false;
@@ -47,8 +47,8 @@ struct AttemptEnd {
     int code = done;
 };
 
-view::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task, const fs::path& at) {
-    view::ViewedRunChoice run = choice.run;
+window::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task, const fs::path& at) {
+    window::ViewedRunChoice run = choice.run;
     run.patch = task.patch.empty() ? "saw-task" : task.patch;
     run.overrides.settings = task.settings;
     choose_device_scale(run, choice.device_scale);
@@ -72,10 +72,10 @@ AttemptEnd tell(double seconds, const std::vector<std::string>& losses, const st
     return {seconds, losses.empty() && faults.empty() ? done : output_lost};
 }
 
-AttemptEnd make_attempt(const view::ViewedRunChoice& choice, bool offline, compile::AssetCache& assets,
+AttemptEnd make_attempt(const window::ViewedRunChoice& choice, bool offline, compile::AssetCache& assets,
                         const std::atomic<bool>& stop) {
     if (choice.view.wanted) {
-        const int code = view::view_run(choice, stop);
+        const int code = window::view_run(choice, stop);
         return {choice.seconds.value(), code};
     }
     LiveLine line;
@@ -100,7 +100,7 @@ AttemptEnd make_attempt(const view::ViewedRunChoice& choice, bool offline, compi
 /// Scores what was done; a failure is told, and the session goes on: the score can be made again.
 void keep_score(const fs::path& attempt) {
     try {
-        const study::ScoredRun run = study::score_run(attempt);
+        const analysis::ScoredRun run = analysis::score_run(attempt);
         file::write_whole_file(attempt / "score.json", score_json(run));
         say(stdout, score_text(std::span(&run, 1), {}));
     } catch (const Error& error) {
@@ -150,7 +150,7 @@ int run_session(const SessionChoice& choice) {
         const fs::path attempt = session.begin_attempt();
         say(stderr, fmt::format("task {} of {}: {}\n{}{}", session.done() + 1, session.count(), task.title, task.about,
                                 task.about.empty() ? "" : "\n"));
-        const view::ViewedRunChoice run = attempt_choice(choice, task, attempt);
+        const window::ViewedRunChoice run = attempt_choice(choice, task, attempt);
         const AttemptEnd end = make_attempt(run, choice.offline, assets, stop);
         session.complete_attempt(end.seconds, stop);
         worst = std::max(worst, end.code);

@@ -16,7 +16,7 @@
 namespace tactus::command {
 
 using file::Json;
-using study::BodyOperation;
+using analysis::BodyOperation;
 
 namespace {
 
@@ -48,7 +48,7 @@ std::string body_text(const BodyOperation& one) {
     std::string text = fmt::format("{}: {:.0f} min a day, whole body, {}\n", one.file, one.duration / 60.0,
                                    is_health(one) ? "health (ISO 2631-1)" : "comfort in trains (ISO 2631-4)");
     if (!one.stretch.is_whole()) text += fmt::format("  of the record: {}\n", one.stretch.text());
-    for (const std::string& line : study::understood(one.calibration, one.log, one.rate)) text += "  " + line + "\n";
+    for (const std::string& line : analysis::understood(one.calibration, one.log, one.rate)) text += "  " + line + "\n";
     for (const BodyOperation::Axis& axis : one.axes) {
         const signal::BodyAxisVibration& v = axis.vibration;
         text += fmt::format(
@@ -76,7 +76,7 @@ std::string body_text(const BodyOperation& one) {
     return text;
 }
 
-std::string body_day_text(const study::BodyDay& day) {
+std::string body_day_text(const analysis::BodyDay& day) {
     std::string text = verdict_text(fmt::format("A(8) of axis {}", letter(day.a8_axis)), "m/s^2", day.a8,
                                     signal::whole_body_limits, day.is_lower_bound) +
                        "\n" +
@@ -134,7 +134,7 @@ Json body_json(const BodyOperation& one) {
     return json;
 }
 
-Json body_day_json(const std::optional<study::BodyDay>& day) {
+Json body_day_json(const std::optional<analysis::BodyDay>& day) {
     if (!day) return nullptr;
     return {{"a8", day->a8},
             {"a8_axis", std::string(1, letter(day->a8_axis))},

@@ -8,10 +8,10 @@
 #include "tools/command/vibration/comparison_text.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/comparison_page.hpp"
-#include "tools/picture/report/comparison_table.hpp"
-#include "tools/picture/report/html_report.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/comparison_page.hpp"
+#include "tools/report/figures/comparison_table.hpp"
+#include "tools/report/figures/html_report.hpp"
 
 #include <fmt/format.h>
 
@@ -24,11 +24,11 @@ namespace tactus::command {
 namespace {
 
 namespace fs = std::filesystem;
-namespace html = picture::html;
-using study::ComparedPair;
+namespace html = report::html;
+using analysis::ComparedPair;
 
 struct CompareChoice {
-    study::CompareSettings settings;
+    analysis::CompareSettings settings;
     fs::path thresholds;
     std::string plot;                                // .svg or .png
     fs::path report, table;                          // .html, .csv
@@ -69,15 +69,15 @@ VerdictCounts count_of(std::span<const ComparedPair> pairs, std::span<const std:
 std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
                     std::size_t passed) {
     std::string body =
-        fmt::format("<p>{} of {} pass.</p>\n", passed, pairs.size()) + picture::comparison_summary(pairs, failures);
+        fmt::format("<p>{} of {} pass.</p>\n", passed, pairs.size()) + report::comparison_summary(pairs, failures);
     const ComparedPair* last = nullptr;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (!failures[i].empty()) continue;
         last = &pairs[i];
-        body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(study::pair_name(pairs[i], pairs))) +
-                picture::comparison_section(pairs[i], fmt::format("p{}x", i));
+        body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(analysis::pair_name(pairs[i], pairs))) +
+                report::comparison_section(pairs[i], fmt::format("p{}x", i));
     }
-    if (last) body += picture::comparison_method(*last);
+    if (last) body += report::comparison_method(*last);
     return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
 }
 
@@ -96,12 +96,12 @@ std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::
     return json.dump(2);
 }
 
-int compare_one(const CompareChoice& choice, const study::CompareSettings& settings) {
+int compare_one(const CompareChoice& choice, const analysis::CompareSettings& settings) {
     if (!choice.plot.empty() && !choice.plot.ends_with(".svg") && !choice.plot.ends_with(".png"))
         throw Error(choice.plot + ": a figure is written as .svg or .png");
-    const ComparedPair pair = study::compare_files(settings);
-    if (!choice.plot.empty()) picture::write_figure(picture::draw_comparison(pair), choice.plot);
-    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::comparison_page(pair));
+    const ComparedPair pair = analysis::compare_files(settings);
+    if (!choice.plot.empty()) report::write_figure(report::draw_comparison(pair), choice.plot);
+    if (!choice.report.empty()) file::write_whole_file(choice.report, report::comparison_page(pair));
     if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
     if (choice.json) {
         const std::vector<std::string> no_failure(1);
@@ -111,8 +111,8 @@ int compare_one(const CompareChoice& choice, const study::CompareSettings& setti
     return pair.verdict.passed() ? done : answer_is_no;
 }
 
-int compare_many(const CompareChoice& choice, const study::CompareSettings& settings) {
-    const std::vector<study::PairedFiles> names = study::paired_files(settings.reference, settings.output);
+int compare_many(const CompareChoice& choice, const analysis::CompareSettings& settings) {
+    const std::vector<analysis::PairedFiles> names = analysis::paired_files(settings.reference, settings.output);
     if (!choice.plot.empty()) fs::create_directories(choice.plot);
     std::vector<ComparedPair> pairs(names.size());
     const std::vector<std::string> failures =
@@ -125,13 +125,13 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
             if (names[i].output.empty())
                 throw Error(fmt::format("{}: there is no output with this name in {}", names[i].reference.string(),
                                         settings.output.string()));
-            study::CompareSettings one = settings;
+            analysis::CompareSettings one = settings;
             one.reference = names[i].reference;
             one.output = names[i].output;
-            pairs[i] = study::compare_files(one);
+            pairs[i] = analysis::compare_files(one);
             if (choice.plot.empty()) return;
             const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
-            picture::write_figure(picture::draw_comparison(pairs[i]),
+            report::write_figure(report::draw_comparison(pairs[i]),
                                   fs::path(choice.plot) / (varied.filename().string() + ".svg"));
         });
     const VerdictCounts count = count_of(pairs, failures);
@@ -144,10 +144,10 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
 }
 
 int compare(const CompareChoice& choice) {
-    study::CompareSettings settings = choice.settings;
+    analysis::CompareSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
-    settings.axes = choice.axes == "vector" ? study::Axes::vector : study::Axes::strongest;
+    settings.axes = choice.axes == "vector" ? analysis::Axes::vector : analysis::Axes::strongest;
     settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
     settings.stretches = {stretch_of(choice.stretch, 0), stretch_of(choice.stretch, 1)};
     if (!choice.band.empty()) settings.plotted = parse_band(choice.band, "--band");
@@ -159,7 +159,7 @@ int compare(const CompareChoice& choice) {
 
 Action declare_compare(VerbOptions& verb) {
     const auto choice = std::make_shared<CompareChoice>();
-    study::CompareSettings& settings = choice->settings;
+    analysis::CompareSettings& settings = choice->settings;
     verb.add("reference", settings.reference, "sound file or CSV log of the reference vibration, or a folder")
         .required();
     verb.add("output", settings.output,

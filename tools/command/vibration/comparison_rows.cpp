@@ -9,8 +9,8 @@
 
 namespace tactus::command {
 
-using study::ComparedPair;
-using study::pair_name;
+using analysis::ComparedPair;
+using analysis::pair_name;
 
 namespace {
 

@@ -12,10 +12,10 @@
 namespace tactus::command {
 
 using file::Json;
-using study::ComparedPair;
-using study::Judged;
-using study::name_of_line;
-using study::touch_unit;
+using analysis::ComparedPair;
+using analysis::Judged;
+using analysis::name_of_line;
+using analysis::touch_unit;
 
 namespace {
 

@@ -2,7 +2,7 @@
 // Comparisons as text, JSON and CSV.
 #pragma once
 
-#include "tools/study/vibration/comparison.hpp"
+#include "tools/analysis/vibration/comparison.hpp"
 
 #include <cstddef>
 #include <span>
@@ -16,9 +16,9 @@ struct VerdictCounts {
     std::size_t passed = 0, failed = 0, bad = 0;
 };
 
-std::string comparison_json(const study::ComparedPair& pair);
+std::string comparison_json(const analysis::ComparedPair& pair);
 /// Prints on standard output.
-void print(const study::ComparedPair& pair);
+void print(const analysis::ComparedPair& pair);
 
 /// The quantity of the threshold of touch, by name.
 signal::ThresholdUnit touch_of(const std::string& name);
@@ -27,8 +27,8 @@ signal::ThresholdUnit touch_of(const std::string& name);
 // its two names only.
 
 /// A text table with a heading.
-std::string comparison_rows(std::span<const study::ComparedPair> pairs, const std::vector<std::string>& failures);
+std::string comparison_rows(std::span<const analysis::ComparedPair> pairs, const std::vector<std::string>& failures);
 /// A CSV table.
-std::string comparison_table(std::span<const study::ComparedPair> pairs, const std::vector<std::string>& failures);
+std::string comparison_table(std::span<const analysis::ComparedPair> pairs, const std::vector<std::string>& failures);
 
 }  // namespace tactus::command

@@ -4,7 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/study/vibration/equalisation.hpp"
+#include "tools/analysis/vibration/equalisation.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace {
 using file::Json;
 
 struct EqualiseChoice {
-    study::EqualiseSettings settings;
+    analysis::EqualiseSettings settings;
     std::filesystem::path out;
     std::string kind = "minimum";
     double greatest_boost_db = 20.0;
@@ -45,15 +45,15 @@ void print_headroom(const char* name, const vibration::Headroom& h, double limit
 }
 
 int equalise(const EqualiseChoice& choice) {
-    study::EqualiseSettings settings = choice.settings;
+    analysis::EqualiseSettings settings = choice.settings;
     settings.design.kind =
         choice.kind == "linear" ? vibration::EqualiserKind::linear_phase : vibration::EqualiserKind::minimum_phase;
     settings.design.greatest_gain = std::pow(10.0, choice.greatest_boost_db / 20.0);
-    const study::Equalisation made = study::equalise(settings);
+    const analysis::Equalisation made = analysis::equalise(settings);
     sound::save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title,
                           choice.out);
     const vibration::Equaliser& equaliser = made.equaliser;
-    const study::Flatness& flat = made.flat;
+    const analysis::Flatness& flat = made.flat;
     const vibration::ActuatorModel& actuator = *made.actuator;
     if (choice.json) {
         Json json{{"equaliser", choice.out.string()},
@@ -102,7 +102,7 @@ int equalise(const EqualiseChoice& choice) {
 
 Action declare_equalise(VerbOptions& verb) {
     const auto choice = std::make_shared<EqualiseChoice>();
-    study::EqualiseSettings& settings = choice->settings;
+    analysis::EqualiseSettings& settings = choice->settings;
     vibration::EqualiserDesign& design = settings.design;
     verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
     verb.add("-o,--out", choice->out, "TOML file for the filter").required();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus exposure: vibration exposure of the hand (ISO 5349-1) and of the whole body (ISO 2631-1, -4).
-#include "tools/study/vibration/exposure.hpp"
+#include "tools/analysis/vibration/exposure.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
@@ -28,7 +28,7 @@ namespace tactus::command {
 namespace {
 
 using file::Json;
-using Operation = study::ExposureOperation;
+using Operation = analysis::ExposureOperation;
 
 struct ExposureChoice : RecordChoice {
     std::vector<std::string> durations;  // quantities of time; a bare number is hours
@@ -108,7 +108,7 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
 void print_operation(const Operation& one) {
     fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
     if (!one.stretch.is_whole()) fmt::print("  of the record: {}\n", one.stretch.text());
-    for (const std::string& line : study::understood(one.calibration, one.log, one.rate)) fmt::print("  {}\n", line);
+    for (const std::string& line : analysis::understood(one.calibration, one.log, one.rate)) fmt::print("  {}\n", line);
     for (std::size_t i = 0; i < one.axes.size(); ++i)
         fmt::print("  axis {}: a_hw {} m/s^2 rms, by transform of the record (by filter {})\n", one.axes[i],
                    plain(one.weighted[i]), plain(one.filtered[i]));
@@ -154,18 +154,18 @@ int hand_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
     if (!choice.axes.empty())
         throw Error("--axes is of --body whole and --body rail; the hand has one weighting for all");
     const std::vector<double> durations = durations_of(choice, files.size());
-    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated, {}};
+    const analysis::ExposureSettings settings{choice.settings(), choice.uncalibrated, {}};
     std::vector<Operation> operations(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
-            operations[i] = study::analyse_exposure(files[i], settings, durations[i], progress);
+            operations[i] = analysis::analyse_exposure(files[i], settings, durations[i], progress);
         });
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
     if (bad && files.size() == 1 && !choice.json) return bad_input;
     // Without all files there is no A(8) of the day.
     std::optional<double> a8;
-    if (!bad) a8 = study::exposure_of_day(operations);
+    if (!bad) a8 = analysis::exposure_of_day(operations);
     const double day = a8.value_or(0.0);
     const bool is_bound = std::ranges::any_of(operations, &Operation::is_lower_bound);
     if (choice.json) {
@@ -176,7 +176,7 @@ int hand_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
                                              : Json{{"file", files[i].string()}, {"error", failures[i]}});
         json["lower_bound"] = is_bound;
         json["verdict"] =
-            a8 ? Json(verdict_name(study::judge_exposure(day, signal::hand_arm_limits, is_bound))) : Json();
+            a8 ? Json(verdict_name(analysis::judge_exposure(day, signal::hand_arm_limits, is_bound))) : Json();
         json["years_to_white_fingers"] = day > 0.0 ? Json(signal::years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
@@ -192,13 +192,13 @@ int hand_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
 
 int body_exposure(const ExposureChoice& choice, const std::vector<std::filesystem::path>& files) {
     const std::vector<double> durations = durations_of(choice, files.size());
-    const study::ExposureSettings settings{choice.settings(), choice.uncalibrated, choice.axes};
+    const analysis::ExposureSettings settings{choice.settings(), choice.uncalibrated, choice.axes};
     const bool is_health = choice.body == "whole";
     const auto judgement = is_health ? signal::BodyJudgement::health : signal::BodyJudgement::rail_comfort;
-    std::vector<study::BodyOperation> operations(files.size());
+    std::vector<analysis::BodyOperation> operations(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
-            operations[i] = study::analyse_body_exposure(files[i], settings, judgement, durations[i], progress);
+            operations[i] = analysis::analyse_body_exposure(files[i], settings, judgement, durations[i], progress);
         });
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) {
@@ -210,8 +210,8 @@ int body_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
         file::write_whole_file(choice.table, table);
     }
     if (bad && files.size() == 1 && !choice.json) return bad_input;
-    std::optional<study::BodyDay> day;
-    if (!bad && is_health) day = study::body_day(operations);
+    std::optional<analysis::BodyDay> day;
+    if (!bad && is_health) day = analysis::body_day(operations);
     if (choice.json) {
         Json json{{"body", choice.body}, {"day", body_day_json(day)}, {"operations", Json::array()}};
         for (std::size_t i = 0; i < files.size(); ++i)
@@ -221,7 +221,7 @@ int body_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
     }
-    for (const study::BodyOperation& one : operations)
+    for (const analysis::BodyOperation& one : operations)
         if (!one.file.empty()) fmt::print("{}", body_text(one));
     if (day) fmt::print("{}", body_day_text(*day));
     else if (is_health) fmt::print("no A(8) of the day: {}\n", no_day(bad));
@@ -229,7 +229,7 @@ int body_exposure(const ExposureChoice& choice, const std::vector<std::filesyste
 }
 
 int exposure(const ExposureChoice& choice) {
-    const std::vector<std::filesystem::path> files = study::expand_folders(choice.files);
+    const std::vector<std::filesystem::path> files = analysis::expand_folders(choice.files);
     return choice.body == "hand" ? hand_exposure(choice, files) : body_exposure(choice, files);
 }
 

@@ -9,13 +9,13 @@
 
 namespace tactus::command {
 
-const char* verdict_name(study::ExposureVerdict verdict) {
+const char* verdict_name(analysis::ExposureVerdict verdict) {
     switch (verdict) {
-        case study::ExposureVerdict::below_action: return "below_action";
-        case study::ExposureVerdict::above_action: return "above_action";
-        case study::ExposureVerdict::above_limit: return "above_limit";
-        case study::ExposureVerdict::at_least_above_action: return "at_least_above_action";
-        case study::ExposureVerdict::cannot_be_judged: break;
+        case analysis::ExposureVerdict::below_action: return "below_action";
+        case analysis::ExposureVerdict::above_action: return "above_action";
+        case analysis::ExposureVerdict::above_limit: return "above_limit";
+        case analysis::ExposureVerdict::at_least_above_action: return "at_least_above_action";
+        case analysis::ExposureVerdict::cannot_be_judged: break;
     }
     return "cannot_be_judged";
 }
@@ -24,18 +24,18 @@ std::string verdict_text(const std::string& what, const char* unit, double value
                          bool is_lower_bound) {
     const std::string begin =
         fmt::format("{} {}{} {}: ", what, is_lower_bound ? "at least " : "", plain(value, 3), unit);
-    switch (study::judge_exposure(value, limits, is_lower_bound)) {
-        case study::ExposureVerdict::below_action:
+    switch (analysis::judge_exposure(value, limits, is_lower_bound)) {
+        case analysis::ExposureVerdict::below_action:
             return begin + fmt::format("below the action value, {:g}", limits.action);
-        case study::ExposureVerdict::above_action:
+        case analysis::ExposureVerdict::above_action:
             return begin + fmt::format("above the action value, {:g}", limits.action);
-        case study::ExposureVerdict::above_limit:
+        case analysis::ExposureVerdict::above_limit:
             return begin + fmt::format("above the limit value, {:g}", limits.limit);
-        case study::ExposureVerdict::at_least_above_action:
+        case analysis::ExposureVerdict::at_least_above_action:
             return begin +
                    fmt::format("above the action value, {:g}; whether the limit value, {:g}, is kept cannot be judged",
                                limits.action, limits.limit);
-        case study::ExposureVerdict::cannot_be_judged: break;
+        case analysis::ExposureVerdict::cannot_be_judged: break;
     }
     return begin + "cannot be judged; axes, frequencies or peaks are missing in the record";
 }

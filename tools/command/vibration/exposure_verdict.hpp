@@ -3,14 +3,14 @@
 #pragma once
 
 #include "assets/file/json.hpp"
-#include "tools/study/vibration/exposure.hpp"
+#include "tools/analysis/vibration/exposure.hpp"
 
 #include <string>
 
 namespace tactus::command {
 
 /// Of JSON: "below_action".
-const char* verdict_name(study::ExposureVerdict verdict);
+const char* verdict_name(analysis::ExposureVerdict verdict);
 
 /// "A(8) 3.2 m/s^2: above the action value, 2.5". `what`: "A(8)"; `unit`: "m/s^2".
 std::string verdict_text(const std::string& what, const char* unit, double value, const signal::ExposureLimits& limits,

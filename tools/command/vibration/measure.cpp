@@ -3,8 +3,8 @@
 #include "assets/file/json.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/study/vibration/equalisation.hpp"
-#include "tools/study/vibration/measurement.hpp"
+#include "tools/analysis/vibration/equalisation.hpp"
+#include "tools/analysis/vibration/measurement.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
@@ -20,26 +20,26 @@ namespace {
 using file::Json;
 
 struct MeasureChoice {
-    study::MeasureSettings settings;
+    analysis::MeasureSettings settings;
     std::filesystem::path csv = "response.csv", equaliser;
     bool json = false;
 };
 
 constexpr const char* kinds[] = {"displacement", "velocity", "acceleration"};
 
-using Made = std::optional<study::Equalisation>;
+using Made = std::optional<analysis::Equalisation>;
 
 /// As 'equalise' makes it by default.
 Made equalise(const MeasureChoice& choice) {
     if (choice.equaliser.empty()) return std::nullopt;
-    study::EqualiseSettings settings;
+    analysis::EqualiseSettings settings;
     settings.response = choice.csv;
-    Made made = study::equalise(settings);
+    Made made = analysis::equalise(settings);
     sound::save_equaliser(made->equaliser, made->title, choice.equaliser);
     return made;
 }
 
-std::string json_of(const study::Measurement& found, const MeasureChoice& choice, const Made& made) {
+std::string json_of(const analysis::Measurement& found, const MeasureChoice& choice, const Made& made) {
     const auto known = [&](const auto& value) { return found.resonance.hz > 0.0 ? Json(value) : Json(); };
     Json json{{"resonance_hz", known(found.resonance.hz)},
               {"damping_ratio", known(found.resonance.damping)},
@@ -59,7 +59,7 @@ std::string json_of(const study::Measurement& found, const MeasureChoice& choice
                                  {"peak", mode.peak},
                                  {"resolved", mode.is_resolved()},
                                  {"needed_duration_s", mode.needed_duration}});
-    for (const study::DistortionOrder& order : found.orders)
+    for (const analysis::DistortionOrder& order : found.orders)
         json["thd"].push_back({{"order", order.order},
                                {"percent", 100.0 * order.rms},
                                {"worst_percent", 100.0 * order.worst},
@@ -78,8 +78,8 @@ std::string json_of(const study::Measurement& found, const MeasureChoice& choice
     return json.dump(2) + "\n";
 }
 
-void print(const study::Measurement& found, const MeasureChoice& choice, const Made& made) {
-    const study::MeasureSettings& settings = choice.settings;
+void print(const analysis::Measurement& found, const MeasureChoice& choice, const Made& made) {
+    const analysis::MeasureSettings& settings = choice.settings;
     fmt::print("{}\n", found.response.title);
     if (!(found.resonance.hz > 0.0))
         fmt::print("  resonance   none from {:.0f} to {:.0f} Hz\n", settings.fit_lowest, found.fit_highest);
@@ -99,7 +99,7 @@ void print(const study::Measurement& found, const MeasureChoice& choice, const M
     fmt::print("  latency     {:.3f} ms\n", 1e3 * found.response.identified.response.latency);
     fmt::print("  coherence   {:.4f} on average from {:.0f} to {:.0f} Hz\n", found.coherence, found.lowest,
                found.highest);
-    for (const study::DistortionOrder& order : found.orders)
+    for (const analysis::DistortionOrder& order : found.orders)
         fmt::print("  order {}     {:.3f} % (rms), worst {:.3f} % at {:.0f} Hz\n", order.order, 100.0 * order.rms,
                    100.0 * order.worst, order.worst_hz);
     if (found.card)
@@ -116,7 +116,7 @@ void print(const study::Measurement& found, const MeasureChoice& choice, const M
 
 int measure(const MeasureChoice& choice) {
     LiveLine line;
-    const study::Measurement found = study::measure(
+    const analysis::Measurement found = analysis::measure(
         choice.settings, [&](double share) { line.show(fmt::format("{:3.0f} % of the sweep", 100.0 * share)); });
     line.clear();
     sound::save_response(found.response, choice.csv);
@@ -140,7 +140,7 @@ void port_was_out(std::vector<std::string>& words) {
 
 Action declare_measure(VerbOptions& verb) {
     const auto choice = std::make_shared<MeasureChoice>();
-    study::MeasureSettings& settings = choice->settings;
+    analysis::MeasureSettings& settings = choice->settings;
     verb.add("patch", settings.patch.patch, "patch file, or a name in the library");
     verb.add("--in", settings.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
     verb.add("--probe", settings.out_port, "NODE.PORT, the output that is recorded");

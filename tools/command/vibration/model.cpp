@@ -3,7 +3,7 @@
 #include "assets/file/json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/study/vibration/saw_modelling.hpp"
+#include "tools/analysis/vibration/saw_modelling.hpp"
 
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ namespace tactus::command {
 namespace {
 
 using file::Json;
-using study::ModelDistance;
-using study::ModelledRecording;
+using analysis::ModelDistance;
+using analysis::ModelledRecording;
 
 struct ModelChoice {
-    study::SawModelSettings settings;
+    analysis::SawModelSettings settings;
     std::filesystem::path out;
     StretchChoice stretch;
     bool json = false;
@@ -28,7 +28,7 @@ Json distance_json(const ModelDistance& distance) {
     return {{"log_spectral_db", distance.log_spectral_db}, {"level_db", distance.level_db}};
 }
 
-Json rows_json(const study::SawModelling& modelling) {
+Json rows_json(const analysis::SawModelling& modelling) {
     Json rows = Json::array();
     for (const ModelledRecording& row : modelling.recordings)
         rows.push_back({{"file", row.recording->file.string()},
@@ -43,7 +43,7 @@ Json rows_json(const study::SawModelling& modelling) {
     return rows;
 }
 
-void print(const study::SawModelling& modelling, const ModelChoice& choice) {
+void print(const analysis::SawModelling& modelling, const ModelChoice& choice) {
     fmt::print("{}: {} conditions, a residual filter of order {}, {}{}\n", choice.out.string(),
                modelling.model.conditions.size(), vibration::SawModelSize::lines,
                modelling.texts.calibrated ? "in m/s^2" : "normalised",
@@ -71,9 +71,9 @@ void print(const study::SawModelling& modelling, const ModelChoice& choice) {
 }
 
 int model(const ModelChoice& choice) {
-    study::SawModelSettings settings = choice.settings;
+    analysis::SawModelSettings settings = choice.settings;
     settings.stretch = stretch_of(choice.stretch);
-    const study::SawModelling modelling = study::model_saw(settings);
+    const analysis::SawModelling modelling = analysis::model_saw(settings);
     sound::save_saw_model(modelling.model, modelling.texts, choice.out);
     if (choice.json) {
         const Json json{{"model", choice.out.string()},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus orders: order analysis of a machine with a changing rate.
-#include "tools/study/vibration/orders.hpp"
+#include "tools/analysis/vibration/orders.hpp"
 #include "assets/file/json.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
@@ -9,9 +9,9 @@
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/waterfall_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/spectra/waterfall_figure.hpp"
-#include "tools/study/vibration/level_reference.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/waterfall_figure.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ namespace {
 using file::Json;
 
 struct OrdersChoice : RecordChoice {
-    study::OrdersSettings orders;
+    analysis::OrdersSettings orders;
     std::filesystem::path csv;
     std::string band;  // LOW:HIGH in Hz; empty: found
     bool peak = false;
@@ -34,7 +34,7 @@ struct OrdersChoice : RecordChoice {
     std::string over, against;  // of waterfalls; empty: orders, time
 };
 
-std::string json_of(const std::string& file, const study::Orders& found) {
+std::string json_of(const std::string& file, const analysis::Orders& found) {
     Json json{{"file", file},
               {"sample_rate_hz", found.sample_rate},
               {"duration_s", found.duration},
@@ -45,8 +45,8 @@ std::string json_of(const std::string& file, const study::Orders& found) {
     json["calibration"] = calibration_json(found.calibration);
     if (found.log) json["log"] = log_json(*found.log, found.sample_rate);
     if (found.source == "ridge") json["ridge_prominence_db"] = found.prominence_db;
-    const study::LevelReference reference = study::level_reference(found.calibration);
-    for (const study::OrdersOfChannel& one : found.channels) {
+    const analysis::LevelReference reference = analysis::level_reference(found.calibration);
+    for (const analysis::OrdersOfChannel& one : found.channels) {
         Json channel{{"name", one.name},
                      {"unit", found.calibration.unit},
                      {"calibrated", found.calibration.known},
@@ -73,14 +73,14 @@ std::string json_of(const std::string& file, const study::Orders& found) {
     return json.dump(2) + "\n";
 }
 
-std::string text_of(const std::string& file, const study::Orders& found, bool peak) {
-    const study::LevelReference reference = study::level_reference(found.calibration);
+std::string text_of(const std::string& file, const analysis::Orders& found, bool peak) {
+    const analysis::LevelReference reference = analysis::level_reference(found.calibration);
     std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
                                    found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
     if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
-    for (const std::string& line : study::understood(found.calibration, found.log, found.sample_rate))
+    for (const std::string& line : analysis::understood(found.calibration, found.log, found.sample_rate))
         text += "  " + line + "\n";
-    for (const study::OrdersOfChannel& one : found.channels) {
+    for (const analysis::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
         for (const signal::OrderLevel& level : one.spectrum.orders) {
             const double square = 0.5 * level.amplitude * level.amplitude;
@@ -95,15 +95,15 @@ std::string text_of(const std::string& file, const study::Orders& found, bool pe
 }
 
 /// CSV of level over order.
-std::string csv_of(const study::Orders& found, bool peak) {
+std::string csv_of(const analysis::Orders& found, bool peak) {
     std::string csv = "order";
-    for (const study::OrdersOfChannel& one : found.channels)
+    for (const analysis::OrdersOfChannel& one : found.channels)
         csv += fmt::format(",{}_{}", one.name, peak ? "peak" : "rms");
     csv += '\n';
     const signal::OrderSpectrum& first = found.channels.front().spectrum;
     for (std::size_t k = 0; k < first.amplitude.size(); ++k) {
         csv += fmt::format("{}", static_cast<double>(k) * first.step);
-        for (const study::OrdersOfChannel& one : found.channels)
+        for (const analysis::OrdersOfChannel& one : found.channels)
             csv += fmt::format(",{}", one.spectrum.amplitude[k] / (peak ? 1.0 : std::sqrt(2.0)));
         csv += '\n';
     }
@@ -121,23 +121,23 @@ void about_file(const std::filesystem::path& file, const Function& function) {
 }
 
 /// By the ending: a figure or a table.
-void write_waterfall(const study::Orders& found, const std::filesystem::path& record,
+void write_waterfall(const analysis::Orders& found, const std::filesystem::path& record,
                      const std::filesystem::path& out) {
     if (out.extension() == ".csv") {
         file::write_whole_file(out, waterfall_csv(found));
     } else if (out.extension() == ".json") {
         Json json{{"file", record.string()}, {"unit", found.calibration.unit}, {"channels", Json::array()}};
-        for (const study::OrdersOfChannel& channel : found.channels) {
+        for (const analysis::OrdersOfChannel& channel : found.channels) {
             json["channels"].push_back(Json{{"name", channel.name}});
             json["channels"].back().update(waterfall_json(*channel.waterfall));
         }
         file::write_whole_file(out, json.dump() + "\n");
     } else {
-        picture::write_figure(picture::draw_waterfall(found, record), out);
+        report::write_figure(report::draw_waterfall(found, record), out);
     }
 }
 
-std::optional<study::WaterfallSettings> waterfall_of(const OrdersChoice& choice) {
+std::optional<analysis::WaterfallSettings> waterfall_of(const OrdersChoice& choice) {
     if (choice.waterfalls.empty()) {
         if (!choice.over.empty() || !choice.against.empty())
             throw Error("--over and --against are of a waterfall; name its file with --waterfall");
@@ -147,17 +147,17 @@ std::optional<study::WaterfallSettings> waterfall_of(const OrdersChoice& choice)
         if (const auto ending = out.extension();
             ending != ".svg" && ending != ".png" && ending != ".csv" && ending != ".json")
             throw Error(fmt::format("{}: a waterfall is written as .svg, .png, .csv or .json", out.string()));
-    return study::WaterfallSettings{choice.over != "frequency", choice.against == "speed"};
+    return analysis::WaterfallSettings{choice.over != "frequency", choice.against == "speed"};
 }
 
 int orders(const OrdersChoice& choice) {
     if (choice.files.size() != 1) throw Error("orders takes one file");
     const std::filesystem::path& file = choice.files.front();
-    study::OrdersSettings settings = choice.orders;
+    analysis::OrdersSettings settings = choice.orders;
     settings.record = choice.settings();
     if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
     settings.waterfall = waterfall_of(choice);
-    const study::Orders found = study::analyse_orders(file, settings);
+    const analysis::Orders found = analysis::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
     for (const std::filesystem::path& out : choice.waterfalls)
         about_file(file, [&] { write_waterfall(found, file, out); });
@@ -167,7 +167,7 @@ int orders(const OrdersChoice& choice) {
 
 Action declare_orders(VerbOptions& verb) {
     const auto choice = std::make_shared<OrdersChoice>();
-    study::OrdersSettings& settings = choice->orders;
+    analysis::OrdersSettings& settings = choice->orders;
     add_record_options(verb, *choice, "a sound file or CSV log", "--sample-rate");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);

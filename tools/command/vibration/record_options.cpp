@@ -3,8 +3,8 @@
 
 namespace tactus::command {
 
-study::RecordSettings RecordChoice::settings() const {
-    study::RecordSettings all = record;
+analysis::RecordSettings RecordChoice::settings() const {
+    analysis::RecordSettings all = record;
     all.stretch = stretch_of(stretch);
     return all;
 }

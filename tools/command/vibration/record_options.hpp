@@ -4,7 +4,7 @@
 
 #include "tools/command/options.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
-#include "tools/study/vibration/record.hpp"
+#include "tools/analysis/vibration/record.hpp"
 
 #include <filesystem>
 #include <string>
@@ -14,11 +14,11 @@ namespace tactus::command {
 
 struct RecordChoice {
     std::vector<std::filesystem::path> files;
-    study::RecordSettings record;  ///< without the stretch: see `settings`
+    analysis::RecordSettings record;  ///< without the stretch: see `settings`
     StretchChoice stretch;
     bool json = false;
 
-    study::RecordSettings settings() const;
+    analysis::RecordSettings settings() const;
 };
 
 /// `files`: help text of the files argument. `rate`: names of the option for the rate of a log without times.

@@ -8,9 +8,9 @@
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/spectra/response_figure.hpp"
-#include "tools/study/vibration/two_channels.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/response_figure.hpp"
+#include "tools/analysis/vibration/two_channels.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ struct ResponseChoice : RecordChoice {
 
 constexpr const char* estimators[] = {"H1", "H2", "Hv"};
 
-std::string json_of(const std::string& file, const study::TwoChannels& found) {
+std::string json_of(const std::string& file, const analysis::TwoChannels& found) {
     Json json{{"file", file},
               {"input", found.input},
               {"output", found.output},
@@ -52,7 +52,7 @@ std::string json_of(const std::string& file, const study::TwoChannels& found) {
               {"coherence_of_noise", found.noise_coherence},
               {"delay_s", found.delay},
               {"peaks", Json::array()}};
-    for (const study::ResponsePeak& peak : found.peaks)
+    for (const analysis::ResponsePeak& peak : found.peaks)
         json["peaks"].push_back({{"hz", peak.hz},
                                  {"level_db", peak.level_db},
                                  {"phase_deg", peak.phase * 180.0 / pi},
@@ -61,11 +61,11 @@ std::string json_of(const std::string& file, const study::TwoChannels& found) {
     return json.dump(2) + "\n";
 }
 
-std::string text_of(const std::string& file, const study::TwoChannels& found) {
+std::string text_of(const std::string& file, const analysis::TwoChannels& found) {
     std::string text = fmt::format("{}: from {} to {}, {}\n", file, found.input, found.output,
                                    estimators[static_cast<int>(found.estimator)]);
     if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
-    for (const std::string& line : study::understood(found.calibration, found.log, found.rate))
+    for (const std::string& line : analysis::understood(found.calibration, found.log, found.rate))
         text += "  " + line + "\n";
     double coherent = 0.0, bins = 0.0;
     for (std::size_t k = 1; k < found.coherence.size() && found.spectra.frequency(k) <= found.usable; ++k) {
@@ -78,14 +78,14 @@ std::string text_of(const std::string& file, const study::TwoChannels& found) {
                    found.spectra.segments, found.spectra.df, found.noise_coherence,
                    100.0 * coherent / std::max(1.0, bins));
     if (coherent > 0.0) fmt::format_to(std::back_inserter(text), "  delay {:.3f} ms\n", 1e3 * found.delay);
-    for (const study::ResponsePeak& peak : found.peaks)
+    for (const analysis::ResponsePeak& peak : found.peaks)
         fmt::format_to(std::back_inserter(text), "  peak at {:.2f} Hz: {:.2f} dB ± {:.2f}, {:.0f}°, coherence {:.3f}\n",
                        peak.hz, peak.level_db, peak.deviation_db, peak.phase * 180.0 / pi, peak.coherence);
     if (found.peaks.empty()) text += "  no peak with a coherence of at least 0.8\n";
     return text;
 }
 
-std::string csv_of(const study::TwoChannels& found) {
+std::string csv_of(const analysis::TwoChannels& found) {
     std::string csv = "frequency_hz,h1_db,h1_deg,h2_db,h2_deg,hv_db,hv_deg,coherence,h1_deviation\n";
     for (std::size_t k = 1; k < found.coherence.size(); ++k) {
         csv += fmt::format("{}", found.spectra.frequency(k));
@@ -99,7 +99,7 @@ std::string csv_of(const study::TwoChannels& found) {
 }
 
 /// For 'equalise': without the delay.
-void save(const study::TwoChannels& found, const std::string& file, const std::filesystem::path& out) {
+void save(const analysis::TwoChannels& found, const std::string& file, const std::filesystem::path& out) {
     sound::ResponseFile response{fmt::format("{}: {} to {}", file, found.input, found.output), "", {}};
     vibration::FrequencyResponse& curve = response.identified.response;
     curve.latency = std::max(0.0, found.delay);
@@ -117,18 +117,18 @@ void save(const study::TwoChannels& found, const std::string& file, const std::f
 int response(const ResponseChoice& choice) {
     if (choice.files.size() != 1) throw Error("response takes one file");
     const std::filesystem::path& file = choice.files.front();
-    study::ResponseSettings settings;
+    analysis::ResponseSettings settings;
     settings.record = choice.settings();
     if (settings.record.channels.empty() && settings.record.log.columns.empty()) settings.record.channels = {1, 2};
-    settings.estimator = choice.estimator == "h2"   ? study::Estimator::h2
-                         : choice.estimator == "hv" ? study::Estimator::hv
-                                                    : study::Estimator::h1;
+    settings.estimator = choice.estimator == "h2"   ? analysis::Estimator::h2
+                         : choice.estimator == "hv" ? analysis::Estimator::hv
+                                                    : analysis::Estimator::h1;
     settings.segment = choice.segment;
     settings.overlap = choice.overlap.value_or(0.5);
-    const study::TwoChannels found = study::analyse_two_channels(file, settings, {});
+    const analysis::TwoChannels found = analysis::analyse_two_channels(file, settings, {});
     if (!choice.csv.empty()) file::write_whole_file(choice.csv, csv_of(found));
     if (!choice.out.empty()) save(found, file.filename().string(), choice.out);
-    if (!choice.plot.empty()) picture::write_figure(picture::draw_response(found, file), choice.plot);
+    if (!choice.plot.empty()) report::write_figure(report::draw_response(found, file), choice.plot);
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
     return done;
 }

@@ -6,10 +6,10 @@
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/command/vibration/spectrum_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/html_report.hpp"
-#include "tools/picture/report/spectrum_figure.hpp"
-#include "tools/picture/report/spectrum_page.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/html_report.hpp"
+#include "tools/report/figures/spectrum_figure.hpp"
+#include "tools/report/figures/spectrum_page.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace tactus::command {
 namespace {
 
 namespace fs = std::filesystem;
-namespace html = picture::html;
+namespace html = report::html;
 
 struct SpectrumChoice : RecordChoice {
     SpectrumWords words;
@@ -41,16 +41,16 @@ struct SpectrumChoice : RecordChoice {
 struct Outcome {
     std::string text, table;  // printed text; CSV rows
     std::string section;      // section of the HTML page
-    std::optional<study::AnalysedFile> drawn;  // for a figure of several files
+    std::optional<analysis::AnalysedFile> drawn;  // for a figure of several files
 };
 
-study::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) {
+analysis::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) {
     constexpr std::pair<const char*, signal::WindowKind> windows[] = {
         {"hann", signal::WindowKind::hann},         {"hamming", signal::WindowKind::hamming},
         {"blackman", signal::WindowKind::blackman}, {"blackmanharris", signal::WindowKind::blackman_harris},
         {"flattop", signal::WindowKind::flat_top},  {"boxcar", signal::WindowKind::rectangular}};
     const SpectrumWords& words = choice.words;
-    study::SpectrumSettings settings;
+    analysis::SpectrumSettings settings;
     settings.record = choice.settings();
     for (const auto& [name, kind] : windows)
         if (words.window == name) settings.window = kind;
@@ -72,18 +72,18 @@ study::SpectrumSettings settings_of(const SpectrumChoice& choice, bool overlay) 
     settings.high_pass = choice.high_pass;
     settings.only_psd = choice.only_psd;
     settings.spectrogram = (!choice.plot.empty() && !overlay) || !choice.report.empty();
-    for (const std::string& mark : choice.marks) settings.marks.push_back(study::parse_mark(mark));
+    for (const std::string& mark : choice.marks) settings.marks.push_back(analysis::parse_mark(mark));
     return settings;
 }
 
-picture::PlottedBand plotted_band(const SpectrumChoice& choice) {
-    return choice.band.empty() ? picture::PlottedBand() : parse_band(choice.band, "--band");
+report::PlottedBand plotted_band(const SpectrumChoice& choice) {
+    return choice.band.empty() ? report::PlottedBand() : parse_band(choice.band, "--band");
 }
 
 /// Several files go into one figure, unless --plot names a folder.
 bool is_figure(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".png"; }
 
-picture::SpectrumMethod method_of(const SpectrumChoice& choice) {
+report::SpectrumMethod method_of(const SpectrumChoice& choice) {
     return {choice.words.window, choice.words.detrend, choice.words.average,         choice.words.scaling,
             choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5), plotted_band(choice)};
 }
@@ -91,17 +91,17 @@ picture::SpectrumMethod method_of(const SpectrumChoice& choice) {
 Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
                 const std::function<void(double)>& progress) {
     const bool overlay = many && is_figure(choice.plot);
-    study::AnalysedFile file = study::analyse_file(path, settings_of(choice, overlay), progress);
+    analysis::AnalysedFile file = analysis::analyse_file(path, settings_of(choice, overlay), progress);
     const auto output = [&](const fs::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
     if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
     if (!choice.cepstrum.empty()) file::write_whole_file(output(choice.cepstrum, ".csv"), cepstrum_csv(file));
     if (!choice.plot.empty() && !overlay)
-        picture::write_figure(picture::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"));
+        report::write_figure(report::draw_spectrum(file, plotted_band(choice)), output(choice.plot, ".svg"));
     Outcome outcome{choice.json ? analysis_json(file, choice.words) : analysis_text(file, choice.words),
                     analysis_rows(file),
-                    choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice)),
+                    choice.report.empty() ? std::string() : report::analysis_section(file, method_of(choice)),
                     {}};
     if (overlay) outcome.drawn = std::move(file);
     return outcome;
@@ -118,7 +118,7 @@ void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& 
 }
 
 int spectrum(const SpectrumChoice& choice) {
-    const std::vector<fs::path> files = study::expand_folders(choice.files);
+    const std::vector<fs::path> files = analysis::expand_folders(choice.files);
     const bool many = files.size() > 1;
     settings_of(choice, false);  // refuses what cannot be read, before the files are
     plotted_band(choice);
@@ -132,10 +132,10 @@ int spectrum(const SpectrumChoice& choice) {
         });
     const bool bad = tell_failures(failures) > 0;
     if (many && is_figure(choice.plot)) {
-        std::vector<study::AnalysedFile> drawn;
+        std::vector<analysis::AnalysedFile> drawn;
         for (Outcome& outcome : outcomes)
             if (outcome.drawn) drawn.push_back(std::move(*outcome.drawn));
-        if (!drawn.empty()) picture::write_figure(picture::draw_overlay(drawn, plotted_band(choice)), choice.plot);
+        if (!drawn.empty()) report::write_figure(report::draw_overlay(drawn, plotted_band(choice)), choice.plot);
     }
     if (choice.json) print_json(files, outcomes, failures);
     else
@@ -156,7 +156,7 @@ int spectrum(const SpectrumChoice& choice) {
         file::write_whole_file(choice.report,
                                html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
                                                : files.front().filename().string(),
-                                          body + picture::analysis_method(method_of(choice))));
+                                          body + report::analysis_method(method_of(choice))));
     }
     return bad ? bad_input : done;
 }

@@ -8,7 +8,7 @@
 #include "tools/command/vibration/record_json.hpp"
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/counted.hpp"
-#include "tools/study/vibration/level_reference.hpp"
+#include "tools/analysis/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -20,9 +20,9 @@ namespace tactus::command {
 
 using file::Json;
 using signal::decibels;
-using study::AnalysedChannel;
-using study::AnalysedFile;
-using study::band_deviation;
+using analysis::AnalysedChannel;
+using analysis::AnalysedFile;
+using analysis::band_deviation;
 
 namespace {
 
@@ -46,7 +46,7 @@ Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(null
 
 Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
     const signal::VibrationReport& r = channel.report;
-    const study::LevelReference reference = study::level_reference(file.calibration);
+    const analysis::LevelReference reference = analysis::level_reference(file.calibration);
     if (file.only_psd) {
         const double rms = rms_of(channel, file);
         return {{"name", channel.name},
@@ -127,11 +127,11 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
                                           {"rms_db", reference.db(b.power)},
                                           {"deviation_db", b.deviation_db}});
     if (!file.marks.empty()) json["marks"] = Json::array();
-    for (const study::MarkPlace& place : file.marks) {
+    for (const analysis::MarkPlace& place : file.marks) {
         Json row{{"label", place.label}, {"harmonic", place.harmonic}, {"hz", place.frequency}};
-        const auto add = [&](const char* of, const std::vector<study::MarkLevel>& levels) {
+        const auto add = [&](const char* of, const std::vector<analysis::MarkLevel>& levels) {
             row[of] = nullptr;  // outside of the spectrum
-            for (const study::MarkLevel& level : levels) {
+            for (const analysis::MarkLevel& level : levels) {
                 if (level.place.frequency != place.frequency || level.place.label != place.label) continue;
                 row[of] = line(level.line);
                 row[of]["is_line"] = level.is_line;
@@ -149,7 +149,7 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
     return json;
 }
 
-std::string nearest_text(const study::MarkLevel& level, const study::LevelReference& reference) {
+std::string nearest_text(const analysis::MarkLevel& level, const analysis::LevelReference& reference) {
     if (!level.nearest) return "; there is no line";
     const double offset = level.nearest->frequency - level.place.frequency;
     if (std::abs(offset) > 0.5 * level.place.frequency) return "; no line near";
@@ -159,11 +159,11 @@ std::string nearest_text(const study::MarkLevel& level, const study::LevelRefere
 
 /// A line per mark and spectrum.
 std::string marks_text(const AnalysedChannel& channel, const AnalysedFile& file,
-                       const study::LevelReference& reference) {
+                       const analysis::LevelReference& reference) {
     std::string text;
-    const auto add = [&](const char* where, const std::vector<study::MarkLevel>& levels) {
-        for (const study::MarkPlace& place : file.marks) {
-            const auto level = std::ranges::find_if(levels, [&](const study::MarkLevel& one) {
+    const auto add = [&](const char* where, const std::vector<analysis::MarkLevel>& levels) {
+        for (const analysis::MarkPlace& place : file.marks) {
+            const auto level = std::ranges::find_if(levels, [&](const analysis::MarkLevel& one) {
                 return one.place.frequency == place.frequency && one.place.label == place.label;
             });
             text += fmt::format("    {} at {:.2f} Hz{}: ", place.name(), place.frequency, where);
@@ -216,10 +216,10 @@ std::string analysis_text(const AnalysedFile& file, const SpectrumWords& words) 
     std::string text = fmt::format("{}: {:.3f} s at {}, {}\n", file.file.string(), file.duration,
                                    readable(file.rate, "Hz", 6), counted(file.channels.size(), "channel"));
     auto out = std::back_inserter(text);
-    const study::LevelReference reference = study::level_reference(file.calibration);
+    const analysis::LevelReference reference = analysis::level_reference(file.calibration);
     if (!file.stretch.is_whole()) fmt::format_to(out, "  of the record: {}\n", file.stretch.text());
     fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
-    for (const std::string& line : study::understood(file.recorded, file.log, file.rate))
+    for (const std::string& line : analysis::understood(file.recorded, file.log, file.rate))
         fmt::format_to(out, "  {}\n", line);
     if (file.integrations > 0)
         fmt::format_to(out, "  integrated to {}, high-pass {} of second order{}\n", quantities[file.integrations],
@@ -243,8 +243,8 @@ std::string analysis_text(const AnalysedFile& file, const SpectrumWords& words) 
         fmt::format_to(out, "; crest {:.2f}, kurtosis {:.2f}, skewness {:.2f}\n", r.level.crest(), r.moments.kurtosis(),
                        r.moments.skewness());
         if (channel.machine_velocity)
-            fmt::format_to(out, "    velocity {:g} to {:g} Hz (ISO 20816): {} rms\n", study::machine_band.first,
-                           study::machine_band.second, readable(*channel.machine_velocity, "m/s", 4));
+            fmt::format_to(out, "    velocity {:g} to {:g} Hz (ISO 20816): {} rms\n", analysis::machine_band.first,
+                           analysis::machine_band.second, readable(*channel.machine_velocity, "m/s", 4));
         if (r.fundamental.frequency > 0.0) {
             fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
                            r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");

@@ -10,8 +10,8 @@
 #include "tools/command/vibration/stretch_options.hpp"
 #include "tools/command/vibration/validation_text.hpp"
 #include "tools/exit_code.hpp"
-#include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/validation_page.hpp"
+#include "tools/report/figures/comparison_figure.hpp"
+#include "tools/report/figures/validation_page.hpp"
 
 #include <fmt/format.h>
 
@@ -23,11 +23,11 @@ namespace tactus::command {
 namespace {
 
 using file::Json;
-using study::Validation;
-using study::ValidationRun;
+using analysis::Validation;
+using analysis::ValidationRun;
 
 struct ValidateChoice {
-    study::ValidateSettings settings;
+    analysis::ValidateSettings settings;
     std::filesystem::path thresholds, report, plot, table;
     std::string touch = "displacement";
     StretchChoice stretch;
@@ -48,7 +48,7 @@ Json run_json(const ValidationRun& run) {
     return json;
 }
 
-std::string json_text(const Validation& validation, const study::ValidateSettings& settings, const VerdictCounts& count) {
+std::string json_text(const Validation& validation, const analysis::ValidateSettings& settings, const VerdictCounts& count) {
     Json json{{"patch", validation.patch},
               {"set", validation.set->path.string()},
               {"synthesised", validation.set->synthesised},
@@ -64,7 +64,7 @@ std::string json_text(const Validation& validation, const study::ValidateSetting
     return json.dump(2) + "\n";
 }
 
-void print(const Validation& validation, const study::ValidateSettings& settings, const VerdictCounts& count) {
+void print(const Validation& validation, const analysis::ValidateSettings& settings, const VerdictCounts& count) {
     fmt::print("{} at {}, beside {}{}\n", validation.patch, validation.path.out, validation.set->path.string(),
                validation.set->synthesised ? " (synthesised, no recordings)" : "");
     fmt::print("compared: {} to {} s of each run, with the stretch of the recording that was played then\n",
@@ -75,7 +75,7 @@ void print(const Validation& validation, const study::ValidateSettings& settings
 }
 
 /// --from and --to are of each run; the recording is compared in the stretch that was played then.
-void choose_stretch(const StretchChoice& choice, study::ValidateSettings& settings) {
+void choose_stretch(const StretchChoice& choice, analysis::ValidateSettings& settings) {
     if (!choice.from.empty()) settings.from = choice.from.front();
     if (!choice.to.empty()) settings.seconds = choice.to.front() - settings.from;
     if (!(settings.seconds >= 0.5 && settings.seconds <= 600.0 && settings.from <= 3600.0))
@@ -86,18 +86,18 @@ void choose_stretch(const StretchChoice& choice, study::ValidateSettings& settin
 }
 
 int validate(const ValidateChoice& choice) {
-    study::ValidateSettings settings = choice.settings;
+    analysis::ValidateSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
     choose_stretch(choice.stretch, settings);
-    Validation validation = study::plan_validation(settings);
+    Validation validation = analysis::plan_validation(settings);
     const bool pictures = !choice.report.empty() || !choice.plot.empty();
     if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
     const std::vector<std::string> failures = run_batch(
         validation.runs.size(), choice.jobs, "runs",
         [&](std::size_t i,
             const std::function<void(double)>&) {  // Spectrograms are large, so they are computed for one level only.
-            study::validate(validation, i, settings,
+            analysis::validate(validation, i, settings,
                             pictures && validation.runs[i].level_db == settings.levels.front());
         });
     VerdictCounts count;
@@ -108,11 +108,11 @@ int validate(const ValidateChoice& choice) {
         if (!run.failure.empty()) continue;
         ++(run.pair.verdict.passed() ? count.passed : count.failed);
         if (!choice.plot.empty())
-            picture::write_figure(picture::draw_comparison(run.pair),
+            report::write_figure(report::draw_comparison(run.pair),
                                   (choice.plot / (run.file_name() + ".svg")).string());
     }
     if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
-    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::validation_page(validation));
+    if (!choice.report.empty()) file::write_whole_file(choice.report, report::validation_page(validation));
     if (choice.json) fmt::print("{}", json_text(validation, settings, count));
     else print(validation, settings, count);
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
@@ -120,7 +120,7 @@ int validate(const ValidateChoice& choice) {
 
 Action declare_validate(VerbOptions& verb) {
     const auto choice = std::make_shared<ValidateChoice>();
-    study::ValidateSettings& settings = choice->settings;
+    analysis::ValidateSettings& settings = choice->settings;
     add_patch_options(verb, settings.patch);
     verb.add("--reference", settings.set, "recording set, TOML, or one sound; the patch's saw plays it").required();
     verb.add("--level", settings.levels, "gains in dB relative to the patch, one or more")

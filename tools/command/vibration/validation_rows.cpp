@@ -7,8 +7,8 @@
 
 namespace tactus::command {
 
-using study::Validation;
-using study::ValidationRun;
+using analysis::Validation;
+using analysis::ValidationRun;
 
 namespace {
 

@@ -12,20 +12,20 @@ namespace tactus::command {
 
 namespace {
 
-double position(const study::Waterfall& waterfall, std::size_t column) {
+double position(const analysis::Waterfall& waterfall, std::size_t column) {
     return static_cast<double>(column) * waterfall.step;
 }
 
 }  // namespace
 
-std::string waterfall_csv(const study::Orders& orders) {
-    const study::Waterfall& first = *orders.channels.front().waterfall;
+std::string waterfall_csv(const analysis::Orders& orders) {
+    const analysis::Waterfall& first = *orders.channels.front().waterfall;
     std::string csv = "channel,time_s,rate_hz";
     for (std::size_t k = 0; k < first.rows.front().rms.size(); ++k)
         fmt::format_to(std::back_inserter(csv), ",rms_{}{}", position(first, k), first.settings.of_orders ? "" : "_hz");
     csv += '\n';
-    for (const study::OrdersOfChannel& channel : orders.channels)
-        for (const study::WaterfallRow& row : channel.waterfall->rows) {
+    for (const analysis::OrdersOfChannel& channel : orders.channels)
+        for (const analysis::WaterfallRow& row : channel.waterfall->rows) {
             csv += csv_field(channel.name) + ",";
             if (!std::isnan(row.time)) csv += fmt::format("{}", row.time);
             csv += fmt::format(",{}", row.rate);
@@ -35,7 +35,7 @@ std::string waterfall_csv(const study::Orders& orders) {
     return csv;
 }
 
-file::Json waterfall_json(const study::Waterfall& waterfall) {
+file::Json waterfall_json(const analysis::Waterfall& waterfall) {
     using file::Json;
     Json json{{"over", waterfall.settings.of_orders ? "orders" : "frequency"},
               {"against", waterfall.settings.against_speed ? "speed" : "time"},
@@ -43,7 +43,7 @@ file::Json waterfall_json(const study::Waterfall& waterfall) {
               {"rows", Json::array()}};
     for (std::size_t k = 0; k < waterfall.rows.front().rms.size(); ++k)
         json["columns"].push_back(position(waterfall, k));
-    for (const study::WaterfallRow& row : waterfall.rows) {
+    for (const analysis::WaterfallRow& row : waterfall.rows) {
         Json values = Json::array();
         for (const float rms : row.rms) values.push_back(std::isnan(rms) ? Json() : Json(rms));
         json["rows"].push_back(

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/file/json.hpp"
-#include "tools/study/vibration/orders.hpp"
+#include "tools/analysis/vibration/orders.hpp"
 
 #include <string>
 
@@ -11,9 +11,9 @@ namespace tactus::command {
 
 /// A row per row and channel: channel, time_s (empty against speed), rate_hz, then the rms at each order or frequency,
 /// which the heading names; empty above half the sample rate.
-std::string waterfall_csv(const study::Orders& orders);
+std::string waterfall_csv(const analysis::Orders& orders);
 
 /// The same of one channel: {"over", "against", "columns", "rows": [{"time_s", "rate_hz", "rms"}]}.
-file::Json waterfall_json(const study::Waterfall& waterfall);
+file::Json waterfall_json(const analysis::Waterfall& waterfall);
 
 }  // namespace tactus::command

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The patch of the guide that paints fragments by feel: seeds like the mouse's, and no energy for the hand.
-#include "assets/segment/seeds_file.hpp"
+#include "assets/segmentation/seeds_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/view/paint/painting.hpp"
+#include "tools/window/paint/painting.hpp"
 
 #include <fmt/format.h>
 
@@ -73,18 +73,18 @@ TEST_CASE("a hand that paints by feel makes the seeds that the mouse would make,
         folder.tactus(fmt::format("render {0}/paint.toml --seconds 9 --out {0}/out", folder.path.string()));
     INFO(done.err);
     REQUIRE(done.code == 0);
-    const auto felt = segment::read_seeds(folder.path / "out/seeds.json", segment::SeedsUse::draft);
+    const auto felt = segmentation::read_seeds(folder.path / "out/seeds.json", segmentation::SeedsUse::draft);
     REQUIRE(felt.size() == 1);
     CHECK(felt[0].name == "left");
     REQUIRE_FALSE(felt[0].strokes.empty());
     std::size_t points = 0;
-    for (const segment::Stroke& stroke : felt[0].strokes) points += stroke.points.size();
+    for (const segmentation::Stroke& stroke : felt[0].strokes) points += stroke.points.size();
     CHECK(points > 8);
 
     // The same places with the mouse's painting.
     const auto tip = table(folder.path / "out/tip.csv"), trigger = table(folder.path / "out/trigger.csv"),
                near = table(folder.path / "out/near.csv");
-    view::Painting painting(folder.path / "mouse.seeds.json", [](const segment::Stroke&) { return true; });
+    window::Painting painting(folder.path / "mouse.seeds.json", [](const segmentation::Stroke&) { return true; });
     for (std::size_t k = 0; k < tip.size(); ++k) {
         const Vec3 at(tip[k][0], tip[k][1], tip[k][2]);
         const bool paints = trigger[k][0] > 0.5 && near[k][0] <= 3e-3;
@@ -93,7 +93,7 @@ TEST_CASE("a hand that paints by feel makes the seeds that the mouse would make,
         else painting.begin(3e-3, at);
     }
     painting.end();
-    segment::write_seeds(std::vector{segment::SeedLabel{"left", {}, painting.labels()[0].strokes}},
+    segmentation::write_seeds(std::vector{segmentation::SeedLabel{"left", {}, painting.labels()[0].strokes}},
                          folder.path / "mouse.json");
     CHECK(test::slurp(folder.path / "mouse.json") == test::slurp(folder.path / "out/seeds.json"));
 

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/plan/plan_keeper.hpp"
+
+#include "assets/plan/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/reconstruction/reconstruction.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
+
+#include <sys/resource.h>
+
+#include <csignal>
+
+using namespace tactus;
+
+namespace {
+
+plan::CasePlan two() {
+    plan::CasePlan plan;
+    plan.title = "two";
+    for (const char* name : {"a", "b"}) plan.fragments.push_back({name, name, 1, Vec3(1.0)});
+    return plan;
+}
+
+plan::StepRow put(int step, double x) {
+    plan::StepRow row;
+    row.step = step;
+    row.after = step - 1;
+    row.x = x;
+    return row;
+}
+
+/// No file may grow beyond so many bytes while this lives: what a full disk does.
+struct FullDisk {
+    explicit FullDisk(rlim_t bytes) : handler(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before);
+        const rlimit less{bytes, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &less);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        std::signal(SIGXFSZ, handler);
+    }
+    rlimit before{};
+    void (*handler)(int);
+};
+
+}  // namespace
+
+TEST_CASE("a kept plan is there from the start, and holds each step once it is saved") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    plan::PlanKeeper keeper(two(), file);
+    CHECK(plan::load_case_plan(file).steps.empty());
+    for (int n = 0; n < 5; ++n) {
+        keeper.add(put(n, 0.1 * n), n);
+        keeper.save();
+        const plan::CasePlan now = plan::load_case_plan(file);
+        REQUIRE(now.steps.size() == static_cast<std::size_t>(n) + 1);
+        CHECK(now.steps.back().poses[0].position.x == 0.1 * n);
+        CHECK(*now.steps.back().run_second == n);
+    }
+    // To the step before: what follows is there to be redone.
+    plan::StepRow back;
+    back.kind = plan::row_goes_to;
+    back.step = 5;
+    back.after = 3;
+    keeper.add(back, 9.0);
+    keeper.finish();
+    CHECK(plan::load_case_plan(file).place().head == 3);
+    CHECK(plan::load_case_plan(file).place().tip == 4);
+    CHECK(keeper.trouble().empty());
+}
+
+TEST_CASE("while the disk is full the last saved plan stays, and all is saved when there is room again") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    plan::PlanKeeper keeper(two(), file);
+    keeper.add(put(0, 0.1), 0.0);
+    keeper.save();
+    const std::string before = file::read_whole_file(file);
+    {
+        const FullDisk full(100);
+        keeper.add(put(1, 0.2), 1.0);
+        CHECK_THROWS_WITH(keeper.save(), Catch::Matchers::ContainsSubstring("cannot be written"));
+        CHECK(file::read_whole_file(file) == before);
+        CHECK_FALSE(std::filesystem::exists(file.string() + ".part"));
+    }
+    keeper.add(put(2, 0.3), 2.0);
+    keeper.save();
+    CHECK(plan::load_case_plan(file).steps.size() == 3);
+}
+
+TEST_CASE("a plan whose folder is gone at the end is put aside with all of its steps, and the message says where") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    plan::PlanKeeper keeper(two(), file);
+    keeper.add(put(0, 0.1), 0.0);
+    std::filesystem::remove_all(file.parent_path());
+    std::string message;
+    try {
+        keeper.finish();
+    } catch (const Error& error) {
+        message = error.message();
+    }
+    const auto at = message.find("saved to ");
+    REQUIRE(at != std::string::npos);
+    const std::filesystem::path spare = message.substr(at + 9);
+    CHECK(plan::load_case_plan(spare).steps.size() == 1);
+    std::filesystem::remove(spare);
+    std::filesystem::create_directories(file.parent_path());
+}
+
+TEST_CASE("a plan of another run is never overwritten, and one that is continued is") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    {
+        plan::PlanKeeper keeper(two(), file);
+        keeper.add(put(0, 0.1), 0.0);
+        keeper.finish();
+    }
+    const std::string first = file::read_whole_file(file);
+    {
+        plan::PlanKeeper keeper(plan::load_case_plan(file), file);
+        keeper.add(put(1, 0.2), 0.0);
+        keeper.finish();
+    }
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".1"));
+    const std::string second = file::read_whole_file(file);
+    {
+        // The same case from its beginning: other steps.
+        plan::PlanKeeper keeper(two(), file);
+        keeper.finish();
+    }
+    CHECK(file::read_whole_file(file.string() + ".1") == second);
+    file::write_whole_file(file, "what is this?");
+    {
+        plan::PlanKeeper keeper(two(), file);
+        keeper.finish();
+    }
+    CHECK(file::read_whole_file(file.string() + ".2") == "what is this?");
+    CHECK(plan::load_case_plan(file).steps.empty());
+}
+
+TEST_CASE("a plan with a reconstruction is continued, whose files a run names by their whole paths") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    const auto plan = [](const std::string& where) {
+        reconstruction::Reconstruction all;
+        all.inputs.planes = {{Vec3(0.0), Vec3(1.0, 0.0, 0.0), {}}, {Vec3(0.03, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), {}}};
+        all.donor = {where + "fibula.stl", 1};
+        all.jaw = {where + "jaw.stl", 2};
+        all.tumour = {where + "tumour.stl", 3};
+        plan::PlanStep step;
+        step.kind = plan::StepKind::reconstruct;
+        step.by = "command";
+        step.fragments = {0, 1};
+        step.reconstruction = std::make_shared<reconstruction::Reconstruction>(all);
+        plan::CasePlan made = two();
+        plan::add_step(made, step);
+        return made;
+    };
+    plan::save_case_plan(plan(""), file);
+    plan::PlanKeeper(plan("/cases/"), file).finish();
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".1"));
+}
+
+TEST_CASE("two keepers of one plan: the second is refused until the first has ended") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    {
+        const plan::PlanKeeper first(two(), file);
+        CHECK_THROWS_WITH(plan::PlanKeeper(two(), file),
+                          Catch::Matchers::ContainsSubstring(
+                              "another program (a run or another 'tactus plan') is changing this plan"));
+    }
+    CHECK_NOTHROW(plan::PlanKeeper(two(), file));
+    CHECK_THROWS_WITH(plan::PlanKeeper(two(), folder / "none" / "case.plan.json"),
+                      Catch::Matchers::ContainsSubstring("cannot be changed"));
+}
+
+namespace {
+
+void tell_of_alternative(plan::PlanKeeper& keeper, int kind, double place) {
+    plan::StepRow row;
+    row.kind = kind;
+    row.after = place;
+    keeper.add(row, 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("a dropped alternative comes back beside one that was begun since, and the plan can be read") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    plan::PlanKeeper keeper(two(), file);
+    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
+    tell(plan::row_alternative, 1.0);
+    tell(plan::row_alternative, 0.0);
+    tell(plan::row_drop, 1.0);
+    tell(plan::row_alternative, 1.0);
+    tell(plan::row_undrop, -1.0);
+    keeper.finish();
+    CHECK(keeper.trouble().empty());
+    const plan::CasePlan plan = plan::load_case_plan(file);
+    REQUIRE(plan.alternatives.size() == 3);
+    CHECK(plan.current == 1);
+    CHECK(plan.alternatives[2].name == "alternative 2");
+}
+
+TEST_CASE("alternatives that were dropped come back one after another and the last one first") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    plan::PlanKeeper keeper(two(), file);
+    const auto tell = [&](int kind, double place) { tell_of_alternative(keeper, kind, place); };
+    for (const double place : {1.0, 2.0, 0.0}) tell(plan::row_alternative, place);
+    tell(plan::row_drop, 1.0);
+    tell(plan::row_drop, 1.0);
+    for (int n = 0; n < 3; ++n) tell(plan::row_undrop, -1.0);
+    keeper.finish();
+    CHECK(keeper.trouble().empty());
+    const plan::CasePlan plan = plan::load_case_plan(file);
+    REQUIRE(plan.alternatives.size() == 3);
+    CHECK(plan.alternatives[1].name == "alternative 3");
+    CHECK(plan.alternatives[2].name == "alternative 2");
+}

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// The case node of a planning session: settling, undoing, joining, hiding.
+#include "assets/plan/step_row.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "graph/node/notice.hpp"
+#include "tests/nodes/plan/broken_case.hpp"
+#include "tests/support/catch.hpp"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+Pose home_of(int fragment) {
+    Vec3 middle(0.0);
+    const auto& points = broken()->bones[static_cast<std::size_t>(fragment)].points;
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return {middle, {1.0, 0.0, 0.0, 0.0}};
+}
+
+/// A scene of the case node, fragment 1 held at `at` (file frame).
+struct Session {
+    NodeHarness node{"case_scene", servo};
+    std::int64_t settle = 1'000'000, release = 1'000'000, undo = 1'000'000, redo = 1'000'000, join = 1'000'000,
+                 split = 1'000'000;
+    Pose at = beside, fit;
+    double target_of = 1.0;
+    std::vector<const char*> buttons{"lock", "hide", "show"};  ///< that nobody presses
+
+    void run(std::int64_t ticks) {
+        const auto press = [this](const char* input, const std::int64_t* when) {
+            node.feed<bool>(input, [when](std::int64_t k) { return k >= *when && k < *when + 5; });
+        };
+        node.asset("plan", broken());
+        node.feed<Pose>("moved", at * home_of(1));
+        node.feed<double>("which", [this](std::int64_t k) { return k < release + 50 ? 1.0 : -1.0; });
+        node.feed<bool>("holding", [this](std::int64_t k) { return k < release; });
+        node.feed<Pose>("target", fit * home_of(1));
+        node.feed<bool>("fits", true);
+        node.feed<double>("partner", 0.0).feed<double>("target_of", target_of);
+        double figure = 0.1;
+        for (const char* number : {"score", "margin", "rms", "gap", "penetration", "overlap"})
+            node.feed<double>(number, figure), figure *= 2.0;
+        for (const char* button : buttons) node.disconnect(button);
+        press("settle", &settle);
+        press("undo", &undo);
+        press("redo", &redo);
+        press("join", &join);
+        press("split", &split);
+        node.prepare();
+        node.run(ticks);
+    }
+    coupling::Scene scene() const { return node.last<coupling::Scene>("scene"); }
+    Pose file_pose(int n) const {
+        const coupling::Scene now = scene();
+        const coupling::SceneObject& o = now.objects[static_cast<std::size_t>(n)];
+        return o.pose * o.body.home.inverse();
+    }
+    /// What the rows come to that left the node.
+    plan::CasePlan plan() const {
+        plan::RunSteps steps(broken()->plan);
+        const auto& stream = *node.host.records[0];
+        for (const plan::StepRow& row : stream.values<plan::StepRow>()) steps.add(row, 0.0);
+        return steps.plan();
+    }
+};
+
+bool same_bits(const Pose& a, const Pose& b) {
+    return std::bit_cast<std::array<double, 3>>(a.position) == std::bit_cast<std::array<double, 3>>(b.position) &&
+           std::bit_cast<std::array<double, 4>>(a.orientation) == std::bit_cast<std::array<double, 4>>(b.orientation);
+}
+
+}  // namespace
+
+TEST_CASE("a settled fragment stands where it fits when it is let go, and the step says so to the bit") {
+    Session session;
+    session.settle = 100;
+    session.release = 200;
+    session.fit = {Vec3(0.1, 0.2, -0.1) * mm, rotation_by({0.001, 0.0, 0.002})};
+    session.run(400);
+    CHECK(off(session.file_pose(1), session.fit) < 1e-12);
+    CHECK(session.node.last<double>("steps") == 3.0);
+    const plan::CasePlan plan = session.plan();
+    REQUIRE(plan.steps.size() == 3);
+    CHECK(plan.steps[2].by == "settle");
+    const plan::PlanFit& fit = *plan.steps[2].fit;
+    CHECK(fit.partner == "left");
+    CHECK(std::array{fit.score, fit.margin, fit.rms, fit.gap, fit.penetration, fit.overlap} ==
+          std::array{0.1, 0.2, 0.4, 0.8, 1.6, 3.2});
+    CHECK(same_bits(session.file_pose(1), plan.steps[2].poses[0]));
+    CHECK(session.scene().objects[1].stands);
+    CHECK_FALSE(session.scene().objects[2].stands);
+}
+
+TEST_CASE("a fragment that is let go without a fit stays where the hand left it") {
+    Session session;
+    session.release = 200;
+    session.run(300);
+    CHECK(off(session.file_pose(1), beside) < 1e-9);
+    CHECK(session.plan().steps.back().by == "hand");
+    CHECK_FALSE(session.scene().objects[1].stands);
+}
+
+TEST_CASE("what a run did is undone and redone, and undoing is part of its plan") {
+    Session session;
+    session.settle = 100;
+    session.release = 200;
+    session.undo = 300;
+    session.run(310);
+    CHECK(off(session.file_pose(1)) < 1e-12);
+    CHECK(session.node.last<double>("steps") == 2.0);
+    plan::CasePlan plan = session.plan();
+    CHECK(plan.steps.size() == 3);
+    CHECK(plan.place().head == 1);
+    CHECK(fit::redone(plan.before(), plan.place()).head == 2);
+    Session again;
+    again.settle = 100;
+    again.release = 200;
+    again.undo = 300;
+    again.redo = 350;
+    again.fit = {Vec3(0.1, 0.2, -0.1) * mm, {1.0, 0.0, 0.0, 0.0}};
+    again.run(400);
+    CHECK(off(again.file_pose(1), again.fit) < 1e-12);
+    CHECK(again.plan().place().head == 2);
+}
+
+TEST_CASE("a fragment is not settled where another one would fit") {
+    Session session;
+    session.settle = 100;
+    session.target_of = 0.0;
+    session.run(150);
+    CHECK_FALSE(session.node.last<bool>("settled"));
+    CHECK(off(session.file_pose(1), session.fit) > 1.0 * mm);
+}
+
+TEST_CASE("joined fragments are one unit of the scene until they are split") {
+    Session session;
+    session.join = 100;
+    session.run(150);
+    CHECK(session.scene().objects[0].unit >= 0);
+    CHECK(session.scene().objects[0].unit == session.scene().objects[1].unit);
+    CHECK(session.scene().objects[2].unit == -1);
+    // The other half is locked, so now nothing moves any more.
+    CHECK(off(session.file_pose(0)) == 0.0);
+    Session both;
+    both.join = 100;
+    both.split = 200;
+    both.run(300);
+    CHECK(both.scene().objects[1].unit == -1);
+    // Where it was joined is a step before the join.
+    const std::vector<plan::PlanStep> steps = both.plan().steps;
+    REQUIRE(steps.size() == 5);
+    const auto joined = std::ranges::find(steps, plan::StepKind::group, &plan::PlanStep::kind);
+    REQUIRE(joined != steps.end());
+    REQUIRE(joined != steps.begin());
+    CHECK((joined - 1)->kind == plan::StepKind::place);
+}
+
+TEST_CASE("a run undoes and redoes the steps that its plan had before, and goes on from there") {
+    Session session;
+    session.release = 0;
+    session.undo = 100;
+    session.redo = 200;
+    session.run(150);
+    // The last one put the copy away.
+    CHECK(off(session.file_pose(2)) < 1e-12);
+    CHECK(session.plan().place().head == 0);
+    session.node.run(100);
+    CHECK(off(session.file_pose(2), broken()->plan.steps[1].poses[0]) < 1e-12);
+    CHECK(session.plan().place().head == 1);
+    CHECK(session.plan().steps.size() == 2);
+}
+
+TEST_CASE("what is hidden leaves the scene until all is shown again, and both are steps") {
+    Session session;
+    session.release = 50;
+    session.node.feed<bool>("hide", [](std::int64_t k) { return k >= 100 && k < 105; });
+    session.node.feed<bool>("show", [](std::int64_t k) { return k >= 200 && k < 205; });
+    session.buttons = {"lock"};
+    session.run(150);
+    CHECK(session.scene().objects[1].body.shell == nullptr);
+    CHECK(session.scene().objects[0].body.shell != nullptr);
+    session.node.run(100);
+    CHECK(session.scene().objects[1].body.shell != nullptr);
+    const std::vector<plan::PlanStep> steps = session.plan().steps;
+    REQUIRE(steps.size() == 5);
+    CHECK(steps[3].kind == plan::StepKind::hide);
+    CHECK(steps[4].kind == plan::StepKind::show);
+    CHECK(steps[4].fragments == std::vector<int>{1});
+}
+
+TEST_CASE("a scene that nothing moves keeps its version, and one that the hand moves does not") {
+    Session session;
+    session.release = 100;
+    session.run(300);
+    const auto scenes = session.node.values<coupling::Scene>("scene");
+    CHECK(scenes[90].version > scenes[50].version);
+    CHECK(scenes[299].version == scenes[200].version);
+    CHECK(scenes[299].content_hash == coupling::hash_of(scenes[299]));
+}
+
+TEST_CASE("a row of a run that is no step of its plan is refused, and the steps around it are kept") {
+    plan::RunSteps steps(broken()->plan);
+    const auto lock = [](double step, double after, double fragment) {
+        plan::StepRow row;
+        row.step = step;
+        row.after = after;
+        row.kind = static_cast<double>(plan::StepKind::lock);
+        row.fragment = fragment;
+        return row;
+    };
+    steps.add(lock(2.0, 1.0, 1.0), 0.0);
+    CHECK_THROWS_WITH(steps.add(lock(3.0, 2.0, 7.0), 0.1),
+                      Catch::Matchers::ContainsSubstring("7 is not a valid fragment"));
+    CHECK_THROWS_AS(steps.add(lock(4.0, 9.0, 2.0), 0.2), Error);
+    CHECK_THROWS_AS(steps.add(lock(4.0, 3.0, 2.0), 0.2), Error);
+    CHECK_THROWS_AS(steps.add(lock(1e300, 3.0, 2.0), 0.2), Error);
+    // It follows the one that was left out, so it follows the one before that; number 6 never came.
+    steps.add(lock(7.0, 3.0, 2.0), 0.3);
+    // The first of two rows, and then no second one.
+    plan::StepRow half;
+    half.step = 8.0;
+    half.after = 7.0;
+    half.left = 1.0;
+    steps.add(half, 0.4);
+    steps.add(lock(9.0, 7.0, 0.0), 0.5);
+    const plan::CasePlan& plan = steps.plan();
+    REQUIRE(plan.steps.size() == 5);
+    CHECK(plan.steps[3].before == 2);
+    CHECK(plan.steps[3].fragments == std::vector<int>{2});
+    CHECK(plan.steps[4].before == 3);
+}
+
+TEST_CASE("undo while a fragment is held does nothing and says why, and so does undo without a step") {
+    Session session;
+    session.undo = 20;
+    session.run(40);
+    REQUIRE(off(session.file_pose(1), beside) < 1e-9);
+    const auto told = take_notices(session.node.host);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("while a fragment is held: let it go first") != std::string::npos);
+
+    Session empty;
+    empty.release = 0;
+    empty.redo = 20;
+    empty.run(40);
+    const auto nothing = take_notices(empty.node.host);
+    REQUIRE(nothing.size() == 1);
+    CHECK(nothing[0].find("no step to redo") != std::string::npos);
+}
+
+TEST_CASE("buttons mean the fragments that are chosen, and without a choice the one held last") {
+    Session session;
+    session.release = 100;
+    session.join = 300;
+    session.split = 600;
+    session.node.set("choose", "2").set("with", "0");
+    session.run(500);
+    const coupling::Scene joined = session.scene();
+    CHECK(joined.objects[2].unit >= 0);
+    CHECK(joined.objects[2].unit == joined.objects[0].unit);
+    CHECK(joined.objects[1].unit == -1);
+    CHECK(session.plan().steps.back().fragments == std::vector<int>{2, 0});
+    session.node.run(500);
+    CHECK(session.scene().objects[2].unit == -1);
+}
+
+TEST_CASE("a run begins an alternative, goes between them, drops one and brings it back, and its plan agrees") {
+    Session session;
+    session.release = 100;
+    session.run(200);
+    NodeHarness& node = session.node;
+    const Pose first = session.file_pose(1);
+    REQUIRE(off(first, beside) < 1e-9);
+    const auto go = [&](const char* param, const char* to) {
+        node.set(param, to);
+        node.run(20);
+    };
+    const auto agrees = [&](int current, std::size_t count) {
+        const plan::CasePlan plan = session.plan();
+        CHECK(plan.current == current);
+        CHECK(plan.alternatives.size() == count);
+        const plan::PlanState state = plan::state_of(plan);
+        for (int n = 0; n < 3; ++n) CHECK(off(session.file_pose(n), state.arrangement.pose(n)) < 1e-9);
+        CHECK(node.last<double>("steps") ==
+              static_cast<double>(fit::steps_to(plan.before(), plan.place().head).size()));
+    };
+    agrees(0, 1);
+    // A new one begins where the plan is; undo in it leaves the first as it was.
+    go("alternative", "1");
+    agrees(1, 2);
+    CHECK(session.plan().alternatives[1].name == "alternative 2");
+    session.undo = 260;
+    node.run(100);
+    const Pose second = session.file_pose(1);
+    REQUIRE(off(second, first) > 1e-4);
+    agrees(1, 2);
+    go("alternative", "0");
+    CHECK(same_bits(session.file_pose(1), first));
+    agrees(0, 2);
+    go("alternative", "1");
+    CHECK(same_bits(session.file_pose(1), second));
+    agrees(1, 2);
+    go("drop", "0");
+    agrees(0, 1);
+    go("drop", "-2");
+    agrees(0, 2);
+    go("alternative", "-1");
+    go("alternative", "1");
+    CHECK(same_bits(session.file_pose(1), first));
+    agrees(1, 2);
+    // What is not there is refused, and said.
+    take_notices(node.host);
+    go("alternative", "7");
+    agrees(1, 2);
+    go("drop", "1");
+    agrees(1, 2);
+    const auto told = take_notices(node.host);
+    REQUIRE_FALSE(told.empty());
+    CHECK(told[0].find("no such alternative") != std::string::npos);
+    // A place between two is none.
+    go("drop", "0.5");
+    go("alternative", "0.5");
+    go("drop", "-1.5");
+    agrees(1, 2);
+    const auto fractions = take_notices(node.host);
+    REQUIRE_FALSE(fractions.empty());
+    CHECK(fractions[0].find("whole numbers") != std::string::npos);
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/vibration/verdict.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace tactus;
+using namespace tactus::analysis;
+
+namespace {
+
+/// Of that amplitude in dB.
+signal::SpectralLine line(double hz, double db) { return {hz, 0.5 * std::pow(10.0, db / 10.0), 20.0}; }
+
+signal::Comparison good() {
+    signal::Comparison c;
+    c.cosine_500 = c.cosine_1000 = 1.0;
+    c.reference_rms = c.output_rms = 1.0;
+    c.harmonic_error_db = 0.1;
+    c.lines.in_both = {line(200.0, 0.0)};
+    c.above_noise = {1, 1, {200.0}};
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("a comparison passes when every score reaches its threshold and fails by the names of those that do not") {
+    CHECK(judge(good(), 30.0, {}).passed());
+    signal::Comparison c = good();
+    c.lsd_db = 2.1;
+    c.cosine_1000 = 0.9;
+    CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"lsd_db", "cosine_40_1000"});
+    table::Thresholds levelled;
+    levelled.level_gap_db = 10.0;
+    CHECK(judge(good(), 10.0, levelled).passed());
+    CHECK(judge(good(), 10.1, levelled).failed() == std::vector<std::string>{"level_gap_db"});
+}
+
+TEST_CASE("a score that does not exist is not judged, and said to be so") {
+    signal::Comparison c = good();
+    c.harmonic_error_db.reset();
+    table::Thresholds strict;
+    strict.st_sim = 0.9;
+    const Verdict verdict = judge(c, 0.0, strict);
+    CHECK(verdict.passed());
+    CHECK(verdict.not_judged == std::vector<std::string>{"harmonic_error_db", "st_sim"});
+}
+
+TEST_CASE("without anything above the noise of both there is no pass, and scores name the band that they judge") {
+    signal::Comparison c = good();
+    c.above_noise.in_both.clear();
+    CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"above_noise"});
+    c.alignment.significant = true;
+    c.coherence_mean = 0.9;  // what two takes of one event share is no noise
+    CHECK(judge(c, 0.0, {}).passed());
+    c.highest = 150.0;
+    const Verdict narrow = judge(c, 0.0, {});
+    CHECK(narrow.not_judged == std::vector<std::string>{"cosine_40_1000"});
+    for (const Judged& score : narrow.scores) {
+        INFO(score.about);
+        CHECK(score.about.ends_with("40 to 150 Hz"));
+    }
+}
+
+TEST_CASE("a line that only one has counts by its level beside the reference's strongest, at equal power") {
+    signal::Comparison c = good();
+    c.gain_db = 20.0;
+    c.lines.only_in_output = {line(50.0, -49.0)};  // −29 dB with the gain
+    CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"only_in_output"});
+    c.lines.only_in_output = {line(50.0, -51.0)};
+    CHECK(judge(c, 0.0, {}).passed());
+    c.lines.only_in_reference = {line(400.0, -19.0)};
+    CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"only_in_reference"});
+    c.lines.only_in_reference = {line(400.0, -21.0)};
+    CHECK(judge(c, 0.0, {}).passed());
+}
+
+TEST_CASE("a line is called after the saw's order first, then after the mains") {
+    CHECK(name_of_line(466.1, 233.0) == "order 2");
+    CHECK(name_of_line(50.02, 233.0) == "mains hum, 50 Hz");
+    CHECK(name_of_line(180.0, 0.0) == "mains hum, 3 × 60 Hz");
+    CHECK(name_of_line(100.0, 50.0) == "order 2");
+    CHECK(name_of_line(77.0, 233.0).empty());
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/bone/intact_side.hpp"
+
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/fit/registration/mirror.hpp"
+#include "dsp/volume/outer_shell.hpp"
+#include "tools/analysis/bone/fragment_file.hpp"
+#include "tools/analysis/bone/kept_points.hpp"
+#include "tools/analysis/bone/surface_file.hpp"
+#include "tools/analysis/workers.hpp"
+
+namespace tactus::analysis {
+
+namespace {
+
+// To be raised with every change of code that changes these points: import of scans, outer shell, sampling.
+constexpr int sampling = 1;
+
+}  // namespace
+
+std::vector<contact::SurfacePoint> laid_target(const plan::MirrorTarget& target, const std::filesystem::path& folder) {
+    return fit::mirrored(points_of_file(plan::file_of(target.file, folder)),
+                         {target.plane_normal, target.plane_offset}, target.pose);
+}
+
+std::optional<fit::RegistrationTarget> healthy_side(const plan::PlanState& state,
+                                                    const std::filesystem::path& folder) {
+    if (!state.mirror) return std::nullopt;
+    return std::optional<fit::RegistrationTarget>(std::in_place, laid_target(*state.mirror, folder));
+}
+
+const std::vector<contact::SurfacePoint>& IntactBone::points() {
+    // Half the width of the openings that connect marrow to the outside at a threshold for cortex.
+    constexpr double closing = 3e-3;
+    if (!points_.empty()) return points_;
+    if (is_mesh(file_)) return points_ = points_of_file(file_);
+    plan::ResultKey key("outer shell of a bone", sampling);
+    key.add_file(file_).add("closing", closing);
+    points_ = plan::points_of_key(key, note_, [&] {
+        return contact::sample_surface(volume::outer_shell(bone_of_file(file_).distance, closing, on_threads()), {});
+    });
+    return points_;
+}
+
+std::vector<double> IntactBone::numbers_on(std::span<const contact::SurfacePoint> main) {
+    fit::MirrorFit laid;
+    if (mirror_) laid = fit::fit_mirror(points(), main);
+    else {
+        laid.registration = fit::register_from_anywhere(main, points(), fit::RegistrationTarget(points()));
+        laid.pose = laid.registration.pose.inverse();
+    }
+    std::vector<double> numbers;
+    add_registration(numbers, laid.registration);
+    const Vec3 &n = laid.plane.normal, &p = laid.pose.position;
+    const Quat& q = laid.pose.orientation;
+    numbers.insert(numbers.end(), {n.x, n.y, n.z, laid.plane.offset, p.x, p.y, p.z, q.w, q.x, q.y, q.z});
+    return numbers;
+}
+
+std::vector<contact::SurfacePoint> IntactBone::laid(NumberReader& numbers) {
+    fit::MirrorPlane plane;
+    for (double* number : {&plane.normal.x, &plane.normal.y, &plane.normal.z, &plane.offset}) *number = numbers.next();
+    const Pose onto = numbers.pose();
+    if (mirror_) return fit::mirrored(points(), plane, onto);
+    std::vector<contact::SurfacePoint> moved = points();
+    for (contact::SurfacePoint& p : moved) p = {onto.apply(p.position), onto.rotate(p.normal), p.area, p.label};
+    return moved;
+}
+
+}  // namespace tactus::analysis

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/cutting_guide/plan_guide.hpp"
+
+#include "assets/mesh/mesh.hpp"
+#include "devices/display/outline_font.hpp"
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/geometry/self_intersection.hpp"
+#include "dsp/reconstruction/clearance.hpp"
+#include "dsp/reconstruction/donor_bone.hpp"
+#include "dsp/reconstruction/margin_wall.hpp"
+#include "tools/analysis/workers.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace tactus::analysis {
+
+namespace {
+
+using cutting_guide::GuideCut;
+using cutting_guide::GuideDesign;
+using cutting_guide::GuideHole;
+using cutting_guide::GuideText;
+
+constexpr double wall_slack = 0.1 * mm;  // of measured walls against wanted ones
+constexpr double jaw_cover = 0.65;  // of the height of the jaw: a placeholder
+constexpr double most_label = 16;        // characters
+
+Vec3 turned(const Vec3& v, const Vec3& axis, double angle) { return glm::angleAxis(angle, axis) * v; }
+
+/// Letters of the given height of capitals.
+class Letters {
+public:
+    explicit Letters(double height) {
+        double ignored = 0.0;
+        double low = 0.0;
+        for (const auto& outline : font_.outlines("H", 1.0, ignored))
+            for (const auto& p : outline) low = std::min(low, p.y);
+        size_ = height / -low;
+    }
+    GuideText text(const std::string& words) const {
+        GuideText made;
+        for (const auto& outline : font_.outlines(words, size_, made.width)) {
+            auto& to = made.outlines.emplace_back();
+            for (const auto& p : outline) to.emplace_back(p.x, -p.y);
+        }
+        return made;
+    }
+
+private:
+    display::OutlineFont font_{true};
+    double size_ = 1.0;
+};
+
+/// An arrow as high as capitals, after the text.
+void add_arrow(GuideText& text, double height, bool to_right) {
+    const double from = text.width + 0.5 * height, length = 2.5 * height, head = height, half = 0.5 * height;
+    cutting_guide::Outline arrow{{0.0, 0.65 * half}, {length - head, 0.65 * half}, {length - head, 0.0},
+                                 {length, half},     {length - head, 2.0 * half},  {length - head, 1.35 * half},
+                                 {0.0, 1.35 * half}};
+    for (auto& p : arrow) p.x = from + (to_right ? p.x : length - p.x);
+    text.outlines.push_back(std::move(arrow));
+    text.width = from + length;
+}
+
+void add_texts(GuideDesign& design, const std::string& title, const GuideChoice& choice, const std::string& side,
+               bool arrow_to_right) {
+    const double height = design.settings.text_height;
+    const Letters letters(height);
+    std::string label = choice.label.empty() ? title : choice.label;
+    if (choice.label.empty() && label.size() > most_label) label.resize(static_cast<std::size_t>(most_label));
+    for (const char c : label)
+        if (c < ' ' || c > '~')
+            throw Error(fmt::format("'{}' cannot be engraved: --label takes printable ASCII characters", label));
+    if (label.size() > most_label) throw Error(fmt::format("--label is longer than {:.0f} characters", most_label));
+    design.text[0] = letters.text(label + "  " + side);
+    design.text[1] = letters.text("RESEARCH");
+    add_arrow(design.text[1], height, arrow_to_right);
+    for (const GuideCut& cut : design.cuts) design.letters.push_back(letters.text(std::string(1, cut.letter)));
+}
+
+void add_letters(std::vector<GuideCut>& cuts) {
+    for (std::size_t n = 0; n < cuts.size(); ++n) cuts[n].letter = static_cast<char>('A' + n);
+}
+
+/// Screws of plates and implants in the frame of the jaw; `place` gives a hole for each that belongs to the bone.
+template <class Place>
+void add_predictive(const reconstruction::Flap& flap, const Place& place) {
+    for (const reconstruction::Plate& plate : flap.plates)
+        for (std::size_t n = 0; n < plate.screws.size(); ++n)
+            place(plate.screws[n].head, plate.screws[n].axis, 0.5 * plate.screws[n].diameter,
+                  fmt::format("screw {} of plate '{}'", n + 1, plate.name));
+    for (const reconstruction::DentalImplant& implant : flap.implants)
+        place(implant.head, implant.axis, 0.5 * implant.diameter, fmt::format("implant '{}'", implant.name));
+}
+
+/// m of base from a cut on, along `out`, so that a screw and its driver pass the wall of the slot at any height: the wall
+/// leans by `out` against the removal. `slot`: what of its width lies on that side.
+double room_for_screw(const GuideDesign& design, const Vec3& out, double slot) {
+    const cutting_guide::GuideSettings& set = design.settings;
+    const double lean = std::max(0.0, -glm::dot(out, glm::normalize(design.removal)));
+    return slot + set.wall + lean * (set.depth + 10.0 * mm) + 2.0 * (set.screw_radius + 2.5 * mm);
+}
+
+GuideDesign of_fibula(const FlapStudy& study, const GuideChoice& choice) {
+    const reconstruction::FibulaInputs& in = study.inputs();
+    const reconstruction::DonorBone donor(in);
+    const reconstruction::FibulaPlan& plan = study.fibula();
+    GuideDesign design;
+    design.settings = choice.settings;
+    design.settings.offset = choice.offset.value_or(0.5 * mm);
+    design.bone = donor.surface();
+    const Vec3 axis = donor.axis(), medial = donor.frame()[0], front(0.0, -1.0, 0.0);
+    // From lateral to the front.
+    const double sense = glm::dot(glm::cross(axis, -medial), front) > 0.0 ? 1.0 : -1.0;
+    design.removal = turned(-medial, axis, sense * choice.turn);
+    // The rail lies in front of the bone: the vessels run behind it.
+    const bool is_upwards = glm::dot(-glm::cross(design.removal, axis), turned(front, axis, sense * choice.turn)) > 0.0;
+    design.along = is_upwards ? axis : -axis;
+    double low = infinity, high = -infinity;
+    for (std::size_t n = 0; n < plan.segments.size(); ++n)
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+            const reconstruction::FibulaSegment& s = plan.segments[n];
+            const Vec3 out = glm::normalize(s.donor_plane[end].normal);
+            const bool is_far = s.along_line[end] > s.along_line[1 - end];
+            design.cuts.push_back({{s.donor_plane[end].origin, is_far ? out : -out},
+                                   fmt::format("segment {} at plane {}", n + 1, n + end + 1)});
+            low = std::min(low, s.along_line[end]), high = std::max(high, s.along_line[end]);
+        }
+    std::ranges::sort(design.cuts, {}, [&](const GuideCut& c) { return glm::dot(c.plane.origin, design.along); });
+    add_letters(design.cuts);
+    const auto from_point = [&](double s) { return donor.at(s); };
+    const auto end_beyond = [&](bool is_low) {
+        const GuideCut& cut = (glm::dot(design.along, axis) > 0.0) == is_low ? design.cuts.front() : design.cuts.back();
+        return std::max(design.settings.end, room_for_screw(design, cut.plane.normal, design.settings.slot_width()) /
+                                                 std::abs(glm::dot(cut.plane.normal, axis)));
+    };
+    const double from = std::max(low - end_beyond(true), donor.whole().low + 2.0 * mm),
+                 to = std::min(high + end_beyond(false), donor.whole().high - 2.0 * mm);
+    design.base.push_back({from_point(0.0), axis, from, to});
+    const double inside = design.settings.screw_radius + 2.5 * mm;
+    for (const double s : {from + inside, to - inside})
+        design.holes.push_back({from_point(s), -design.removal, design.settings.screw_radius,
+                                fmt::format("screw at {:.0f} mm on the line", s / mm), false});
+    add_predictive(study.flap(), [&](const Vec3& head, const Vec3& along, double radius, const std::string& name) {
+        for (const reconstruction::FibulaSegment& s : plan.segments) {
+            const Pose back = s.donor_to_target.inverse();
+            const Vec3 at = back.apply(head);
+            const double place = donor.along(at);
+            if (place < std::min(s.along_line[0], s.along_line[1]) ||
+                place > std::max(s.along_line[0], s.along_line[1]))
+                continue;
+            if (glm::length(at - donor.at(place)) > 25.0 * mm) continue;
+            design.holes.push_back({at, back.rotate(along), radius, name, true});
+        }
+    });
+    return design;
+}
+
+GuideDesign of_jaw(const FlapStudy& study, const GuideChoice& choice) {
+    const reconstruction::FibulaInputs& in = study.inputs();
+    if (!in.jaw) throw Error("the plan has no mesh of the jaw: a guide for the jaw needs one ('jaw' of the inputs)");
+    std::vector<reconstruction::Plane> planes = reconstruction::resection_planes(in);
+    if (planes.empty()) throw Error("the plan does not cut the jaw: its resection is 'none'");
+    if (choice.cut > static_cast<int>(planes.size()))
+        throw Error(fmt::format("--cut {}: the plan cuts the jaw by {} planes", choice.cut, planes.size()));
+    if (choice.cut > 0) planes = {planes[static_cast<std::size_t>(choice.cut) - 1]};
+    GuideDesign design;
+    design.settings = choice.settings;
+    design.settings.offset = choice.offset.value_or(0.3 * mm);
+    // The walls end below the teeth; the blade goes on in the plane.
+    design.settings.cover = jaw_cover;
+    design.bone = *in.jaw;
+    Vec3 middle(0.0), at(0.0), out(0.0);
+    for (const Vec3& v : in.jaw->vertices) middle += v / static_cast<double>(in.jaw->vertices.size());
+    for (const reconstruction::Plane& p : planes) {
+        at += p.origin / static_cast<double>(planes.size());
+        Vec3 aside = p.origin - middle;
+        aside.z = 0.0;
+        aside -= glm::dot(aside, p.normal) * p.normal;
+        if (glm::length(aside) > 0.0) out += glm::normalize(aside);
+    }
+    design.along = planes.size() > 1 ? planes.back().origin - planes.front().origin : planes.front().normal;
+    design.along = glm::normalize(design.along);
+    out -= glm::dot(out, design.along) * design.along;
+    if (!(glm::length(out) > 0.1)) throw Error("the plan does not show where the outside of the jaw is");
+    design.removal = turned(glm::normalize(out), design.along, choice.turn);
+    // The rail lies below the jaw.
+    if (glm::cross(design.removal, design.along).z < 0.0) design.along = -design.along;
+    for (std::size_t n = 0; n < planes.size(); ++n)
+        design.cuts.push_back({{planes[n].origin, glm::normalize(planes[n].normal)},
+                               choice.cut == 2 || n > 0 ? "the last plane of the jaw" : "the first plane of the jaw"});
+    std::ranges::sort(design.cuts, {}, [&](const GuideCut& c) { return glm::dot(c.plane.origin, design.along); });
+    add_letters(design.cuts);
+    const double beyond = design.settings.slot_width() + design.settings.wall;
+    for (const GuideCut& c : design.cuts) {
+        const double reach =
+            std::max(design.settings.wall + design.settings.end, room_for_screw(design, -c.plane.normal, 0.0));
+        design.base.push_back({c.plane.origin, c.plane.normal, -reach, beyond});
+        const Vec3 aside = glm::normalize(glm::cross(design.removal, c.plane.normal)),
+                   place = c.plane.origin - (reach - design.settings.screw_radius - 2.5 * mm) * c.plane.normal;
+        for (const double side : {-5.0 * mm, 5.0 * mm})
+            design.holes.push_back({place + side * aside, -design.removal, design.settings.screw_radius,
+                                    fmt::format("screw beside cut {}", c.letter), false});
+    }
+    add_predictive(study.flap(), [&](const Vec3& head, const Vec3& along, double radius, const std::string& name) {
+        const bool is_kept = std::ranges::any_of(design.cuts, [&](const GuideCut& c) {
+            const double t = glm::dot(head - c.plane.origin, c.plane.normal);
+            return t < 0.0 && glm::length(head - c.plane.origin) < 40.0 * mm;
+        });
+        if (is_kept) design.holes.push_back({head, along, radius, name, true});
+    });
+    return design;
+}
+
+double smallest_distance(const cutting_guide::MadeGuide& made, const Vec3& p) {
+    double least = infinity;
+    for (const Vec3& v : made.surface.vertices) least = std::min(least, glm::dot(v - p, v - p));
+    return std::sqrt(least);
+}
+
+void warn_clinically(PlannedGuide& guide, const FlapStudy& study, const GuideChoice& choice) {
+    const auto warn = [&](const char* code, std::string text) { guide.warnings.push_back({code, std::move(text)}); };
+    const cutting_guide::Seat& seat = guide.seat;
+    if (seat.play > 1.0 * mm)
+        warn(
+            "seat-play",
+            seat.play >= cutting_guide::most_play
+                ? std::string("the bone does not hold the guide along one direction, as along a smooth shaft: mark its "
+                              "place by a screw or a distance from the end of the bone")
+                : fmt::format("with a gap of {:.1f} mm the guide can move by {:.1f} mm on the bone",
+                              choice.seat_gap / mm, seat.play / mm));
+    if (seat.play_angle > 2.0 * degree)
+        warn("seat-angle", fmt::format("with a gap of {:.1f} mm the guide can turn by {:.1f}° on the bone",
+                                       choice.seat_gap / mm, seat.play_angle / degree));
+    if (seat.contact_share() < 0.5)
+        warn("contact", fmt::format("only {:.0f} % of the faces that look at the bone touch it; the others lie over "
+                                    "undercuts",
+                                    100.0 * seat.contact_share()));
+    for (const cutting_guide::MadeSlot& slot : guide.made.slots)
+        if (!slot.play)
+            warn("ledge",
+                 fmt::format("slot {} is a ledge: it does not hold the blade on the removed side", slot.cut.letter));
+    if (guide.overhang > 0.1)
+        warn("overhang",
+             fmt::format("{:.0f} % of the surface hangs over by more than {:.0f}° when the guide is printed "
+                         "with the bone's side up",
+                         100.0 * guide.overhang, choice.overhang / degree));
+    for (const GuideHole& hole : guide.made.holes)
+        for (const GuideCut& cut : guide.design.cuts) {
+            const double away = std::abs(glm::dot(hole.at - cut.plane.origin, cut.plane.normal)) - hole.radius;
+            const bool is_near = glm::length(hole.at - cut.plane.origin) < 30.0 * mm;
+            if (is_near && away < 1.0 * mm)
+                warn("hole-near-cut", fmt::format("{} lies {:.1f} mm from cut {}", hole.name, away / mm, cut.letter));
+        }
+    if (guide.bone != GuideBone::fibula) return;
+    for (const reconstruction::Perforator& p : study.flap().perforators)
+        if (const double away = smallest_distance(guide.made, p.at); away < choice.perforator)
+            warn("perforator",
+                 fmt::format("perforator '{}' leaves the bone {:.1f} mm from the guide", p.name, away / mm));
+    for (const reconstruction::FlapVessel& vessel : study.flap().vessels) {
+        double least = infinity;
+        for (const Vec3& p : vessel.points) least = std::min(least, smallest_distance(guide.made, p) - vessel.radius);
+        if (least < choice.vessel)
+            warn("vessel", fmt::format("vessel '{}' runs {:.1f} mm from the guide", vessel.name, least / mm));
+    }
+}
+
+void refuse(const PlannedGuide& guide, const mesh::MeshTopology& topology) {
+    const geometry::TriangleSurface& surface = guide.made.surface;
+    if (!topology.is_watertight())
+        throw Error(fmt::format("the guide's mesh is not closed: {} open, {} crowded, {} flipped edges",
+                                topology.boundary_edges, topology.non_manifold_edges, topology.flipped_edges));
+    if (!(guide.volume > 0.0)) throw Error("the guide's mesh is inside out");
+    if (guide.parts != 1)
+        throw Error(fmt::format(
+            "the guide falls into {} parts: choose another approach, a thicker base, or three sides", guide.parts));
+    if (const auto pairs = geometry::self_intersections(surface, 100, on_threads()); !pairs.empty())
+        throw Error(fmt::format("the guide's mesh intersects itself in {} places", pairs.size()));
+    const cutting_guide::GuideSettings& set = guide.design.settings;
+    const double wanted = std::min({set.thickness, set.wall, set.rail - set.text_depth, set.min_wall}) - wall_slack;
+    if (guide.wall && guide.wall->thickness < wanted) {
+        const Vec3 at = guide.wall->at / mm;
+        throw Error(
+            fmt::format("a wall of the guide is {:.2f} mm thick, less than {:.1f} mm, at {:.1f}, {:.1f}, {:.1f} mm",
+                        guide.wall->thickness / mm, wanted / mm, at.x, at.y, at.z));
+    }
+    if (!guide.seat.is_path_free) {
+        const Vec3 at = guide.seat.blocked_at / mm;
+        throw Error(fmt::format("bone is in the way of the guide along its approach, at {:.1f}, {:.1f}, {:.1f} mm",
+                                at.x, at.y, at.z));
+    }
+    if (guide.seat.least_distance < set.offset - 0.1 * mm)
+        throw Error(fmt::format("the guide comes within {:.2f} mm of the bone, closer than its offset",
+                                guide.seat.least_distance / mm));
+    if (!(guide.seat.contact_area > 0.0)) throw Error("the guide does not touch the bone");
+    for (std::size_t n = 0; n < guide.refits.size(); ++n) {
+        const cutting_guide::SlotFit& fit = guide.refits[n];
+        if (std::abs(fit.offset) > 0.05 * mm || fit.angle > 0.1 * degree)
+            throw Error(fmt::format("slot {} lies {:.2f} mm and {:.2f}° off the plan", guide.made.slots[n].cut.letter,
+                                    fit.offset / mm, fit.angle / degree));
+        if (fit.width > 0.0 && std::abs(fit.width - guide.made.slots[n].width) > 0.05 * mm)
+            throw Error(fmt::format("slot {} is {:.2f} mm wide instead of {:.2f} mm", guide.made.slots[n].cut.letter,
+                                    fit.width / mm, guide.made.slots[n].width / mm));
+    }
+}
+
+}  // namespace
+
+const char* name_of(GuideBone bone) { return bone == GuideBone::fibula ? "fibula" : "jaw"; }
+
+GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+    GuideDesign design = choice.bone == GuideBone::fibula ? of_fibula(study, choice) : of_jaw(study, choice);
+    const Vec3 x = design.along;
+    bool to_right = false;
+    std::string side;
+    if (choice.bone == GuideBone::fibula) {
+        // The donor's line runs from the foot to the knee.
+        to_right = glm::dot(x, study.inputs().line_direction) < 0.0;
+        side = study.inputs().leg == reconstruction::Leg::left ? "L" : "R";
+    } else {
+        to_right = x.y < 0.0;
+        Vec3 middle(0.0);
+        for (const Vec3& v : design.bone.vertices) middle += v / static_cast<double>(design.bone.vertices.size());
+        const auto is_left = [&](const GuideCut& c) { return c.plane.origin.x > middle.x; };
+        side = std::ranges::all_of(design.cuts, is_left)    ? "L"
+               : std::ranges::none_of(design.cuts, is_left) ? "R"
+                                                            : "LR";
+    }
+    add_texts(design, title, choice, side, to_right);
+    return design;
+}
+
+PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice) {
+    const RunJobs run = on_threads();
+    PlannedGuide guide;
+    guide.bone = choice.bone;
+    guide.design = design_guide(study, title, choice);
+    guide.made = cutting_guide::make_guide(guide.design, run);
+    const geometry::TriangleSurface& surface = guide.made.surface;
+    const geometry::TriangleTree tree(surface), bone(guide.design.bone);
+    const mesh::MeshTopology topology = mesh::topology_of(surface);
+    guide.parts = topology.components;
+    guide.volume = mesh::volume_of(surface);
+    // Walls between letters are as thin as their strokes are near: they are not what holds the guide together.
+    const Pose to_guide = guide.made.frame.inverse();
+    double face = infinity;
+    for (const Vec3& v : surface.vertices) face = std::min(face, to_guide.apply(v).y);
+    const double skin = face + guide.design.settings.text_depth + 0.05 * mm;
+    guide.wall = cutting_guide::thinnest_wall(
+        surface, tree, 6.0 * mm, [&](const Vec3& p) { return to_guide.apply(p).y > skin; }, run);
+    guide.seat = cutting_guide::seat_of(surface, bone, glm::normalize(guide.design.removal),
+                                        guide.design.settings.offset, choice.seat_gap, run);
+    guide.overhang = cutting_guide::overhang_share(surface, -glm::normalize(guide.design.removal), choice.overhang);
+    for (const cutting_guide::MadeSlot& slot : guide.made.slots)
+        guide.refits.push_back(cutting_guide::refit_slot(surface, slot));
+    refuse(guide, topology);
+    for (const std::string& note : guide.made.notes) guide.warnings.push_back({"changed", note});
+    warn_clinically(guide, study, choice);
+    return guide;
+}
+
+file::Json guide_json(const PlannedGuide& guide) {
+    using file::Json;
+    const auto vector = [](const Vec3& v, double unit) { return Json{v.x / unit, v.y / unit, v.z / unit}; };
+    Json slots = Json::array(), warnings = Json::array(), holes = Json::array();
+    std::optional<double> play;
+    for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
+        const cutting_guide::MadeSlot& slot = guide.made.slots[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
+        if (slot.play) play = std::max(play.value_or(0.0), *slot.play);
+        slots.push_back(
+            {{"letter", std::string(1, slot.cut.letter)},
+             {"cut", slot.cut.name},
+             {"plane",
+              {{"origin_mm", vector(slot.cut.plane.origin, mm)}, {"normal", vector(slot.cut.plane.normal, 1.0)}}},
+             {"sides", static_cast<int>(slot.sides)},
+             {"width_mm", fit.width > 0.0 ? Json(fit.width / mm) : Json(nullptr)},
+             {"depth_mm", slot.depth / mm},
+             {"length_mm", slot.length / mm},
+             {"offset_mm", fit.offset / mm},
+             {"angle_error_deg", fit.angle / degree},
+             {"play_deg", slot.play ? Json(*slot.play / degree) : Json(nullptr)}});
+    }
+    for (const GuideWarning& w : guide.warnings) warnings.push_back({{"code", w.code}, {"text", w.text}});
+    for (const GuideHole& h : guide.made.holes)
+        holes.push_back({{"name", h.name},
+                         {"at_mm", vector(h.at, mm)},
+                         {"axis", vector(h.axis, 1.0)},
+                         {"diameter_mm", 2.0 * h.radius / mm},
+                         {"predictive", h.is_predictive}});
+    return {{"bone", name_of(guide.bone)},
+            {"closed", true},
+            {"parts", guide.parts},
+            {"triangles", guide.made.surface.triangles.size()},
+            {"volume_mm3", guide.volume * 1e9},
+            {"wall_min_mm", guide.wall ? Json(guide.wall->thickness / mm) : Json(nullptr)},
+            {"seating",
+             {{"free", guide.seat.is_path_free},
+              {"removal", vector(glm::normalize(guide.design.removal), 1.0)},
+              {"least_distance_mm", guide.seat.least_distance / mm},
+              {"offset_mm", guide.design.settings.offset / mm}}},
+            {"slots", slots},
+            {"holes", holes},
+            {"play_deg", play ? Json(*play / degree) : Json(nullptr)},
+            {"seat_play",
+             {{"mm", guide.seat.play / mm},
+              {"deg", guide.seat.play_angle / degree},
+              {"direction", vector(guide.seat.play_direction, 1.0)},
+              {"is_held", guide.seat.play < cutting_guide::most_play}}},
+            {"contact_share", guide.seat.contact_share()},
+            {"overhang_share", guide.overhang},
+            {"warnings", warnings}};
+}
+
+}  // namespace tactus::analysis

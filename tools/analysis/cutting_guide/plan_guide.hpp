@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Guides for the cuts of a reconstruction: what is made of a plan, what is checked, and what is refused.
+#pragma once
+
+#include "assets/file/json.hpp"
+#include "dsp/cutting_guide/guide.hpp"
+#include "dsp/cutting_guide/guide_checks.hpp"
+#include "tools/analysis/plan/flap_study.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::analysis {
+
+enum class GuideBone { fibula, jaw };
+const char* name_of(GuideBone bone);  ///< "fibula", "jaw"
+
+struct GuideChoice {
+    GuideBone bone = GuideBone::fibula;
+    int cut = 0;  ///< of the jaw: 1 the first, 2 the last; 0: all
+    cutting_guide::GuideSettings settings;
+    std::optional<double> offset;  ///< m; none: 0.5 mm on a fibula, whose periosteum stays, 0.3 mm on a jaw
+    double turn =
+        0.0;  ///< rad: the approach, about the donor's line from lateral (towards the front), or about the jaw's cuts
+    std::string label;  ///< engraved; empty: the plan's title
+    double seat_gap = 0.3e-3;  ///< m, for Seat::play
+    double overhang = 0.7853981634;  ///< rad: printers hold walls that lean less
+    double perforator = 3.0e-3;  ///< m: nearer perforators warn; a placeholder
+    double vessel = 3.0e-3;  ///< m; a placeholder
+};
+
+struct GuideWarning {
+    std::string code;  ///< "seat-play", "perforator", ...
+    std::string text;
+};
+
+struct PlannedGuide {
+    GuideBone bone = GuideBone::fibula;
+    cutting_guide::GuideDesign design;
+    cutting_guide::MadeGuide made;
+    std::size_t parts = 0;
+    double volume = 0.0;  ///< m³
+    std::optional<cutting_guide::ThinWall> wall;  ///< none: no wall is thinner than 6 mm
+    cutting_guide::Seat seat;
+    double overhang = 0.0;  ///< share of the area
+    std::vector<cutting_guide::SlotFit> refits;  ///< of each slot, from the mesh
+    std::vector<GuideWarning> warnings;
+};
+
+/// What a plan's reconstruction asks of a guide. Throws Error when its cuts or its bone are missing.
+cutting_guide::GuideDesign design_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
+
+/// Makes and checks it. Throws Error for a mesh that is not closed, wound or one part, that intersects itself, has a wall
+/// thinner than it should, a slot off the plan, or cannot be seated: such a guide must not be printed. Clinical
+/// thresholds only warn.
+PlannedGuide plan_guide(const FlapStudy& study, const std::string& title, const GuideChoice& choice);
+
+/// {closed, parts, triangles, wall_min_mm, seating, slots, play_deg, seat_play, contact_share, warnings, ...}
+file::Json guide_json(const PlannedGuide& guide);
+
+}  // namespace tactus::analysis

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/experiment/analysis.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/psychophysics/detection.hpp"
+#include "dsp/statistics/distributions.hpp"
+#include "tools/analysis/experiment/experiment_folder.hpp"
+#include "tools/analysis/experiment/port_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace tactus::analysis {
+
+namespace fs = std::filesystem;
+using experiment::Phase;
+using experiment::Protocol;
+using experiment::ResponseKind;
+using experiment::TrialRecord;
+
+namespace {
+
+bool is_data(const TrialRecord& trial) { return trial.phase == Phase::main || trial.phase == Phase::repeat; }
+
+std::string key_of(const std::string& task, const std::string& measure, const std::string& condition) {
+    return task + " " + measure + " " + condition;
+}
+
+/// Level with the target probability, in levels.
+std::optional<double> threshold_of(const Protocol& protocol, const psychophysics::PsychometricFit& fit) {
+    if (!fit.is_identified) return std::nullopt;
+    const double axis = fit.function.level_of(protocol.method.target);
+    return std::isfinite(axis) ? std::optional(protocol.stimulus->level_at(axis)) : std::nullopt;
+}
+
+struct Answers {
+    std::vector<double> levels;
+    std::vector<bool> correct;
+    double hits = 0.0, signals = 0.0, false_alarms = 0.0, noises = 0.0;
+};
+
+Answers answers_of(const Protocol& protocol, const std::vector<TrialRecord>& records, const std::string& condition,
+                   bool with_marked) {
+    Answers answers;
+    for (const TrialRecord& trial : records) {
+        if (!is_data(trial) || trial.condition != condition || (!with_marked && !trial.marked.empty())) continue;
+        if (trial.interval == 0) {
+            answers.noises += 1.0;
+            answers.false_alarms += trial.answer == 1 ? 1.0 : 0.0;
+            continue;
+        }
+        answers.levels.push_back(protocol.stimulus->axis(trial.level));
+        answers.correct.push_back(trial.is_correct);
+        answers.signals += 1.0;
+        answers.hits += trial.is_correct ? 1.0 : 0.0;
+    }
+    return answers;
+}
+
+psychophysics::FitSettings fit_settings(const Protocol& protocol, const Answers& answers) {
+    psychophysics::FitSettings settings;
+    settings.form = protocol.method.form;
+    settings.lapse = protocol.method.lapse;
+    settings.min_slope = 0.2 * protocol.method.slopes.front();
+    settings.max_slope = 20.0 * protocol.method.slopes.back();
+    settings.guess = protocol.response.kind == ResponseKind::choice
+                         ? protocol.response.guess()
+                         : (answers.false_alarms + 0.5) / (answers.noises + 1.0);
+    return settings;
+}
+
+SubjectThreshold analyse_condition(const Protocol& protocol, const AnalysedSubject& subject,
+                                   const std::string& condition, const AnalysisSettings& how, std::uint64_t seed) {
+    SubjectThreshold result;
+    result.condition = condition;
+    const Answers answers = answers_of(protocol, subject.records, condition, false);
+    result.counts = psychophysics::count_levels(answers.levels, answers.correct);
+    const psychophysics::FitSettings settings = fit_settings(protocol, answers);
+    if (result.counts.size() >= 2) {
+        result.fit = psychophysics::fit_psychometric(result.counts, settings);
+        result.threshold = threshold_of(protocol, *result.fit);
+        if (result.threshold && how.bootstrap > 0) {
+            try {
+                const auto axis = psychophysics::bootstrap_fit(result.counts, settings, *result.fit,
+                                                               protocol.method.target, how.bootstrap, 0.95, seed)
+                                      .threshold;
+                result.interval = {protocol.stimulus->level_at(axis.low), protocol.stimulus->level_at(axis.high)};
+            } catch (const Error&) {
+                result.interval.reset();  // too few answers: the threshold stands without an interval
+            }
+        }
+        const Answers all = answers_of(protocol, subject.records, condition, true);
+        const auto counts = psychophysics::count_levels(all.levels, all.correct);
+        result.with_marked =
+            threshold_of(protocol, psychophysics::fit_psychometric(counts, fit_settings(protocol, all)));
+    }
+    if (protocol.response.kind == ResponseKind::yes_no && answers.signals > 0.0 && answers.noises > 0.0) {
+        const auto detection =
+            psychophysics::yes_no(answers.hits, answers.signals, answers.false_alarms, answers.noises);
+        result.d_prime = detection.d_prime;
+        result.criterion = detection.criterion;
+    }
+    for (const TrialRecord& trial : subject.records)
+        if (trial.condition == condition && trial.rendered_level && trial.level != 0.0)
+            result.max_level_error =
+                std::max(result.max_level_error, std::abs(*trial.rendered_level / trial.level - 1.0));
+    return result;
+}
+
+void analyse_tasks(const Protocol& protocol, AnalysedSubject& subject) {
+    for (const experiment::Task& task : protocol.tasks)
+        for (const experiment::Measure& measure : task.measures)
+            for (const experiment::Condition& condition : protocol.conditions) {
+                double sum = 0.0, n = 0.0;
+                for (const TrialRecord& trial : subject.records) {
+                    const auto value = trial.measures.find(measure.name);
+                    if (!is_data(trial) || trial.task != task.name || trial.condition != condition.name ||
+                        value == trial.measures.end())
+                        continue;
+                    if (measure.is_log && !(value->second > 0.0)) continue;
+                    sum += measure.is_log ? std::log(value->second) : value->second;
+                    n += 1.0;
+                }
+                if (n > 0.0) subject.means[key_of(task.name, measure.name, condition.name)] = sum / n;
+            }
+}
+
+std::string exclusion_of(const Protocol& protocol, const AnalysedSubject& subject) {
+    if (!subject.entry.is_complete) return "the session is not complete";
+    const experiment::Limits& limits = protocol.limits;
+    if (subject.catch_trials > 0 && subject.catch_correct < limits.min_catch * subject.catch_trials)
+        return fmt::format("{} of {} catch trials were correct", subject.catch_correct, subject.catch_trials);
+    if (subject.trials > 0 && subject.marked > limits.max_marked * subject.trials)
+        return fmt::format("{} of {} trials were marked", subject.marked, subject.trials);
+    return {};
+}
+
+/// Natural logarithm of thresholds on a log axis, else the threshold.
+std::optional<double> value_of(const Protocol& protocol, const AnalysedSubject& subject, const std::string& task,
+                               const std::string& measure, const std::string& condition) {
+    if (!protocol.is_psychophysics()) {
+        const auto found = subject.means.find(key_of(task, measure, condition));
+        return found == subject.means.end() ? std::nullopt : std::optional(found->second);
+    }
+    for (const SubjectThreshold& one : subject.thresholds)
+        if (one.condition == condition && one.threshold)
+            return protocol.stimulus->is_log ? std::log(*one.threshold) : *one.threshold;
+    return std::nullopt;
+}
+
+bool is_log_measure(const Protocol& protocol, const std::string& task, const std::string& measure) {
+    if (protocol.is_psychophysics()) return protocol.stimulus->is_log;
+    for (const experiment::Task& one : protocol.tasks)
+        for (const experiment::Measure& other : one.measures)
+            if (one.name == task && other.name == measure) return other.is_log;
+    return false;
+}
+
+/// Conditions with a level of the comparison's factor, within its other level.
+std::vector<std::string> conditions_of(const Protocol& protocol, const experiment::Comparison& comparison,
+                                       const std::string& level) {
+    std::vector<std::string> names;
+    for (const experiment::Condition& condition : protocol.conditions)
+        if (condition.factors.at(comparison.factor) == level &&
+            (comparison.within_factor.empty() || condition.factors.at(comparison.within_factor) == comparison.within))
+            names.push_back(condition.name);
+    return names;
+}
+
+/// Mean over conditions; none when one is missing.
+std::optional<double> mean_over(const Protocol& protocol, const AnalysedSubject& subject,
+                                const experiment::Comparison& comparison, const std::string& level) {
+    double sum = 0.0;
+    const std::vector<std::string> names = conditions_of(protocol, comparison, level);
+    if (names.empty()) return std::nullopt;
+    for (const std::string& name : names) {
+        const std::optional<double> value = value_of(protocol, subject, comparison.task, comparison.measure, name);
+        if (!value) return std::nullopt;
+        sum += *value;
+    }
+    return sum / static_cast<double>(names.size());
+}
+
+/// Mean place of the level's conditions in the subject's order.
+double place_of(const Protocol& protocol, std::size_t row, const experiment::Comparison& comparison,
+                const std::string& level) {
+    const std::vector<std::string> names = conditions_of(protocol, comparison, level);
+    const std::vector<std::size_t> order = experiment::condition_order(protocol, row);
+    double sum = 0.0, n = 0.0;
+    for (std::size_t place = 0; place < order.size(); ++place)
+        if (std::ranges::find(names, protocol.conditions[order[place]].name) != names.end()) {
+            sum += static_cast<double>(place);
+            n += 1.0;
+        }
+    return n > 0.0 ? sum / n : 0.0;
+}
+
+AnalysedComparison compare(const ExperimentAnalysis& analysis, const experiment::Comparison& comparison) {
+    const Protocol& protocol = analysis.protocol;
+    AnalysedComparison result;
+    result.of = comparison;
+    result.is_log = is_log_measure(protocol, comparison.task, comparison.measure);
+    result.label = fmt::format("{}{}: {} {} - {}{}", comparison.task.empty() ? "" : comparison.task + " ",
+                               comparison.measure, comparison.factor, comparison.b, comparison.a,
+                               comparison.within.empty() ? "" : fmt::format(" ({})", comparison.within));
+    std::vector<bool> b_second;
+    bool is_crossed = true;
+    for (const AnalysedSubject& subject : analysis.subjects) {
+        if (!subject.excluded.empty()) continue;
+        const auto a = mean_over(protocol, subject, comparison, comparison.a),
+                   b = mean_over(protocol, subject, comparison, comparison.b);
+        if (!a || !b) continue;
+        result.subjects.push_back(subject.entry.pseudonym);
+        result.differences.push_back(*b - *a);
+        const double place_a = place_of(protocol, subject.entry.row, comparison, comparison.a),
+                     place_b = place_of(protocol, subject.entry.row, comparison, comparison.b);
+        if (place_a == place_b) is_crossed = false;
+        b_second.push_back(place_b > place_a);
+    }
+    const std::size_t n = result.differences.size();
+    if (analysis.is_rehearsal && (comparison.factor == "mode" || comparison.factor == "display")) {
+        result.problem = "a rehearsal: without a haptic device and a registered display nothing is tested";
+        return result;
+    }
+    if (n < 2) {
+        result.problem = fmt::format("{} subject{} with both values", n, n == 1 ? "" : "s");
+        return result;
+    }
+    try {
+        result.test = statistics::paired_t(result.differences);
+        result.permutation = statistics::permutation_test(result.differences, protocol.seed);
+        result.effect_interval = statistics::standardised_interval(result.differences, 1.0 - 2.0 * protocol.alpha);
+        if (comparison.margin) {
+            result.equivalence =
+                statistics::standardised_equivalence(result.differences, *comparison.margin, protocol.alpha);
+            result.equivalence_power =
+                statistics::power_of_standardised_equivalence(n, *comparison.margin, 0.0, protocol.alpha);
+        }
+        result.detectable = statistics::detectable_effect(n, 0.8, protocol.alpha);
+    } catch (const Error& error) {
+        result.problem = error.message();
+        return result;
+    }
+    const auto seconds = std::ranges::count(b_second, true);
+    if (is_crossed && n >= 4 && seconds >= 2 && n - static_cast<std::size_t>(seconds) >= 2)
+        result.cross_over = statistics::cross_over(result.differences, b_second);
+    return result;
+}
+
+GroupValue group_value(const ExperimentAnalysis& analysis, const std::string& task, const std::string& measure,
+                       const std::string& condition) {
+    GroupValue group{task, measure, condition, is_log_measure(analysis.protocol, task, measure), 0, 0.0, 0.0, 0.0};
+    std::vector<double> values;
+    for (const AnalysedSubject& subject : analysis.subjects)
+        if (subject.excluded.empty())
+            if (const auto value = value_of(analysis.protocol, subject, task, measure, condition))
+                values.push_back(*value);
+    const statistics::Moments of = statistics::moments(values);
+    group.count = of.count;
+    const double reach = of.count > 1 ? of.deviation / std::sqrt(static_cast<double>(of.count)) *
+                                            statistics::student_quantile(0.975, static_cast<double>(of.count) - 1.0)
+                                      : 0.0;
+    const auto back = [&](double value) { return group.is_log ? std::exp(value) : value; };
+    group.mean = back(of.mean);
+    group.low = back(of.mean - reach);
+    group.high = back(of.mean + reach);
+    return group;
+}
+
+AnalysedSubject analyse_subject(const Protocol& protocol, const fs::path& folder, const experiment::SubjectEntry& entry,
+                                const AnalysisSettings& settings) {
+    AnalysedSubject subject;
+    subject.entry = entry;
+    subject.records = experiment::load_trials(folder / ("sub-" + entry.pseudonym) / "trials.jsonl");
+    for (const TrialRecord& trial : subject.records) {
+        subject.is_rehearsal = subject.is_rehearsal || trial.is_rehearsal;
+        if (trial.phase == Phase::practice) continue;
+        if (trial.phase == Phase::catch_trial) {
+            ++subject.catch_trials;
+            subject.catch_correct += trial.is_correct ? 1 : 0;
+        }
+        ++subject.trials;
+        if (!trial.marked.empty()) {
+            ++subject.marked;
+            ++subject.marked_in[trial.condition];
+        }
+    }
+    subject.excluded = exclusion_of(protocol, subject);
+    if (protocol.is_psychophysics()) {
+        for (std::size_t i = 0; i < protocol.conditions.size(); ++i)
+            subject.thresholds.push_back(analyse_condition(protocol, subject, protocol.conditions[i].name, settings,
+                                                           protocol.seed + 1000 * entry.row + i));
+    } else {
+        analyse_tasks(protocol, subject);
+    }
+    return subject;
+}
+
+}  // namespace
+
+ExperimentAnalysis analyse_experiment(const fs::path& folder, const AnalysisSettings& settings) {
+    ExperimentAnalysis analysis;
+    analysis.protocol = frozen_protocol(folder);
+    const experiment::ExperimentFile file = experiment::load_experiment_file(folder / "experiment.json");
+    if (file.subjects.empty()) throw Error(fmt::format("{}: has no subjects", folder.string()));
+    for (const experiment::SubjectEntry& entry : file.subjects) {
+        analysis.subjects.push_back(analyse_subject(analysis.protocol, folder, entry, settings));
+        const AnalysedSubject& subject = analysis.subjects.back();
+        analysis.is_simulated = analysis.is_simulated || entry.is_simulated;
+        if (!subject.excluded.empty()) continue;
+        ++analysis.included;
+        analysis.is_rehearsal = analysis.is_rehearsal || subject.is_rehearsal;
+    }
+    const Protocol& protocol = analysis.protocol;
+    for (const experiment::Condition& condition : protocol.conditions) {
+        if (protocol.is_psychophysics())
+            analysis.groups.push_back(group_value(analysis, "", "threshold", condition.name));
+        for (const experiment::Task& task : protocol.tasks)
+            for (const experiment::Measure& measure : task.measures)
+                analysis.groups.push_back(group_value(analysis, task.name, measure.name, condition.name));
+    }
+    std::vector<double> p;
+    for (const experiment::Comparison& comparison : protocol.comparisons) {
+        analysis.comparisons.push_back(compare(analysis, comparison));
+        if (const auto& test = analysis.comparisons.back().test) p.push_back(test->p);
+    }
+    const std::vector<double> adjusted = statistics::holm(p);
+    std::size_t next = 0;
+    for (AnalysedComparison& comparison : analysis.comparisons)
+        if (comparison.test) comparison.adjusted_p = adjusted[next++];
+    return analysis;
+}
+
+TakeCheck check_takes(const fs::path& folder) {
+    const Protocol protocol = frozen_protocol(folder);
+    const experiment::ExperimentFile file = experiment::load_experiment_file(folder / "experiment.json");
+    TakeCheck check;
+    for (const experiment::SubjectEntry& entry : file.subjects) {
+        const fs::path home = folder / ("sub-" + entry.pseudonym);
+        for (const TrialRecord& trial : experiment::load_trials(home / "trials.jsonl")) {
+            const fs::path take = home / trial.folder / "take";
+            if (!fs::exists(take / "take.json")) continue;
+            ++check.trials;
+            std::size_t task = 0;
+            while (!protocol.tasks.empty() && protocol.tasks[task].name != trial.task) ++task;
+            const PortValues values = port_values_of(take, ports_of(protocol, task));
+            const auto expect = [&](const std::string& name, double before, double now) {
+                ++check.values;
+                if (std::bit_cast<std::uint64_t>(before) != std::bit_cast<std::uint64_t>(now))
+                    check.differences.push_back(fmt::format("{} trial {}: {} was {}, the take gives {}",
+                                                            entry.pseudonym, trial.number, name, before, now));
+            };
+            if (protocol.is_psychophysics()) {
+                for (std::size_t i = 0; i < trial.rendered.size(); ++i)
+                    expect(fmt::format("interval {}", i + 1), trial.rendered[i],
+                           measure_of(protocol.stimulus->measure, values, protocol.stimulus->windows[i]));
+            } else {
+                for (const experiment::Measure& measure : protocol.tasks[task].measures)
+                    if (const auto found = trial.measures.find(measure.name); found != trial.measures.end())
+                        expect(measure.name, found->second, measure_of(measure, values));
+            }
+        }
+    }
+    return check;
+}
+
+std::string verdict_of(const AnalysedComparison& comparison, double alpha) {
+    if (!comparison.test) return "not tested";
+    const bool is_effect = comparison.adjusted_p < alpha;
+    const bool is_equivalent =
+        comparison.equivalence && comparison.equivalence->verdict == statistics::Equivalence::equivalent;
+    if (is_effect) return is_equivalent ? "effect within the margin" : "effect";
+    return is_equivalent ? "equivalent" : "inconclusive";
+}
+
+}  // namespace tactus::analysis

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an experiment found: thresholds and measures of each subject, the comparisons that its protocol states, and what this
+// number of subjects could have shown.
+#pragma once
+
+#include "assets/experiment/protocol.hpp"
+#include "assets/experiment/records.hpp"
+#include "dsp/psychophysics/fit.hpp"
+#include "dsp/statistics/paired.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::analysis {
+
+/// Answers of a subject in a condition, fitted.
+struct SubjectThreshold {
+    std::string condition;
+    std::vector<psychophysics::LevelCount> counts;  ///< levels on the axis of the stimulus
+    std::optional<psychophysics::PsychometricFit> fit;
+    std::optional<double> threshold;  ///< level with the target probability; none: not identified
+    std::optional<double> with_marked;  ///< the same with the marked trials
+    std::optional<psychophysics::Interval> interval;  ///< 95 %, parametric bootstrap; ignores that levels were adaptive
+    std::optional<double> d_prime, criterion;  ///< of yes/no tasks
+    double max_level_error = 0.0;  ///< largest deviation of the rendered level from the wanted one, a fraction
+};
+
+struct AnalysedSubject {
+    experiment::SubjectEntry entry;
+    int trials = 0, marked = 0, catch_trials = 0, catch_correct = 0;
+    std::map<std::string, int> marked_in;  ///< by condition
+    bool is_rehearsal = false;
+    std::string excluded;  ///< why, by the rules of the protocol; empty: included
+    std::vector<SubjectThreshold> thresholds;
+    /// Mean of a measure over the trials of a task in a condition: "task measure condition". Logarithms where the protocol
+    /// states so.
+    std::map<std::string, double> means;
+    std::vector<experiment::TrialRecord> records;
+};
+
+struct AnalysedComparison {
+    experiment::Comparison of;
+    std::string label;
+    bool is_log = false;  ///< differences are of natural logarithms
+    std::vector<std::string> subjects;
+    std::vector<double> differences;  ///< b − a
+    std::string problem;  ///< why there is no test; empty: there is one
+    std::optional<statistics::PairedTest> test;
+    std::optional<statistics::PermutationTest> permutation;
+    double adjusted_p = 1.0;  ///< Holm, over all comparisons that were tested
+    std::optional<statistics::EquivalenceTest> equivalence;
+    std::pair<double, double> effect_interval;  ///< of the difference in standard deviations, confidence 1 - 2 alpha
+    std::optional<statistics::CrossOver> cross_over;
+    double detectable = 0.0;  ///< standardised effect found with 80 % power at this n
+    double equivalence_power = 0.0;  ///< at no effect
+};
+
+struct GroupValue {
+    std::string task, measure, condition;
+    bool is_log = false;  ///< mean and interval are geometric
+    std::size_t count = 0;
+    double mean = 0.0, low = 0.0, high = 0.0;
+};
+
+struct ExperimentAnalysis {
+    experiment::Protocol protocol;
+    std::vector<AnalysedSubject> subjects;
+    std::vector<GroupValue> groups;
+    std::vector<AnalysedComparison> comparisons;
+    bool is_simulated = false, is_rehearsal = false;
+    std::size_t included = 0;
+};
+
+struct AnalysisSettings {
+    int bootstrap = 499;  ///< samples for the intervals of thresholds; 0: none
+};
+
+/// Reads and analyses. Throws Error when the folder is none, or holds no subject.
+ExperimentAnalysis analyse_experiment(const std::filesystem::path& folder, const AnalysisSettings& settings);
+
+/// Measures computed again from the takes of all trials that have one.
+struct TakeCheck {
+    std::size_t trials = 0, values = 0;
+    std::vector<std::string> differences;
+};
+TakeCheck check_takes(const std::filesystem::path& folder);
+
+/// participants.tsv and .json, dataset_description.json, and for each subject beh/*_beh.tsv with .json (BIDS 1.9).
+void write_bids(const ExperimentAnalysis& analysis, const std::filesystem::path& folder);
+
+/// "effect", "equivalent", "effect within the margin" or "inconclusive": never "no effect".
+std::string verdict_of(const AnalysedComparison& comparison, double alpha);
+
+}  // namespace tactus::analysis

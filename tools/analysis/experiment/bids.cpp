@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of an experiment as the Brain Imaging Data Structure lays them out.
+#include "tools/analysis/experiment/analysis.hpp"
+
+#include "assets/file/json.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tactus::analysis {
+
+namespace fs = std::filesystem;
+using experiment::Protocol;
+using file::Json;
+
+namespace {
+
+std::string cell(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? fmt::format("{:.9g}", *value) : "n/a";
+}
+std::string cell(const std::string& text) { return text.empty() ? "n/a" : text; }
+const char* cell(bool value) { return value ? "true" : "false"; }
+
+void write_participants(const ExperimentAnalysis& analysis, const fs::path& folder) {
+    std::string rows = "participant_id\torder_row\tsimulated\trehearsal\tcomplete\ttrials\tmarked\texcluded\n";
+    for (const AnalysedSubject& subject : analysis.subjects)
+        rows += fmt::format("sub-{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", subject.entry.pseudonym, subject.entry.row + 1,
+                            cell(subject.entry.is_simulated), cell(subject.is_rehearsal),
+                            cell(subject.entry.is_complete), subject.trials, subject.marked, cell(subject.excluded));
+    file::write_whole_file(folder / "participants.tsv", rows);
+    const Json about{{"order_row", {{"Description", "row of the order of conditions, from 1"}}},
+                     {"simulated", {{"Description", "the subject is a model; nobody took part"}}},
+                     {"rehearsal", {{"Description", "without a haptic device or without a registered display"}}},
+                     {"complete", {{"Description", "the session came to its end"}}},
+                     {"trials", {{"Description", "without practice"}}},
+                     {"marked", {{"Description", "trials beyond the limits of timing or force"}}},
+                     {"excluded", {{"Description", "reason by the rules of the protocol; n/a: included"}}}};
+    file::write_whole_file(folder / "participants.json", about.dump(2) + "\n");
+}
+
+Json column(const char* text, const std::string& unit = {}) {
+    Json json{{"Description", text}};
+    if (!unit.empty()) json["Units"] = unit;
+    return json;
+}
+
+void write_answers(const Protocol& protocol, const AnalysedSubject& subject, const fs::path& file) {
+    std::string rows =
+        "trial\tblock\tphase\tcondition\tlevel\tlevel_rendered\tinterval\tanswer\tcorrect\tresponse_"
+        "time\tmissed\tgap\tlimited\tmarked\n";
+    const double factor = parse_unit(protocol.stimulus->level_unit()).factor;
+    for (const experiment::TrialRecord& t : subject.records)
+        rows +=
+            fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", t.number, t.block + 1,
+                        name_of(t.phase), t.condition, cell(std::optional(t.level / factor)),
+                        cell(t.rendered_level ? std::optional(*t.rendered_level / factor) : std::nullopt), t.interval,
+                        t.answer >= 0 && static_cast<std::size_t>(t.answer) < protocol.response.names.size()
+                            ? protocol.response.names[static_cast<std::size_t>(t.answer)]
+                            : "n/a",
+                        cell(t.is_correct), cell(t.response_time), cell(std::optional(t.missed)),
+                        cell(std::optional(t.gap)), cell(std::optional(t.limited)), cell(t.marked));
+    file::write_whole_file(file.string() + ".tsv", rows);
+}
+
+void write_measures(const AnalysedSubject& subject, const experiment::Task& task, const fs::path& file) {
+    std::string rows = "trial\tblock\tphase\tcondition";
+    for (const experiment::Measure& measure : task.measures) rows += "\t" + measure.name;
+    rows += "\tfinished\tmissed\tgap\tlimited\tmarked\n";
+    for (const experiment::TrialRecord& t : subject.records) {
+        if (t.task != task.name) continue;
+        rows += fmt::format("{}\t{}\t{}\t{}", t.number, t.block + 1, name_of(t.phase), t.condition);
+        for (const experiment::Measure& measure : task.measures) {
+            const auto found = t.measures.find(measure.name);
+            rows += "\t" + cell(found == t.measures.end() ? std::nullopt : std::optional(found->second));
+        }
+        rows += fmt::format("\t{}\t{}\t{}\t{}\t{}\n", cell(t.is_finished), cell(std::optional(t.missed)),
+                            cell(std::optional(t.gap)), cell(std::optional(t.limited)), cell(t.marked));
+    }
+    file::write_whole_file(file.string() + ".tsv", rows);
+}
+
+Json shared_columns() {
+    return {{"trial", column("number in the session, from 1")},
+            {"block", column("block of the session, from 1")},
+            {"phase", column("practice, main, catch, or repeat of a marked trial")},
+            {"condition", column("condition of the protocol")},
+            {"missed", column("fraction of ticks that were missed")},
+            {"gap", column("latest tick", "s")},
+            {"limited", column("fraction of the time in which a limiter changed the force")},
+            {"marked", column("why the trial is beyond the limits of the protocol")}};
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
+}
+
+}  // namespace
+
+void write_bids(const ExperimentAnalysis& analysis, const fs::path& folder) {
+    const Protocol& protocol = analysis.protocol;
+    const Json description{{"Name", protocol.title},
+                           {"BIDSVersion", "1.9.0"},
+                           {"DatasetType", "raw"},
+                           {"GeneratedBy", Json::array({{{"Name", "tactus experiment analyse"}}})}};
+    file::write_whole_file(folder / "dataset_description.json", description.dump(2) + "\n");
+    // What is not of the standard: validators leave it out.
+    file::write_whole_file(folder / ".bidsignore",
+                           "frozen/\nexperiment.json\nreport.html\nresults.json\nsub-*/trials.jsonl\nsub-*/trial-*\n");
+    write_participants(analysis, folder);
+    for (const AnalysedSubject& subject : analysis.subjects) {
+        const fs::path beh = folder / ("sub-" + subject.entry.pseudonym) / "beh";
+        make_folder(beh);
+        const auto name = [&](const std::string& task) {
+            return beh / fmt::format("sub-{}_task-{}_beh", subject.entry.pseudonym, task);
+        };
+        if (protocol.is_psychophysics()) {
+            write_answers(protocol, subject, name(protocol.name));
+            Json about = shared_columns();
+            const std::string unit = protocol.stimulus->level_unit();
+            about.update({{"TaskName", protocol.name},
+                          {"level", column("wanted level of the stimulus", unit)},
+                          {"level_rendered", column("level commanded to the device after all limits", unit)},
+                          {"interval", column("interval with the stimulus, from 1; 0: none")},
+                          {"answer", column("answer of the subject")},
+                          {"correct", column("the answer is right")},
+                          {"response_time", column("from the end of the trial to the answer", "s")}});
+            file::write_whole_file(name(protocol.name).string() + ".json", about.dump(2) + "\n");
+            continue;
+        }
+        for (const experiment::Task& task : protocol.tasks) {
+            write_measures(subject, task, name(task.name));
+            Json about = shared_columns();
+            about["TaskName"] = task.name;
+            about["finished"] = column("the task was done before its time was over");
+            // Measures are stored in SI units.
+            for (const experiment::Measure& measure : task.measures)
+                about[measure.name] = column("measure of the protocol, SI units");
+            file::write_whole_file(name(task.name).string() + ".json", about.dump(2) + "\n");
+        }
+    }
+}
+
+}  // namespace tactus::analysis

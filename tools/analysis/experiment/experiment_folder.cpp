@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/experiment/experiment_folder.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/hash.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+namespace tactus::analysis {
+
+namespace fs = std::filesystem;
+using experiment::FrozenFile;
+using experiment::Protocol;
+using experiment::SubjectEntry;
+
+namespace {
+
+constexpr const char *state_name = "experiment.json", *frozen_name = "frozen";
+
+std::string hash_of(const fs::path& file) {
+    Hash hash;
+    file::add_file(hash, file);
+    return fmt::format("{:016x}", hash.value());
+}
+
+/// Relative to the folder of the protocol; files elsewhere keep their names.
+std::string frozen_file_name(const Protocol& protocol, const fs::path& file) {
+    const fs::path relative = file.lexically_relative(protocol.file.parent_path());
+    const bool leads_out = relative.empty() || *relative.begin() == "..";
+    return (leads_out ? fs::path("elsewhere") / file.filename() : relative).string();
+}
+
+/// "line 12: 'min = 0.02' is now 'min = 0.05'"; the first difference.
+std::string first_difference(const std::string& before, const std::string& now) {
+    std::istringstream a(before), b(now);
+    std::string x, y;
+    for (int line = 1;; ++line) {
+        const bool more_a = static_cast<bool>(std::getline(a, x)), more_b = static_cast<bool>(std::getline(b, y));
+        if (!more_a && !more_b) return "the ends of lines";
+        if (!more_a) return fmt::format("line {}: '{}' was added", line, y);
+        if (!more_b) return fmt::format("line {}: '{}' was removed", line, x);
+        if (x != y) return fmt::format("line {}: '{}' is now '{}'", line, x, y);
+    }
+}
+
+}  // namespace
+
+void check_subject_name(const std::string& name) {
+    const auto is_plain = [](char c) {
+        return static_cast<unsigned char>(c) < 128 && std::isalnum(static_cast<unsigned char>(c)) != 0;
+    };
+    if (name.empty() || name.size() > 40 || !std::ranges::all_of(name, is_plain))
+        throw Error(fmt::format(
+            "--subject '{}': must be a pseudonym of 1 to 40 letters a to z and digits, as P07; not a name", name));
+}
+
+ExperimentFolder::ExperimentFolder(const fs::path& folder, const Protocol& protocol) : folder_(folder) {
+    std::error_code failure;
+    fs::create_directories(folder_, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder_.string(), failure.message()));
+    lock();
+    try {
+        if (fs::exists(folder_ / state_name)) {
+            file_ = experiment::load_experiment_file(folder_ / state_name);
+            if (file_.name != protocol.name)
+                throw Error(fmt::format("{}: holds the data of the experiment '{}'; choose another folder by --out",
+                                        folder_.string(), file_.name));
+        } else {
+            for (const auto& entry : fs::directory_iterator(folder_))
+                throw Error(
+                    fmt::format("{}: is no folder of an experiment, but holds '{}'; choose another one by --out",
+                                folder_.string(), entry.path().filename().string()));
+        }
+        if (file_.subjects.empty()) freeze(protocol);
+        else check_frozen(protocol);
+    } catch (...) {
+        ::close(lock_);
+        throw;
+    }
+}
+
+ExperimentFolder::ExperimentFolder(const fs::path& folder) : folder_(folder) {
+    if (!fs::exists(folder_ / state_name))
+        throw Error(fmt::format("{}: is no folder of an experiment (it has no {})", folder_.string(), state_name));
+    lock();
+    try {
+        file_ = experiment::load_experiment_file(folder_ / state_name);
+    } catch (...) {
+        ::close(lock_);
+        throw;
+    }
+}
+
+ExperimentFolder::~ExperimentFolder() { ::close(lock_); }
+
+void ExperimentFolder::lock() {
+    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0) throw Error(fmt::format("{}: cannot be used: {}", folder_.string(), std::strerror(errno)));
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(lock_);
+        throw Error(fmt::format("{}: another program runs this experiment", folder_.string()));
+    }
+}
+
+void ExperimentFolder::freeze(const Protocol& protocol) {
+    file_.name = protocol.name;
+    file_.protocol = protocol.file.string();
+    file_.files.clear();
+    for (const fs::path& file : protocol.files()) {
+        const std::string name = frozen_file_name(protocol, file);
+        const fs::path copy = folder_ / frozen_name / name;
+        std::error_code failure;
+        fs::create_directories(copy.parent_path(), failure);
+        if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", copy.string(), failure.message()));
+        file::write_durable_file(copy, file::read_whole_file(file));
+        file_.files.push_back({name, hash_of(copy)});
+    }
+    save();
+}
+
+void ExperimentFolder::check_frozen(const Protocol& protocol) const {
+    std::vector<FrozenFile> now;
+    for (const fs::path& file : protocol.files()) now.push_back({frozen_file_name(protocol, file), hash_of(file)});
+    const auto refuse = [&](const std::string& why) {
+        throw Error(
+            fmt::format("{}: the protocol must not change after the first subject: {}; restore the file, or begin "
+                        "another experiment with --out",
+                        folder_.string(), why));
+    };
+    for (const FrozenFile& before : file_.files) {
+        const auto found = std::ranges::find(now, before.name, &FrozenFile::name);
+        if (found == now.end()) refuse(fmt::format("it no longer names {}", before.name));
+        if (found->hash == before.hash) continue;
+        const std::size_t index = static_cast<std::size_t>(found - now.begin());
+        const fs::path current = protocol.files()[index];
+        refuse(fmt::format("{}, {}", before.name,
+                           first_difference(file::read_whole_file(folder_ / frozen_name / before.name),
+                                            file::read_whole_file(current))));
+    }
+    for (const FrozenFile& one : now)
+        if (std::ranges::find(file_.files, one.name, &FrozenFile::name) == file_.files.end())
+            refuse(fmt::format("it now names {}", one.name));
+}
+
+void ExperimentFolder::save() const { experiment::save_experiment_file(file_, folder_ / state_name); }
+
+SubjectEntry ExperimentFolder::enrol(const std::string& pseudonym, bool is_simulated) {
+    check_subject_name(pseudonym);
+    const auto found = std::ranges::find(file_.subjects, pseudonym, &SubjectEntry::pseudonym);
+    if (found != file_.subjects.end()) {
+        if (found->is_simulated != is_simulated)
+            throw Error(fmt::format("{} is a {} subject in {}; choose another pseudonym", pseudonym,
+                                    found->is_simulated ? "simulated" : "real", folder_.string()));
+        return *found;
+    }
+    SubjectEntry entry{pseudonym, 0, is_simulated, {}, false, {}};
+    const auto freed = std::ranges::min_element(file_.freed_rows);
+    if (freed != file_.freed_rows.end()) {
+        entry.row = *freed;
+        file_.freed_rows.erase(freed);
+    } else {
+        for (const SubjectEntry& other : file_.subjects) entry.row = std::max(entry.row, other.row + 1);
+    }
+    file_.subjects.push_back(entry);
+    save();
+    return entry;
+}
+
+void ExperimentFolder::update(const SubjectEntry& entry) {
+    for (SubjectEntry& one : file_.subjects)
+        if (one.pseudonym == entry.pseudonym) one = entry;
+    save();
+}
+
+void ExperimentFolder::withdraw(const std::string& pseudonym) {
+    const auto found = std::ranges::find(file_.subjects, pseudonym, &SubjectEntry::pseudonym);
+    if (found == file_.subjects.end()) {
+        std::vector<std::string> names;
+        for (const SubjectEntry& one : file_.subjects) names.push_back(one.pseudonym);
+        throw Error(
+            fmt::format("{}: there is no subject '{}'{}", folder_.string(), pseudonym, did_you_mean(pseudonym, names)));
+    }
+    // The data go first: an entry without data is harmless, data without an entry would stay for ever.
+    std::error_code failure;
+    fs::remove_all(subject_folder(pseudonym), failure);
+    if (failure)
+        throw Error(fmt::format("{}: cannot be deleted: {}", subject_folder(pseudonym).string(), failure.message()));
+    file_.freed_rows.push_back(found->row);
+    file_.subjects.erase(found);
+    save();
+    // Results of an analysis may name the subject.
+    for (const char* name : {"report.html", "results.json", "participants.tsv"}) fs::remove(folder_ / name, failure);
+}
+
+std::string ExperimentFolder::protocol_hash() const {
+    Hash hash;
+    for (const FrozenFile& one : file_.files) {
+        hash.add_text(one.name);
+        hash.add_text(one.hash);
+    }
+    return fmt::format("{:016x}", hash.value());
+}
+
+Protocol frozen_protocol(const fs::path& folder) {
+    if (!fs::exists(folder / state_name))
+        throw Error(fmt::format("{}: is no folder of an experiment (it has no {})", folder.string(), state_name));
+    const experiment::ExperimentFile file = experiment::load_experiment_file(folder / state_name);
+    if (file.files.empty()) throw Error(fmt::format("{}: is damaged: it has no protocol", folder.string()));
+    return experiment::load_protocol(folder / frozen_name / file.files.front().name);
+}
+
+}  // namespace tactus::analysis

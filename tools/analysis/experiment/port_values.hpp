@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of ports over a trial, and the measures made of them: collected while the trial runs, or read from its take. Both give
+// the same bits.
+#pragma once
+
+#include "assets/experiment/protocol.hpp"
+#include "engine/run/options.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tactus::analysis {
+
+/// One number per tick, from logical time 0 on.
+struct PortSeries {
+    double period = 1e-3;  ///< s
+    std::vector<double> values;
+};
+/// By name as a measure gives it, "NODE.PORT" or "NODE.PORT.CHANNEL".
+using PortValues = std::map<std::string, PortSeries>;
+
+/// Ports that a protocol's measures and answers need; `task` is ignored in psychophysics.
+std::set<std::string> ports_of(const experiment::Protocol& protocol, std::size_t task);
+
+class PortCollector {
+public:
+    /// `done`: one of the ports, a bool that ends the trial; empty: none.
+    explicit PortCollector(const std::set<std::string>& ports, std::string done = {});
+    /// For RunChoice::tap. The collector must outlive the run.
+    run::TapMaker tap();
+    /// After the run. Throws Error naming a port that the patch does not have, or a channel that the port does not have.
+    PortValues values() const;
+    /// Set soon after `done` became true. Anybody may set it.
+    std::atomic<bool>& over() { return over_; }
+
+private:
+    struct Entry {
+        PortSeries series;
+        bool is_found = false;
+    };
+    std::map<std::string, Entry> entries_;
+    std::map<std::string, std::string> problems_;
+    std::string done_;
+    std::atomic<bool> over_{false};
+};
+
+/// Reads the same from a take. Throws Error.
+PortValues port_values_of(const std::filesystem::path& take, const std::set<std::string>& ports);
+
+/// The measure within the window, or over the whole trial; not a number where there is nothing to measure, such as no press.
+double measure_of(const experiment::Measure& measure, const PortValues& values,
+                  const std::optional<experiment::Window>& window = {});
+
+}  // namespace tactus::analysis

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A surgeon's decision that the pose of a fragment is correct.
+#pragma once
+
+#include "assets/plan/case_plan.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tactus::analysis {
+
+/// Basis of the decision, and the residual recorded with it.
+enum class AcceptedBy {
+    hand,    ///< visual judgement; residual: median gap between the fragment and its partner
+    mirror,  ///< the mirrored healthy side; residual: median distance of the fragment from it
+    plan     ///< the planned pose of a piece of a reconstruction; residual: distance from it
+};
+
+/// m: the sides of a healthy body differ by 1 to 2 mm, so that a fragment farther from the mirrored side is misplaced.
+inline constexpr double max_mirror_residual = 2e-3;
+
+struct Acceptance {
+    std::string partner;
+    double residual = 0.0;  ///< m
+    double gap = 0.0, penetration = 0.0;  ///< m, between the fragment and its partner
+    double facing = 0.0;  ///< m²
+};
+
+/// Measures a fragment at its current pose. `partner`: the fragment beside it; none: the first fragment of the fixed
+/// part, otherwise of the other shown ones. The decision holds until either moves from the other, like a fit. Throws
+/// Error for a hidden fragment or partner; for `mirror` if the plan has no healthy side or the fragment is farther from
+/// it than max_mirror_residual; for `plan` if the fragment is not a piece of a reconstruction or not at its planned
+/// pose.
+Acceptance measure_acceptance(const plan::CasePlan& plan, const std::filesystem::path& folder, int fragment,
+                              AcceptedBy by, std::optional<int> partner = {});
+
+/// Returns the step that records it: the fragment keeps its pose and is connected to its partner.
+plan::PlanStep step_of(const plan::CasePlan& plan, int fragment, AcceptedBy by, const Acceptance& found);
+
+}  // namespace tactus::analysis

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Common to the studies of a plan: loading fragments, and adding steps.
+#pragma once
+
+#include "assets/plan/case_bones.hpp"
+#include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_lock.hpp"
+#include "dsp/contact/voxmap.hpp"
+#include "dsp/fit/overlap.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace tactus::analysis {
+
+/// A loaded fragment. It always has points. Its distances are only in `map`, and it has no density, because a whole
+/// bone in fine voxels would need 100 MB for each.
+struct CaseFragment : plan::FragmentBone {
+    contact::Voxmap map;
+};
+
+/// Loads a fragment. Throws Error naming the fragment.
+CaseFragment load_fragment(const plan::PlanFragment& fragment, const std::filesystem::path& folder,
+                           plan::Paint paint = plan::Paint::as_filed);
+/// Loads all fragments of a plan. Throws Error for the first file that is missing or has changed.
+std::vector<CaseFragment> load_fragments(const plan::CasePlan& plan, const std::filesystem::path& folder,
+                                         plan::Paint paint = plan::Paint::as_filed);
+
+/// Returns a fragment at a pose. The fragment must outlive the result.
+fit::PlacedBone placed_bone(const CaseFragment& fragment, const Pose& pose);
+
+/// Millimetres with two decimals; never "-0.00".
+double shown_mm(double millimetres);
+
+/// A plan that is locked for changes.
+struct OpenPlan {
+    plan::PlanLock lock;
+    plan::CasePlan plan;
+
+    explicit OpenPlan(const std::filesystem::path& path) : lock(path), plan(plan::load_case_plan(path)) {}
+};
+
+/// Adds a step with the time of day and saves the plan.
+void do_step(plan::CasePlan& plan, plan::PlanStep step, const std::filesystem::path& path);
+
+}  // namespace tactus::analysis

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/training/score.hpp"
+
+#include "assets/bone/content_hash.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/table/number_table.hpp"
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/training/attempt_row.hpp"
+#include "tools/run/replayed_take.hpp"
+#include "tools/run/results.hpp"
+#include "tools/run/scratch_folder.hpp"
+#include "tools/run/summary.hpp"
+#include "tools/run/task_summary.hpp"
+#include "tools/run/training_session.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+namespace tactus::analysis {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The bone that was cut: the one of the run that has the samples of the task's.
+bone::Bone bone_after(const fs::path& folder, const bone::Bone& before, bool refined) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".vdb") files.push_back(entry.path());
+    std::ranges::sort(files);
+    if (files.empty()) throw Error(fmt::format("{}: the run has written no bone", folder.string()));
+    for (const fs::path& file : files) {
+        bone::Bone bone = bone::load_bone(file);
+        const volume::Grid &a = before.distance, &b = bone.distance;
+        if (a.size == b.size && a.origin == b.origin && a.spacing == b.spacing) return bone;
+    }
+    if (refined)
+        throw Error(
+            fmt::format("{}: the bone was too coarse for the kerf and was resampled around the site, so its cut "
+                        "cannot be compared; import the task's bone with a finer --spacing and cut again",
+                        folder.string()));
+    throw Error(fmt::format("{}: the run has no bone on the grid of the task's", folder.string()));
+}
+
+/// By content, not by name: the bone that the run began with, or a file of the same name that holds another one.
+void check_same_bone(const run::TaskSummary& said, const ScoredRun& run, const fs::path& folder) {
+    const std::string wanted = bone::content_hash(run.before);
+    if (std::ranges::find(said.bones, wanted) != said.bones.end()) return;
+    if (said.bones.empty())
+        throw Error(
+            fmt::format("{}: the run does not say which bone it cut; score its take, or cut again", folder.string()));
+    throw Error(fmt::format("{}: the run cut another bone than the task's: {}, not {} of {}", folder.string(),
+                            fmt::join(said.bones, ", "), wanted, run.task.bone.string()));
+}
+
+struct Record {
+    std::vector<training::AttemptSample> samples;
+    std::optional<double> heat;
+    bool has_removed = false;
+};
+
+Record record_of(const fs::path& file) {
+    const table::NumberTable table = table::load_number_table(file);
+    std::vector<std::vector<double>> columns;
+    for (const std::string_view name : training::attempt_column_names) columns.push_back(table.numbers(name));
+    const std::vector<double> times = table.numbers("t_s");
+    Record record;
+    record.samples.reserve(times.size());
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        training::AttemptSample s;
+        s.time = times[n];
+        s.pose.position = {columns[0][n], columns[1][n], columns[2][n]};
+        s.pose.orientation = Quat(columns[3][n], columns[4][n], columns[5][n], columns[6][n]);
+        s.force = {columns[7][n], columns[8][n], columns[9][n]};
+        s.contact = columns[10][n] > 0.5;
+        if (!is_valid(s.pose) || !is_finite(s.force) || (n > 0 && !(s.time > times[n - 1])))
+            throw Error({file.string(), table.lines[n], 1}, "this row is no sample of an attempt");
+        s.pose.orientation = glm::normalize(s.pose.orientation);
+        record.samples.push_back(s);
+    }
+    if (record.samples.empty()) throw Error(fmt::format("{}: has no samples", file.string()));
+    // Below 0: no wire said.
+    if (columns[12].back() >= 0.0) record.heat = columns[12].back();
+    return record;
+}
+
+/// Repeats a take and writes its results.
+void repeat_take(const fs::path& folder, const fs::path& out) {
+    take::Take take = take::Take::load(folder);
+    if (const std::vector<std::string> changed = take.changed_assets(); !changed.empty())
+        throw Error(fmt::format("{}; the take cannot be repeated, so it cannot be scored", changed.front()));
+    take.drop_unreadable_streams();
+    compile::AssetCache assets;
+    run::EngineOptions options;
+    options.seconds = take.about.seconds;
+    options.folder = out;
+    run::ReplayedTake repeated(take, options, assets);
+    run::Engine& engine = repeated.engine();
+    engine.render(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), [](double) {});
+    engine.complete();
+    const Report report = engine.report();
+    const run::WrittenFiles written = run::write_results(report, out, false);
+    std::vector<std::string> losses = engine.losses();
+    losses.insert(losses.end(), written.losses.begin(), written.losses.end());
+    if (!losses.empty()) throw Error(losses.front());
+    file::write_whole_file(out / "summary.json", run::summary_json(engine, report, engine.progress_seconds(), false,
+                                                                       written.names, losses));
+}
+
+training::Task task_of(const run::TaskSummary& said, const fs::path& instead, const fs::path& folder) {
+    if (!instead.empty()) return training::load_task(instead);
+    const fs::path file = said.file;
+    if (!fs::exists(file))
+        throw Error(fmt::format("{}: the task {} is gone; name it with --task", folder.string(), file.string()));
+    training::Task task = training::load_task(file);
+    if (fmt::format("{:016x}", task.hash) != said.hash)
+        throw Error(fmt::format("{}: the task {} has changed since; score with --task to use it as it is now",
+                                folder.string(), file.string()));
+    return task;
+}
+
+std::vector<SparedScore> spared_of(const ScoredRun& run) {
+    std::vector<SparedScore> all;
+    for (const training::SparedStructure& structure : run.task.spared) {
+        training::Injury injury(structure, run.task.blade);
+        for (const training::AttemptSample& s : run.samples) injury.move_to(s.pose);
+        all.push_back({structure.name, injury.injured_m3() * 1e9, std::max(0.0, injury.closest()) * 1e3});
+    }
+    return all;
+}
+
+}  // namespace
+
+namespace {
+
+/// A folder of sessions, DIR of 'tactus session' or DIR/PSEUDONYM, is none itself.
+void refuse_many_sessions(const fs::path& folder) {
+    if (!fs::is_directory(folder) || fs::exists(folder / "summary.json") || fs::exists(folder / "take.json")) return;
+    std::vector<std::string> found;
+    for (auto at = fs::recursive_directory_iterator(folder); at != fs::recursive_directory_iterator(); ++at) {
+        if (at.depth() >= 1) at.disable_recursion_pending();
+        if (at->is_directory() && run::is_training_session(at->path())) found.push_back(at->path().string());
+    }
+    if (found.empty()) return;
+    std::ranges::sort(found);
+    throw Error(fmt::format("{}: holds sessions; name those to score: {}", folder.string(), fmt::join(found, " ")));
+}
+
+}  // namespace
+
+std::vector<fs::path> attempts_in(const fs::path& folder) {
+    if (!run::is_training_session(folder)) {
+        refuse_many_sessions(folder);
+        return {folder};
+    }
+    std::vector<fs::path> all = run::completed_attempts(folder);
+    if (all.empty()) throw Error(fmt::format("{}: no attempt of this session was completed", folder.string()));
+    return all;
+}
+
+ScoredRun score_run(const fs::path& folder, const fs::path& task) {
+    if (!fs::is_directory(folder)) throw Error(fmt::format("{}: there is no such folder", folder.string()));
+    if (fs::exists(folder / "run" / "summary.json")) {
+        ScoredRun run = score_run(folder / "run", task);
+        run.name = folder.string();
+        run.trainee = run::trainee_of_attempt(folder);
+        return run;
+    }
+    if (fs::exists(folder / "take.json")) {
+        const run::ScratchFolder scratch;
+        repeat_take(folder, scratch.path());
+        ScoredRun run = score_run(scratch.path(), task);
+        run.name = folder.string();
+        return run;
+    }
+    const run::TaskSummary said = run::read_task_summary(folder);
+    ScoredRun run;
+    run.name = folder.string();
+    run.task = task_of(said, task, folder);
+    run.before = bone::load_bone(run.task.bone);
+    check_same_bone(said, run, folder);
+    run.after = bone_after(folder, run.before, said.refined);
+    const std::string& record_name = said.record;
+    if (record_name.empty() || fs::path(record_name).has_parent_path())
+        throw Error(fmt::format("{}: the run has no record of its attempt", folder.string()));
+    Record record = record_of(folder / record_name);
+    run.samples = std::move(record.samples);
+    run.score.device_scale = said.device_scale;
+    run.score.limited = said.limited;
+    for (training::AttemptSample& s : run.samples) s.force /= said.device_scale;
+
+    const training::PlannedCut& cut = run.task.cut;
+    const training::CutBone bone{run.before.distance, run.after.distance};
+    Score& score = run.score;
+    const training::CutVolumes volumes = training::cut_volumes(bone, cut, run.task.blade.kerf);
+    score.over_mm3 = volumes.over_m3 * 1e9;
+    score.under_mm3 = volumes.under_m3 * 1e9;
+    run.removed_mm3 = volumes.removed_m3 * 1e9;
+    run.plane = training::fit_cut_plane(bone, cut, run.task.blade.kerf);
+    if (run.plane) {
+        score.rms_mm = run.plane->rms * 1e3;
+        score.max_mm = run.plane->max * 1e3;
+        if (run.plane->angle) score.angle_deg = *run.plane->angle / degree;
+        run.severance =
+            training::severance_of(bone, cut, *run.plane, 0.5 * (run.task.blade.length + run.task.blade.stroke));
+        if (run.severance.severed)
+            if (const auto through = training::breakthrough_of(run.samples, cut, run.task.blade, run.severance)) {
+                score.breakthrough_mm = through->depth * 1e3;
+                score.breakthrough_mm_per_s = through->speed * 1e3;
+            }
+    }
+    score.spared = spared_of(run);
+    const training::MotionMeasures motion =
+        training::motion_of(run.samples, cut, run.task.limits.force.value_or(std::numeric_limits<double>::infinity()));
+    score.mean_N = motion.mean_force;
+    score.contact_s = motion.contact;
+    score.over_limit_Ns = motion.over_limit;
+    if (said.has_force && motion.contact > 0.0) score.shown_share = 1.0 - motion.without_force / motion.contact;
+    score.jerk = motion.jerk;
+    score.strokes = motion.strokes;
+    score.seconds = motion.end - motion.begin;
+    score.path_mm = motion.path * 1e3;
+    score.heat_s = record.heat;
+    run.max_N = motion.max_force;
+    return run;
+}
+
+}  // namespace tactus::analysis

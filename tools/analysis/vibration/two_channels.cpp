@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/analysis/vibration/two_channels.hpp"
+
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::analysis {
+
+namespace {
+
+constexpr std::size_t most_peaks = 5;
+
+/// Slope of the phase over frequency between neighbouring bins, weighted by power and coherence: −∠ΣPxy[k+1] conj Pxy[k].
+double delay_of(const TwoChannels& found) {
+    std::complex<double> sum = 0.0;
+    for (std::size_t k = 1; k + 1 < found.coherence.size(); ++k)
+        if (found.coherence[k] > 0.9 && found.coherence[k + 1] > 0.9)
+            sum += found.h1[k + 1] * std::conj(found.h1[k]) / (std::abs(found.h1[k + 1]) * std::abs(found.h1[k]));
+    return std::abs(sum) > 0.0 ? -std::arg(sum) / (2.0 * pi * found.spectra.df) : 0.0;
+}
+
+std::vector<ResponsePeak> peaks_of(const TwoChannels& found) {
+    const std::vector<std::complex<double>>& h = found.chosen();
+    std::vector<ResponsePeak> peaks;
+    for (std::size_t k = 1; k + 1 < h.size(); ++k) {
+        const double here = std::abs(h[k]);
+        if (found.spectra.frequency(k) > found.usable || found.coherence[k] < 0.8) continue;
+        if (here < std::abs(h[k - 1]) || here <= std::abs(h[k + 1])) continue;
+        // Noise makes maxima everywhere: a peak stands out on both sides by 1 dB and by six standard deviations.
+        const double least = 20.0 * std::log10(here) - std::max(1.0, 6.0 * 20.0 / std::log(10.0) * found.deviation[k]);
+        const auto falls = [&](int step) {
+            for (auto i = static_cast<std::ptrdiff_t>(k) + step; i > 0 && i < static_cast<std::ptrdiff_t>(h.size());
+                 i += step) {
+                const double there = std::abs(h[static_cast<std::size_t>(i)]);
+                if (there > here) return false;
+                if (20.0 * std::log10(std::max(there, 1e-300)) < least) return true;
+            }
+            return false;
+        };
+        if (!falls(-1) || !falls(1)) continue;
+        peaks.push_back({found.spectra.frequency(k), 20.0 * std::log10(here), std::arg(h[k]), found.coherence[k],
+                         20.0 / std::log(10.0) * found.deviation[k]});
+    }
+    std::ranges::stable_sort(peaks, std::greater<>(), &ResponsePeak::level_db);
+    if (peaks.size() > most_peaks) peaks.resize(most_peaks);
+    std::ranges::sort(peaks, {}, &ResponsePeak::hz);
+    return peaks;
+}
+
+}  // namespace
+
+const std::vector<std::complex<double>>& TwoChannels::chosen() const {
+    return estimator == Estimator::h1 ? h1 : estimator == Estimator::h2 ? h2 : hv;
+}
+
+TwoChannels analyse_two_channels(const std::filesystem::path& file, const ResponseSettings& settings,
+                                 const std::function<void(double)>& progress) {
+    sound::RecordReader reader = open_record(file, settings.record);
+    const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings.record);
+    if (chosen.size() != 2)
+        throw Error(
+            fmt::format("{}: a response is between two channels, input and output; name them with --channel, as in "
+                        "--channel 1,2 (the record has {})",
+                        file.string(), reader.channels().size()));
+    TwoChannels out;
+    out.input = reader.channels()[chosen[0]];
+    out.output = reader.channels()[chosen[1]];
+    out.rate = reader.rate();
+    out.usable = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
+    out.calibration = reader.calibration();
+    out.log = reader.log();
+    out.stretch = reader.stretch();
+    out.estimator = settings.estimator;
+    const std::size_t frames = std::max<std::size_t>(1, reader.frames());
+    out.welch.rate = out.rate;
+    out.welch.window = settings.window;
+    out.welch.segment = settings.segment.value_or(signal::suggested_segment(out.rate, frames));
+    out.welch.overlap = std::min(out.welch.segment - 1,
+                                 static_cast<std::size_t>(settings.overlap * static_cast<double>(out.welch.segment)));
+    signal::CrossStream<double> stream(out.welch);
+    sound::RecordBlock block;
+    std::size_t done = 0;
+    while (reader.next(block)) {
+        if (block.after_gap) stream.forget_waiting();
+        stream.push(block.channels[chosen[0]], block.channels[chosen[1]]);
+        done += block.size();
+        if (progress) progress(static_cast<double>(done) / static_cast<double>(frames));
+    }
+    out.duration = static_cast<double>(done) / out.rate;
+    out.spectra = stream.spectra();
+    if (out.spectra.segments < 4)
+        throw Error(
+            fmt::format("{}: coherence needs at least 4 segments, there are {} of {} samples; take shorter ones with "
+                        "--segment",
+                        file.string(), out.spectra.segments, out.welch.segment));
+    out.h1 = out.spectra.h1();
+    out.h2 = out.spectra.h2();
+    out.hv = out.spectra.hv();
+    out.coherence = out.spectra.coherence();
+    out.deviation = out.spectra.response_deviation();
+    out.noise_coherence = 1.0 / out.spectra.effective_segments;
+    out.delay = delay_of(out);
+    out.peaks = peaks_of(out);
+    return out;
+}
+
+}  // namespace tactus::analysis

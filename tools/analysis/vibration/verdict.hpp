@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges the scores of a comparison against thresholds, with an explanation.
+#pragma once
+
+#include "assets/table/thresholds.hpp"
+#include "dsp/signal/spectrum/comparison.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::analysis {
+
+struct Judged {
+    std::string name;   ///< name of the score, as in the JSON
+    double value = 0.0, limit = 0.0;
+    bool at_least = false, passed = true;
+    std::string about;               ///< explanation of the score, with its band
+    double lowest = 0.0, highest = 0.0;  ///< Hz: the band of the score
+};
+
+struct Verdict {
+    std::vector<Judged> scores;                 ///< scores with a threshold and a value
+    std::vector<std::string> not_judged;        ///< scores with a threshold but without a value
+    std::vector<signal::SpectralLine> added, missing;           ///< lines that cause a failure
+
+    std::string time;  ///< the temporal property that passed: "course over time", "statistics"; empty: none
+    double lowest = 0.0, highest = 0.0;  ///< Hz: the band that was judged
+
+    bool passed() const;
+    /// The verdict with its scope, such as "Same mean spectrum and course over time, 40 to 1000 Hz".
+    std::string words() const;
+    std::vector<std::string> failed() const;
+};
+
+Verdict judge(const signal::Comparison& comparison, double level_gap_db, const table::Thresholds& thresholds);
+
+/// "mains hum, 3 × 50 Hz", "order 2" of the fundamental, or "".
+std::string name_of_line(double hz, double fundamental_hz);
+
+}  // namespace tactus::analysis

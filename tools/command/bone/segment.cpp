@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus segment: separates the fragments of a scan by random walks from painted seeds.
+#include "assets/bone/bone.hpp"
+#include "assets/bone/import_steps.hpp"
+#include "assets/bone/labels.hpp"
+#include "assets/file/json.hpp"
+#include "assets/file/outputs.hpp"
+#include "assets/volume/length_unit.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
+#include "tools/command/bone/scan_options.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/run/patch_choice.hpp"
+#include "tools/run/stop_signals.hpp"
+#include "tools/analysis/segmentation/segment_files.hpp"
+#include "tools/analysis/workers.hpp"
+#include "tools/window/paint/paint_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using file::Json;
+
+struct SegmentChoice {
+    analysis::SegmentSettings settings;
+    std::filesystem::path seeds, propose, certainty, plan;
+    window::PaintViewChoice paint;
+    std::vector<std::filesystem::path> out;
+    double marrow = 2.0;  // mm
+    bool json = false;
+};
+
+Json place_json(const Vec3& m) {
+    const Vec3 p = m * 1e3;
+    return Json::array({p.x, p.y, p.z});
+}
+
+bool is_bones(const std::filesystem::path& path) { return path.extension() == ".vdb"; }
+
+void check_outputs(const SegmentChoice& choice) {
+    const bool paints = !choice.paint.seeds.empty(), proposes = !choice.propose.empty();
+    if (choice.out.empty() && !proposes && !paints)
+        throw Error("name the result: -o LABELS.nrrd, LABELS.seg.nrrd or BONES.vdb, or --propose SEEDS.json");
+    if (proposes && (paints || !choice.seeds.empty() || !choice.out.empty() || !choice.certainty.empty()))
+        throw Error("--propose writes seeds only; run segment again with --seeds or --paint");
+    if (paints && !choice.seeds.empty())
+        throw Error("--paint SEEDS.json continues the seeds in that file; leave out --seeds");
+    if (!proposes && !paints && choice.seeds.empty())
+        throw Error(
+            "give the seeds: --seeds SEEDS.json; --paint SEEDS.json opens a window to paint them, --propose SEEDS.json "
+            "writes a first version of them");
+    if (!choice.paint.script.empty() && !paints) throw Error("--view-script needs --paint");
+    if (!choice.paint.hand.empty()) {
+        if (!paints) throw Error("--hand needs --paint");
+        run::PatchChoice patch;
+        patch.patch = choice.paint.hand.string();
+        run::file_of(patch);
+    }
+    if (!choice.plan.empty() && std::ranges::none_of(choice.out, is_bones))
+        throw Error("--plan needs bones to refer to: -o BONES.vdb");
+    if (!choice.plan.empty() && std::filesystem::exists(choice.plan))
+        throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", choice.plan.string()));
+    bone::ImportOptions source;
+    source.input = choice.settings.scan;
+    for (std::filesystem::path out : choice.out) {
+        if (out.extension() != ".nrrd" && !is_bones(out))
+            throw Error(fmt::format("{}: segment writes .nrrd and .seg.nrrd (labels) and .vdb (a bone per label)",
+                                    out.string()));
+        bone::check_output(source, out);
+    }
+    for (const auto& out : {choice.certainty, choice.propose})
+        if (!out.empty()) bone::check_output(source, out);
+    std::vector<std::filesystem::path> all = choice.out;
+    all.push_back(choice.certainty);
+    all.push_back(choice.propose);
+    all.push_back(choice.plan);
+    all.push_back(choice.paint.seeds);
+    const std::filesystem::path sources[] = {choice.settings.scan, choice.seeds};
+    file::check_outputs(sources, all);
+}
+
+Json json_of(const analysis::ScanGraph& scan, const analysis::SegmentedScan& found, const SegmentChoice& choice) {
+    Json json = Json::object();
+    Json labels = Json::array(), islands = Json::array(), uncertain = Json::array(), touching = Json::array();
+    for (const analysis::SegmentedLabel& l : found.labels)
+        labels.push_back({{"name", l.name}, {"voxels", l.voxels}, {"volume_mm3", l.volume * 1e9}});
+    for (const analysis::UnseededIsland& i : found.islands)
+        islands.push_back({{"voxels", i.voxels}, {"centre_mm", place_json(i.centre)}});
+    for (const analysis::UncertainPlace& u : found.uncertain)
+        uncertain.push_back({{"voxels", u.voxels}, {"deepest_mm", place_json(u.deepest)}});
+    for (const analysis::TouchingFace& t : found.touching)
+        touching.push_back({{"labels", Json::array({t.a, t.b})}, {"area_mm2", t.area * 1e6}, {"as_scanned", true}});
+    Json out = Json::array();
+    for (const auto& path : choice.out) out.push_back(path.string());
+    json["files"] = out;
+    json["labels"] = labels;
+    json["unseeded_islands"] = islands;
+    json["uncertain"] = uncertain;
+    json["touching"] = touching;
+    json["marrow_voxels"] = found.marrow_voxels;
+    json["metal_voxels"] = scan.metal_voxels;
+    json["threshold"] = {{"value", scan.threshold}, {"from", scan.threshold_from}};
+    json["gap_law"] = {{"bright", found.law.bright}, {"width", found.law.width}};
+    json["residual"] = found.residual;
+    json["iterations"] = found.iterations;
+    json["seconds"] = found.seconds;
+    json["certainty_p05"] = found.certainty_p05;
+    json["notes"] = scan.notes;
+    return json;
+}
+
+constexpr std::size_t shown = 3;  // of a list; JSON has all
+
+void print_touching(const std::vector<analysis::TouchingFace>& touching) {
+    for (std::size_t n = 0; n < std::min(shown, touching.size()); ++n)
+        fmt::print("  {} and {} touch over {:.0f} mm²\n", touching[n].a, touching[n].b, touching[n].area * 1e6);
+    if (touching.size() > shown) fmt::print("  {} more pairs touch\n", touching.size() - shown);
+    if (!touching.empty())
+        fmt::print("  where fragments touch in the scan their faces are as scanned, and do not show where they fit\n");
+}
+
+void print_islands(const std::vector<analysis::UnseededIsland>& islands) {
+    std::size_t rest = 0;
+    for (std::size_t n = 0; n < islands.size(); ++n) {
+        const Vec3 p = islands[n].centre * 1e3;
+        if (n < shown)
+            fmt::print("  no seed in an island of {} voxels about {:.1f} {:.1f} {:.1f} mm\n", islands[n].voxels, p.x,
+                       p.y, p.z);
+        else rest += islands[n].voxels;
+    }
+    if (rest > 0) fmt::print("  no seed in {} more islands, {} voxels in all\n", islands.size() - shown, rest);
+}
+
+void print(const analysis::ScanGraph& scan, const analysis::SegmentedScan& found) {
+    const bool is_hu = scan.hu != volume::HuKind::scanner;
+    fmt::print("bone from {:g}{} ({}), {} voxels\n", scan.threshold, is_hu ? " HU" : "", scan.threshold_from,
+               scan.graph.nodes());
+    for (const analysis::SegmentedLabel& l : found.labels)
+        fmt::print("  {:<20} {:>9} voxels  {:>9.1f} mm³\n", l.name, l.voxels, l.volume * 1e9);
+    print_touching(found.touching);
+    print_islands(found.islands);
+    if (!found.uncertain.empty()) {
+        const Vec3 p = found.uncertain.front().deepest * 1e3;
+        fmt::print("  least certain at {:.1f} {:.1f} {:.1f} mm ({} voxels below 0.4): paint there first\n", p.x, p.y,
+                   p.z, found.uncertain.front().voxels);
+    }
+    for (const std::string& note : scan.notes) fmt::print("  {}\n", note);
+    fmt::print(
+        "residual {:.1e} after {} iterations, {:.2f} s of processor time; 95 % of the voxels are more certain than "
+        "{:.2f}\n",
+        found.residual, found.iterations, found.seconds, found.certainty_p05);
+}
+
+/// The labels that had strokes when the window was closed.
+std::vector<segmentation::SeedLabel> painted(const SegmentChoice& choice) {
+    std::vector<segmentation::SeedLabel> labels;
+    if (std::filesystem::exists(choice.paint.seeds))
+        labels = segmentation::read_seeds(choice.paint.seeds, segmentation::SeedsUse::draft);
+    std::erase_if(labels, [](const segmentation::SeedLabel& label) { return label.strokes.empty(); });
+    return labels;
+}
+
+int segment_bone(const SegmentChoice& given) {
+    check_outputs(given);
+    SegmentChoice choice = given;
+    analysis::SegmentSettings settings = choice.settings;
+    settings.marrow = choice.marrow * 1e-3;
+    settings.run = analysis::on_threads();
+    std::vector<segmentation::SeedLabel> seeds;
+    if (!choice.seeds.empty()) seeds = segmentation::read_seeds(choice.seeds);
+    const analysis::ScanGraph scan = analysis::scan_graph(settings);
+    if (!choice.propose.empty()) {
+        seeds = analysis::proposed_seeds(scan);
+        segmentation::write_seeds(seeds, choice.propose);
+        if (choice.json)
+            fmt::print("{}\n", Json{{"file", choice.propose.string()}, {"fragments", seeds.size()}}.dump(2));
+        else
+            fmt::print("{}: seeds of {} fragments; look at them, correct and name them\n", choice.propose.string(),
+                       seeds.size());
+        return done;
+    }
+    if (!choice.paint.seeds.empty()) {
+        const window::PaintViewEnd end = window::paint_view(scan, settings, choice.paint, run::stop_on_signals());
+        if (!choice.json && !end.hand_summary.empty()) fmt::print("{}", end.hand_summary);
+        if (!end.lost.empty()) {
+            fmt::print(stderr, "tactus: {}; the last strokes are lost\n", end.lost);
+            return output_lost;
+        }
+        if (!end.hand_failure.empty()) throw Error(end.hand_failure);
+        seeds = painted(choice);
+        choice.seeds = choice.paint.seeds;
+        const bool is_enough = seeds.size() >= 2;
+        if (!choice.json && (choice.out.empty() || !is_enough))
+            fmt::print("{}: strokes of {} fragment{}{}\n", choice.seeds.string(), seeds.size(),
+                       seeds.size() == 1 ? "" : "s", is_enough ? "" : "; a segmentation needs those of two");
+        if (choice.out.empty() || run::stop_on_signals()) return done;
+        if (!is_enough) return answer_is_no;
+    }
+    const analysis::SegmentedScan found = analysis::segment_scan(scan, seeds, settings, choice.seeds.string());
+    for (const auto& path : choice.out)
+        analysis::write_segmented(scan, found, settings, choice.seeds.filename().string(), path);
+    if (!choice.plan.empty())
+        for (const auto& path : choice.out)
+            if (is_bones(path)) analysis::write_plan_of(path, found, choice.plan);
+    if (!choice.certainty.empty())
+        volume::write_volume(found.certainty, volume::WrittenType::float32, choice.certainty);
+    if (choice.json) fmt::print("{}\n", json_of(scan, found, choice).dump(2));
+    else print(scan, found);
+    return done;
+}
+
+Action declare_segment(VerbOptions& verb) {
+    const auto choice = std::make_shared<SegmentChoice>();
+    analysis::SegmentSettings& settings = choice->settings;
+    verb.add("scan", settings.scan, "a CT: DICOM folder or zip, NRRD, NIfTI, InVesalius").required();
+    verb.add("--seeds", choice->seeds, "brush strokes per fragment (.json); see docs/how-to/segment.md");
+    verb.add("--paint", choice->paint.seeds,
+             "open a window to paint the seeds; they are kept in this file (.json) after every stroke, and continued "
+             "when it "
+             "exists");
+    verb.add(
+        "--hand", choice->paint.hand,
+        "with --paint: run this patch beside the window; what its 'brush' nodes paint becomes strokes, and the labels "
+        "follow");
+    verb.add("--view-script", choice->paint.script, "with --paint: run the commands in this file in the window");
+    verb.add("--view-scale", choice->paint.scale, "with --paint: scale of text and controls (default: the screen's)")
+        .range(0.5, 4.0);
+    verb.add("-o,--out", choice->out,
+             ".nrrd or .seg.nrrd: a label per fragment; .vdb: a bone per fragment; may be given several times")
+        .one_each();
+    verb.add("--propose", choice->propose, "write a first version of the seeds (.json) for correction by hand");
+    verb.add("--plan", choice->plan, "make a plan of the bones in -o BONES.vdb (.plan.json)");
+    verb.add("--certainty", choice->certainty,
+             "write how certain each voxel is (.nrrd): 1 - second largest / largest probability");
+    verb.add("--threshold", settings.threshold,
+             "value at and above which a voxel is bone, HU (default: the one that info suggests)")
+        .unit("HU");
+    verb.add("--metal", settings.metal,
+             "value at and above which a voxel is metal and takes no part (default: 2500 HU; none for scanner numbers)")
+        .unit("HU");
+    verb.add("--marrow", choice->marrow,
+             "take in marrow behind cortex that is open by less than twice this, mm; 0: none")
+        .unit("mm")
+        .range(0.0, 20.0)
+        .shows_default();
+    verb.add("--series", settings.read.series, "DICOM: the series to take, by its UID or the end of it; several between commas are joined");
+    add_unit(verb, settings.read.unit);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return segment_bone(*choice); };
+}
+
+}  // namespace
+
+Verb segment_verb() {
+    return {"segment", "separate the fragments of a CT by random walks from painted seeds", declare_segment};
+}
+
+}  // namespace tactus::command

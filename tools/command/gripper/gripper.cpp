@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus gripper: measures how faithfully a gripper renders objects on the test rig.
+#include "assets/file/whole_file.hpp"
+#include "devices/display/png.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/gripper/rig_text.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/report/figures/rig_figures.hpp"
+#include "tools/report/figures/rig_page.hpp"
+#include "tools/run/load_plan.hpp"
+#include "tools/analysis/gripper/rig_series.hpp"
+#include "tools/analysis/gripper/rig_study.hpp"
+#include "tools/analysis/workers.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+struct RigChoice {
+    run::PatchChoice patch;  // or a CSV record of a rig
+    std::filesystem::path matrix, out;
+    int threads = 0;           // 0: one per core
+    bool keep_series = false;  // write the samples to series.csv
+    bool json = false;
+};
+
+analysis::RigReport simulate(const RigChoice& choice, const analysis::RigMatrix& matrix) {
+    LiveLine line;
+    std::string series;
+    const auto keep = [&](const analysis::RigCell& cell, const control::RigSeries& measured) {
+        if (choice.keep_series) series += analysis::rig_series_csv(cell, measured, series.empty());
+    };
+    const auto progress = [&](int done_cells, int of) {
+        line.show(progress_bar(static_cast<std::size_t>(done_cells), static_cast<std::size_t>(of), "cells"));
+    };
+    analysis::RigReport report = analysis::study_rig(choice.patch, matrix, analysis::on_threads(choice.threads), progress, keep);
+    line.clear();
+    if (choice.keep_series) file::write_whole_file(choice.out / "series.csv", series);
+    report.title = "Test rig: " + choice.patch.patch;
+    report.source =
+        fmt::format("{} motors, {} objects, {} rates and {} amplitudes on simulated grippers.", matrix.motors.size(),
+                    matrix.objects.size(), matrix.rates.size(), matrix.amplitudes.size());
+    return report;
+}
+
+analysis::RigReport recorded(const RigChoice& choice) {
+    std::vector<std::string> notes;
+    analysis::RigReport report = analysis::study_rig_series(analysis::load_rig_series(choice.patch.patch, notes));
+    report.title = "Test rig: " + std::filesystem::path(choice.patch.patch).filename().string();
+    report.source = fmt::format("{} measured records.", report.rows.size());
+    report.notes = std::move(notes);
+    return report;
+}
+
+int judge(const RigChoice& choice) {
+    const bool is_record = choice.patch.patch.ends_with(".csv");
+    if (is_record && !choice.matrix.empty()) throw Error("a record contains its own conditions; leave out --matrix");
+    analysis::RigMatrix matrix;
+    if (!choice.matrix.empty()) matrix = analysis::load_rig_matrix(choice.matrix);
+    run::make_output_folder(choice.out);
+    analysis::RigReport report;
+    if (is_record) report = recorded(choice);
+    else report = simulate(choice, matrix);
+    const std::string json = rig_json(report);
+    file::write_whole_file(choice.out / "rig.json", json);
+    file::write_whole_file(choice.out / "rig.csv", rig_csv(report));
+    file::write_whole_file(choice.out / "report.html", report::rig_html(report));
+    display::write_png(report::draw_rig_errors(report).image(), (choice.out / "errors.png").string());
+    if (!report.crossover.empty())
+        display::write_png(report::draw_rig_crossover(report).image(), (choice.out / "crossover.png").string());
+    fmt::print("{}", choice.json ? json : rig_text(report));
+    return done;
+}
+
+Action declare_gripper(VerbOptions& verb) {
+    const auto choice = std::make_shared<RigChoice>();
+    add_patch_options(verb, choice->patch);
+    verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
+    verb.add("--matrix", choice->matrix, "TOML file with the test matrix (default: the matrix of Olsson 2015)");
+    verb.add("-o,--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
+    verb.add("--jobs", choice->threads, "cells at a time, 0: one per core").range(0, 64);
+    verb.old("--threads", "--jobs");
+    verb.flag("--series", choice->keep_series,
+              "also write all samples to series.csv, a record that this verb can read");
+    verb.flag("--json", choice->json, "print the result as JSON");
+    return [choice] { return judge(*choice); };
+}
+
+}  // namespace
+
+Verb gripper_verb() {
+    return {.name = "gripper",
+            .about =
+                "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
+            .add = declare_gripper,
+            .old_name = "rig"};
+}
+
+}  // namespace tactus::command

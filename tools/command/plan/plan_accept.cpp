@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan accept: records a surgeon's decision that a fragment is where it belongs.
+#include "tools/analysis/plan/plan_accept.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/analysis/plan/plan_case.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+struct AcceptChoice : PlanChoice {
+    std::string by, beside;
+};
+
+int accept_place(const AcceptChoice& choice) {
+    analysis::OpenPlan open(choice.plan);
+    plan::CasePlan& plan = open.plan;
+    const int fragment = plan::find_fragment(plan, choice.names.front());
+    const analysis::AcceptedBy by = choice.by == "mirror" ? analysis::AcceptedBy::mirror
+                                 : choice.by == "plan" ? analysis::AcceptedBy::plan
+                                                       : analysis::AcceptedBy::hand;
+    std::optional<int> beside;
+    if (!choice.beside.empty()) beside = plan::find_fragment(plan, choice.beside);
+    const analysis::Acceptance found = analysis::measure_acceptance(plan, choice.plan.parent_path(), fragment, by, beside);
+    analysis::do_step(plan, analysis::step_of(plan, fragment, by, found), choice.plan);
+    if (choice.json) return show_change(choice);
+    fmt::print("{}: accepted by {} beside {}, residual {:.2f} mm; {:.0f} mm² face each other, {:.2f} mm deep\n",
+               choice.names.front(), choice.by, found.partner, found.residual * 1e3, found.facing * 1e6,
+               found.penetration * 1e3);
+    return done;
+}
+
+Action declare_plan_accept(VerbOptions& verb) {
+    const auto choice = std::make_shared<AcceptChoice>();
+    add_plan_options(verb, *choice);
+    add_fragments(verb, *choice, "which one").count(1);
+    verb.add(
+            "--by", choice->by,
+            "what the decision rests on: hand, the surgeon's eye; mirror, the healthy side of 'plan mirror'; plan, the "
+            "planned place of a piece of a reconstruction")
+        .one_of({"hand", "mirror", "plan"})
+        .required();
+    verb.add("--beside", choice->beside, "fragment that it is placed beside (default: the first of what stands)");
+    return [choice] { return accept_place(*choice); };
+}
+
+}  // namespace
+
+Verb plan_accept_verb() {
+    return {"accept", "record a surgeon's decision that a fragment is where it belongs, with its residual",
+            declare_plan_accept};
+}
+
+}  // namespace tactus::command

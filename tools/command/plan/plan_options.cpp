@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/plan/plan_options.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
+    verb.add("plan", choice.plan, "plan file, JSON").required();
+    verb.flag("--json", choice.json, "as JSON");
+}
+
+void add_fit_options(VerbOptions& verb, PlanChoice& choice) {
+    verb.add("--kerf", choice.kerf,
+             "mm of bone that a blade or a break took away all along the faces; the fit leaves it open. 0: nothing is "
+             "lost, and no kerf is looked for (default: a fit that the cortex shows open is refused)")
+        .range(0.0, 4.0);
+    verb.flag("--healthy", choice.with_healthy,
+              "fit to the healthy side of 'plan mirror' too: it decides where the faces slide on each other");
+}
+
+analysis::FitWay fit_way(const PlanChoice& choice) {
+    analysis::FitWay way{std::nullopt, choice.with_healthy};
+    if (choice.kerf) way.kerf = *choice.kerf * 1e-3;
+    return way;
+}
+
+Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
+    return verb.add("fragments", choice.names, about).required();
+}
+
+void print_warnings(const analysis::CaseWarnings& warnings) {
+    for (const bool is_fault : {true, false})
+        for (const analysis::CaseWarning& warning : warnings.all)
+            if (warning.is_fault == is_fault) fmt::print("{} {}\n", is_fault ? "!" : "warning:", warning.text);
+}
+
+int show_change(const PlanChoice& choice) {
+    if (choice.json) return show_plan(choice);
+    return done;
+}
+
+}  // namespace tactus::command

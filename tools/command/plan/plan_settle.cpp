@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan settle: refines fitted fragments against all their neighbours.
+#include "assets/file/json.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/plan/match_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/analysis/plan/match_reason.hpp"
+#include "tools/analysis/plan/plan_words.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+struct SettleChoice : PlanChoice {
+    int passes = 1;
+};
+
+/// All fragments with a fit that holds and that are not locked.
+std::vector<int> held_fragments(const plan::PlanState& state) {
+    std::vector<int> numbers;
+    for (int n = 0; n < static_cast<int>(state.fits.size()); ++n)
+        if (state.holds(n) && state.arrangement.can_move(n)) numbers.push_back(n);
+    return numbers;
+}
+
+/// The named fragments, or all fragments with a fit that holds and that are not locked.
+std::vector<int> settled_fragments(const plan::CasePlan& plan, const std::vector<std::string>& names) {
+    std::vector<int> numbers;
+    for (const std::string& name : names) numbers.push_back(plan::find_fragment(plan, name));
+    if (numbers.empty()) numbers = held_fragments(plan::state_of(plan));
+    if (numbers.empty())
+        throw Error(
+            "no fragment that can move has a fit that holds; see 'tactus plan show', and run 'tactus plan snap' "
+            "first");
+    return numbers;
+}
+
+int settle(const SettleChoice& choice) {
+    constexpr int most_rounds = 4;
+    analysis::OpenPlan open(choice.plan);
+    plan::CasePlan& plan = open.plan;
+    const std::vector<int> numbers = settled_fragments(plan, choice.names);
+    const std::vector<int> held = held_fragments(plan::state_of(plan));
+    analysis::PlanMatching matching(plan, choice.plan.parent_path(), fit_way(choice));
+    file::Json rows = file::Json::array();
+    bool all_fit = true;
+    const auto settle_one = [&](int n) {
+        const fit::Arrangement now = plan::state_of(plan).arrangement;
+        const analysis::PlanMatch found = matching.near(now, n, analysis::Partners::all);
+        const std::string reason =
+            analysis::why_not_placed(plan, matching, now, found, fit::Arrangement::none, analysis::MatchWay::near);
+        const bool fits = found.match.verdict == fit::FitVerdict::fit;
+        if (fits) analysis::do_step(plan, analysis::step_of(plan, found.match, "settle"), choice.plan);
+        all_fit = all_fit && fits;
+        rows.push_back(match_json<file::Json>(plan, found, reason));
+        if (!choice.json) print_match(plan, found, reason);
+    };
+    for (int pass = 0; pass < choice.passes; ++pass)
+        for (const int n : numbers) settle_one(n);
+    // A fragment that was settled before its partner may have lost its fit.
+    for (int round = 0; round < most_rounds; ++round)
+        for (const int n : held)
+            if (!plan::state_of(plan).holds(n)) settle_one(n);
+    const plan::PlanState state = plan::state_of(plan);
+    if (choice.json)
+        fmt::print(
+            "{}\n",
+            file::Json{{"version", 1}, {"rows", rows}, {"assemblies", analysis::assembly_names(plan, state)}}.dump(2));
+    else
+        for (const std::string& line : analysis::connection_words(plan, state)) fmt::print("{}\n", line);
+    return all_fit && analysis::is_in_one_part(state) ? done : answer_is_no;
+}
+
+Action declare_plan_settle(VerbOptions& verb) {
+    const auto choice = std::make_shared<SettleChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("fragments", choice->names, "fragments to settle (default: all fitted ones)");
+    verb.add("--passes", choice->passes, "how often").range(1, 20);
+    add_fit_options(verb, *choice);
+    return [choice] { return settle(*choice); };
+}
+
+}  // namespace
+
+Verb plan_settle_verb() {
+    return {"settle",
+            "refine fitted fragments, each against all its neighbours; 1: one does not fit, or the fragments are not "
+            "connected",
+            declare_plan_settle};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan snap: moves a fragment of a plan to the pose where its fracture fits.
+#include "assets/file/json.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/plan/match_text.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/analysis/plan/match_reason.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+struct SnapChoice : PlanChoice {
+    std::string mode = "extended";
+    bool takes_uncertain = false;
+};
+
+int snap_fragment(const SnapChoice& choice) {
+    analysis::OpenPlan open(choice.plan);
+    plan::CasePlan& plan = open.plan;
+    const std::filesystem::path folder = choice.plan.parent_path();
+    const int moving = plan::find_fragment(plan, choice.names[0]);
+    const int only = choice.names.size() > 1 ? plan::find_fragment(plan, choice.names[1]) : fit::Arrangement::none;
+    if (only == moving) throw Error(fmt::format("'{}' cannot be fitted to itself; name another one", choice.names[0]));
+    const plan::PlanState state = plan::state_of(plan);
+    const fit::Arrangement& a = state.arrangement;
+    if (only != fit::Arrangement::none && a.move_together(moving, only))
+        throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
+    if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
+    analysis::PlanMatching matching(plan, folder, fit_way(choice));
+    if (matching.faces_of(moving) == 0)
+        throw Error(fmt::format("fragment '{}': {}", choice.names[0],
+                                analysis::no_fracture_words(matching.as_scanned_area(moving))));
+    const analysis::MatchWay way = choice.mode == "global" ? analysis::MatchWay::anywhere : analysis::MatchWay::near;
+    const analysis::PlanMatch found = way == analysis::MatchWay::anywhere
+                                       ? matching.anywhere(a, moving, only)
+                                       : matching.near(a, moving, analysis::Partners::standing_first, only);
+    const bool fits = found.match.verdict == fit::FitVerdict::fit;
+    const std::string reason = analysis::why_not_placed(plan, matching, a, found, only, way);
+    // Everything that may fail runs before the plan is changed.
+    const auto target = analysis::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
+    // Where nothing fits, the distance there says nothing.
+    const bool is_uncertain = found.match.verdict == fit::FitVerdict::uncertain;
+    const bool has_place = fits || is_uncertain || found.as_scanned;
+    if (fits) analysis::do_step(plan, analysis::step_of(plan, found.match, "snap"), choice.plan);
+    // A place that no fit vouches for connects nothing: the step has no fit in it, and 'plan accept' adds the decision.
+    if (is_uncertain && choice.takes_uncertain)
+        analysis::do_step(plan, plan::placing(plan, moving, found.match.pose, "snap"), choice.plan);
+    if (choice.json) {
+        using file::Json;
+        Json json = match_json<Json>(plan, found, reason);
+        json["moved_there"] = fits || (is_uncertain && choice.takes_uncertain);
+        json["as_scanned_mm2"] = left_out_json<Json>(plan, matching, a);
+        if (target)
+            json["target"] = {{"median_before_mm", 1e3 * target->before},
+                              {"median_there_mm", has_place ? Json(1e3 * target->there) : Json(nullptr)}};
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        print_match(plan, found, reason);
+        if (is_uncertain && choice.takes_uncertain)
+            fmt::print("{} is put there; 'tactus plan accept' settles it\n", choice.names[0]);
+        print_left_out(plan, matching, a);
+        if (target)
+            fmt::print("from the healthy side: median {:.2f} mm where it was{}\n", 1e3 * target->before,
+                       has_place ? fmt::format(", {:.2f} mm {}", 1e3 * target->there,
+                                               found.as_scanned ? "where the scan has it" : "where its faces fit")
+                                 : "");
+    }
+    return fits ? done : answer_is_no;
+}
+
+Action declare_plan_snap(VerbOptions& verb) {
+    const auto choice = std::make_shared<SnapChoice>();
+    add_plan_options(verb, *choice);
+    add_fragments(verb, *choice, "the moving fragment (with its group) and the fixed one (default: the best match)")
+        .count(1, 2);
+    verb.add("--mode", choice->mode, "extended: from the current pose; global: from any pose")
+        .one_of({"extended", "global"})
+        .shows_default();
+    verb.flag("--uncertain", choice->takes_uncertain,
+              "put it at an uncertain place, too; only 'tactus plan accept' connects it there");
+    add_fit_options(verb, *choice);
+    return [choice] { return snap_fragment(*choice); };
+}
+
+}  // namespace
+
+Verb plan_snap_verb() {
+    return {"snap", "fit the fracture of a fragment to another fragment; 1: no fit", declare_plan_snap};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan guide: a printed guide for the cuts of a plan, as STL or 3MF.
+#include "tools/analysis/cutting_guide/plan_guide.hpp"
+#include "assets/plan/plan_file.hpp"
+#include "assets/file/outputs.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/report/cutting_guide/guide_report.hpp"
+#include "tools/report/figures/html_report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tactus::command {
+
+namespace {
+
+struct GuideOptions : PlanChoice {
+    std::filesystem::path out, report;
+    std::string bone = "fibula", printer = "sla", label;
+    int cut = 0, sides = 3;
+    std::optional<double> blade, clearance, offset;
+    double thickness = 4.0, wrap = 120.0, depth = 15.0, wall = 3.0, screw = 3.0, turn = 0.0, voxel = 0.35;
+};
+
+analysis::GuideChoice choice_of(const GuideOptions& o, const analysis::FlapStudy& study) {
+    analysis::GuideChoice choice;
+    choice.bone = o.bone == "jaw" ? analysis::GuideBone::jaw : analysis::GuideBone::fibula;
+    choice.cut = o.cut;
+    choice.label = o.label;
+    choice.turn = o.turn * degree;
+    if (o.offset) choice.offset = *o.offset * mm;
+    cutting_guide::GuideSettings& set = choice.settings;
+    set.blade = o.blade ? *o.blade * mm : study.inputs().kerf;
+    set.clearance = o.clearance ? *o.clearance * mm : (o.printer == "fdm" ? 0.4 : 0.25) * mm;
+    set.thickness = o.thickness * mm, set.wrap = o.wrap * degree, set.depth = o.depth * mm, set.wall = o.wall * mm;
+    set.screw_radius = 0.5 * o.screw * mm, set.voxel = o.voxel * mm;
+    set.sides = static_cast<cutting_guide::Sides>(o.sides);
+    return choice;
+}
+
+void print_guide(const analysis::PlannedGuide& guide, const std::filesystem::path& out) {
+    fmt::print("{}: {} guide, {} triangles, {:.1f} cm³, closed, one part\n", out.string(), analysis::name_of(guide.bone),
+               guide.made.surface.triangles.size(), guide.volume * 1e6);
+    if (guide.wall) fmt::print("thinnest wall {:.2f} mm\n", guide.wall->thickness / mm);
+    for (std::size_t n = 0; n < guide.made.slots.size(); ++n) {
+        const cutting_guide::MadeSlot& slot = guide.made.slots[n];
+        const cutting_guide::SlotFit& fit = guide.refits[n];
+        fmt::print("slot {} ({}): {}, {:.1f} mm deep, {:.3f} mm and {:.3f}° off the plan{}\n", slot.cut.letter,
+                   slot.cut.name, fit.width > 0.0 ? fmt::format("{:.2f} mm wide", fit.width / mm) : "a ledge",
+                   slot.depth / mm, std::abs(fit.offset / mm), fit.angle / degree,
+                   slot.play ? fmt::format(", play {:.1f}°", *slot.play / degree) : "");
+    }
+    fmt::print("{:.0f} % in contact; play on the bone {:.1f} mm, {:.1f}°\n", 100.0 * guide.seat.contact_share(),
+               guide.seat.play / mm, guide.seat.play_angle / degree);
+    for (const analysis::GuideWarning& w : guide.warnings) fmt::print("warning: {}\n", w.text);
+    fmt::print("for research, not a medical device\n");
+}
+
+int make_guide(const GuideOptions& options) {
+    const std::string kind = options.out.extension().string();
+    if (kind != ".stl" && kind != ".3mf" && kind != ".ply")
+        throw Error(fmt::format("{}: a guide is written as .stl, .3mf or .ply", options.out.string()));
+    const plan::CasePlan plan = plan::load_case_plan(options.plan);
+    const std::filesystem::path folder = options.plan.parent_path();
+    std::vector<std::filesystem::path> sources = plan::files_of(plan, folder);
+    sources.push_back(options.plan);
+    file::check_outputs(sources, std::array{options.out, options.report});
+    const analysis::FlapStudy study(plan, plan::state_of(plan), folder);
+    const analysis::PlannedGuide guide = analysis::plan_guide(study, plan.title, choice_of(options, study));
+    if (!options.report.empty()) {
+        const std::vector<report::ReportBlock> blocks = report::guide_blocks(guide);
+        file::write_whole_file(options.report, report::html::page(plan.title, report::html_of(blocks, "guide")));
+    }
+    mesh::write_mesh(std::array{mesh::ColouredSurface{guide.made.surface, Vec3(0.35, 0.62, 0.72)}}, options.out);
+    if (options.json) {
+        file::Json json = analysis::guide_json(guide);
+        json["file"] = options.out.string();
+        if (!options.report.empty()) json["report"] = options.report.string();
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        print_guide(guide, options.out);
+    }
+    return done;
+}
+
+Action declare_plan_guide(VerbOptions& verb) {
+    const auto o = std::make_shared<GuideOptions>();
+    add_plan_options(verb, *o);
+    verb.add("-o,--out", o->out, "STL, 3MF or PLY file, mm, LPS").required();
+    verb.add("--report", o->report, "HTML page with pictures, dimensions and checks");
+    verb.add("--bone", o->bone, "the donor with its osteotomies, or the jaw with its resection")
+        .one_of({"fibula", "jaw"})
+        .shows_default();
+    verb.add("--cut", o->cut, "of the jaw: 1, the first plane only; 2, the last; 0, both in one guide")
+        .range(0, 2)
+        .shows_default();
+    verb.add("--sides", o->sides, "walls of a slot: 1, a ledge on the kept side; 2, both; 3, one end too")
+        .range(1, 3)
+        .shows_default();
+    verb.add("--blade", o->blade, "mm that the blade cuts (default: the plan's kerf)").range(0.1, 3.0);
+    verb.add("--printer", o->printer, "which clearance: 0.25 mm per side of the blade for sla, 0.4 mm for fdm")
+        .one_of({"sla", "fdm"})
+        .shows_default();
+    verb.add("--clearance", o->clearance, "mm per side of the blade, instead of the printer's").range(0.0, 2.0);
+    verb.add("--offset", o->offset, "mm between base and bone (default: 0.5 over a fibula's periosteum, jaw 0.3)")
+        .range(0.05, 3.0);
+    verb.add("--thickness", o->thickness, "mm of the base").range(1.0, 10.0).shows_default();
+    verb.add("--wrap", o->wrap, "degrees of the bone's outline that the base covers")
+        .range(40.0, 300.0)
+        .shows_default();
+    verb.add("--depth", o->depth, "mm of a slot above the bone").range(3.0, 40.0).shows_default();
+    verb.add("--wall", o->wall, "mm of a slot's walls").range(1.0, 10.0).shows_default();
+    verb.add("--screw", o->screw, "mm, diameter of the holes that fix the guide").range(0.5, 6.0).shows_default();
+    verb.add("--turn", o->turn,
+             "degrees by which the approach is turned: of a fibula from lateral to the front, of a jaw about its cuts")
+        .range(-180.0, 180.0)
+        .shows_default();
+    verb.add("--label", o->label, "pseudonym to engrave (default: the plan's title)");
+    verb.add("--voxel", o->voxel, "mm of the grid behind the mesh").range(0.1, 0.5).shows_default();
+    return [o] { return make_guide(*o); };
+}
+
+}  // namespace
+
+Verb plan_guide_verb() {
+    return {"guide", "make a printed guide for the cuts of a reconstruction, and check it", declare_plan_guide};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus plan paddle: places the skin paddle of a flap, and drapes it over a defect.
+#include "assets/plan/plan_file.hpp"
+#include "assets/file/json.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/constants.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/plan/plan_options.hpp"
+#include "tools/report/reconstruction/paddle_picture.hpp"
+#include "tools/analysis/plan/paddle_study.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+using file::Json;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+struct PaddleChoice : PlanChoice {
+    fs::path defect, out, picture;
+    std::vector<double> at;
+    std::optional<double> length, width;
+    double rope = 50.0, thickness = 10.0, pressure = 500.0, young = 100.0;
+    bool remove = false;
+};
+
+Json in_mm(const Vec3& place) { return {place.x / mm, place.y / mm, place.z / mm}; }
+
+/// Adds a step when the plan's paddle changes.
+void place(const PaddleChoice& choice) {
+    const plan::CasePlan plan = plan::load_case_plan(choice.plan);
+    const plan::PlanState state = plan::state_of(plan);
+    if (!state.reconstruction)
+        throw Error(
+            fmt::format("{}: the plan has no reconstruction, so it has no skin paddle; 'tactus plan reconstruct' makes "
+                        "one",
+                        choice.plan.string()));
+    const bool is_asked = choice.remove || !choice.at.empty() || choice.length || choice.width;
+    if (!is_asked && state.reconstruction->flap.paddle) return;
+    Vec3 middle(0.0);
+    if (!choice.at.empty()) middle = Vec3(choice.at[0], choice.at[1], choice.at[2]) * mm;
+    else if (state.reconstruction->flap.paddle) middle = state.reconstruction->flap.paddle->at;
+    else if (!choice.remove) {
+        const analysis::FlapStudy study(plan, state, choice.plan.parent_path());
+        middle = analysis::default_paddle_place(study.inputs(), study.fibula(), study.flap());
+    }
+    analysis::change_reconstruction(choice.plan, [&](reconstruction::Reconstruction& all, const plan::CasePlan&) {
+        if (choice.remove) {
+            if (!all.flap.paddle) throw Error("the plan has no skin paddle to remove");
+            all.flap.paddle.reset();
+            return;
+        }
+        if (!all.flap.paddle) all.flap.paddle.emplace();
+        all.flap.paddle->at = middle;
+        if (choice.length) all.flap.paddle->length = *choice.length * mm;
+        if (choice.width) all.flap.paddle->width = *choice.width * mm;
+        (void)skin::paddle_in_leg(*all.flap.paddle, all.inputs);
+    });
+}
+
+Json json_of(const analysis::PaddleStudy& found, const reconstruction::SkinPaddle& paddle) {
+    const skin::DrapedPaddle& d = found.draped;
+    Json ropes = Json::array();
+    for (const skin::PaddleRope& r : d.ropes)
+        ropes.push_back({{"name", r.name},
+                         {"bone_mm", in_mm(r.bone)},
+                         {"skin_mm", in_mm(r.skin)},
+                         {"distance_mm", r.distance / mm},
+                         {"slack_mm", r.slack / mm},
+                         {"tension_N", r.tension}});
+    return {
+        {"paddle", {{"at_mm", in_mm(paddle.at)}, {"length_mm", paddle.length / mm}, {"width_mm", paddle.width / mm}}},
+        {"perforator_length_mm", found.settings.rope_length / mm},
+        {"thickness_mm", found.settings.sheet.thickness / mm},
+        {"perforators", ropes},
+        {"unused_perforators", d.unused},
+        {"area_flat_mm2", d.area_flat * 1e6},
+        {"area_mm2", d.area * 1e6},
+        {"defect_mm2", d.defect_area * 1e6},
+        {"coverage", d.coverage},
+        {"on_bone", d.touching},
+        {"fold_deg", d.fold / degree},
+        {"at_rest", d.is_settled},
+        {"warnings", analysis::json_of(found.warnings)}};
+}
+
+void print(const analysis::PaddleStudy& found, const reconstruction::SkinPaddle& paddle) {
+    const skin::DrapedPaddle& d = found.draped;
+    fmt::print(
+        "paddle of {:.0f} by {:.0f} mm on a defect of {:.1f} cm2: covers {:.0f} %, {:.0f} % of it on bone, fold {:.0f} "
+        "degrees, area {:+.1f} %\n",
+        paddle.length / mm, paddle.width / mm, d.defect_area * 1e4, 100.0 * d.coverage, 100.0 * d.touching,
+        d.fold / degree, 100.0 * (d.area / d.area_flat - 1.0));
+    for (const skin::PaddleRope& r : d.ropes)
+        fmt::print("perforator '{}': {:.1f} mm from bone to skin, {} {:.1f} mm\n", r.name, r.distance / mm,
+                   r.slack < 0.0 ? "too short by" : "slack", std::abs(r.slack) / mm);
+    for (const std::string& name : d.unused)
+        fmt::print("perforator '{}': not used, on bone that is not kept or beyond the ends of the paddle\n", name);
+    for (const analysis::CaseWarning& w : found.warnings) fmt::print("warning: {}\n", w.text);
+    fmt::print("the skin's mechanics are assumed; for research, not a medical device\n");
+}
+
+int paddle(const PaddleChoice& choice) {
+    if (choice.defect.empty() && (!choice.out.empty() || !choice.picture.empty()))
+        throw Error("-o and --picture show the draped paddle; give --defect CURVE.mrk.json, too");
+    if (choice.remove && !choice.defect.empty()) throw Error("--remove and --defect exclude each other");
+    place(choice);
+    if (choice.defect.empty()) return show_change(choice);
+    const plan::CasePlan plan = plan::load_case_plan(choice.plan);
+    analysis::FlapStudy study(plan, plan::state_of(plan), choice.plan.parent_path());
+    skin::DrapeSettings settings;
+    settings.rope_length = choice.rope * mm;
+    settings.sheet.thickness = choice.thickness * mm;
+    settings.sheet.young = choice.young * 1e3;
+    settings.sheet.shear = 0.5 * settings.sheet.young;
+    settings.sheet.bending_young = 0.1 * settings.sheet.young;
+    settings.pressure = choice.pressure;
+    const analysis::PaddleStudy found = analysis::study_paddle(study, choice.defect, settings);
+    for (const std::string& note : found.notes) fmt::print(stderr, "note: {}\n", note);
+    const geometry::TriangleSurface shell = skin::shell_of(found.draped, settings.sheet.thickness);
+    if (!choice.out.empty()) {
+        const std::vector<mesh::ColouredSurface> shells{{shell, report::paddle_colour}};
+        mesh::write_mesh(shells, choice.out);
+    }
+    if (!choice.picture.empty()) report::write_paddle_picture(study, found, choice.picture);
+    if (choice.json) fmt::print("{}\n", json_of(found, *study.flap().paddle).dump(2));
+    else print(found, *study.flap().paddle);
+    return found.warnings.empty() ? done : answer_is_no;
+}
+
+}  // namespace
+
+Verb plan_paddle_verb() {
+    return {"paddle", "place a flap's skin paddle, and drape it over a defect; 1: there are warnings",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<PaddleChoice>();
+                add_plan_options(verb, *choice);
+                verb.add("--at", choice->at,
+                         "middle of the paddle on the skin of the leg: X Y Z, mm, frame of the donor (default: at the "
+                         "perforators, 20 mm behind the bone's posterior border)")
+                    .count(3);
+                verb.add("--length", choice->length, "mm along the leg (a new paddle: 60)").range(5.0, 400.0);
+                verb.add("--width", choice->width, "mm (a new paddle: 40)").range(5.0, 200.0);
+                verb.flag("--remove", choice->remove, "take it away");
+                verb.add("--defect", choice->defect,
+                         "closed curve to be covered, .mrk.json or .fcsv of 3D Slicer, frame of the jaw");
+                verb.add("--rope", choice->rope, "length of a perforator from bone to skin, mm")
+                    .range(1.0, 200.0)
+                    .shows_default();
+                verb.add("--thickness", choice->thickness, "of the skin with its fat, mm; assumed")
+                    .range(0.5, 50.0)
+                    .shows_default();
+                verb.add("--young", choice->young, "Young's modulus of the skin, kPa; assumed")
+                    .range(1.0, 1e5)
+                    .shows_default();
+                verb.add("--pressure", choice->pressure, "that presses it on the defect, Pa; assumed")
+                    .range(1.0, 1e5)
+                    .shows_default();
+                verb.add("-o,--out", choice->out, "the draped paddle as a closed mesh: .stl or .ply");
+                verb.add("--picture", choice->picture, "bone, paddle and perforators: .png");
+                return [choice] { return paddle(*choice); };
+            }};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/blocks/report_block.hpp"
+
+#include "tools/report/blocks/picture_html.hpp"
+#include "tools/report/figures/html_report.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::report {
+
+namespace {
+
+template <class... Each>
+struct Visit : Each... {
+    using Each::operator()...;
+};
+template <class... Each>
+Visit(Each...) -> Visit<Each...>;
+
+constexpr const char* fail = " class=\"fail\"";
+
+std::string html_of(const ReportList& list) {
+    std::string out = fmt::format("<ul{}>\n", list.is_warning ? fail : "");
+    for (const std::string& item : list.items) out += "<li>" + html::escaped(item) + "</li>\n";
+    return out + "</ul>\n";
+}
+
+bool is_number(const std::string& cell) {
+    return cell.find_first_of("0123456789") != std::string::npos &&
+           cell.find_first_not_of("0123456789.-") == std::string::npos;
+}
+
+std::string mark_of(const ReportTable& table, std::size_t row) {
+    if (row >= table.marks.size()) return "";
+    const Vec3 c = 255.0 * table.marks[row];
+    return fmt::format("<span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> ", c.x, c.y, c.z);
+}
+
+std::string html_of(const ReportTable& table) {
+    std::string out = "<table><tr>";
+    for (const std::string& cell : table.head) out += "<th>" + html::escaped(cell) + "</th>";
+    out += "</tr>\n";
+    for (std::size_t n = 0; n < table.rows.size(); ++n) {
+        out += fmt::format("<tr{}>", n < table.warnings.size() && table.warnings[n] ? fail : "");
+        for (std::size_t c = 0; c < table.rows[n].size(); ++c) {
+            const std::string& cell = table.rows[n][c];
+            out += fmt::format("<td{}>{}{}</td>", is_number(cell) ? " class=\"n\"" : "",
+                               c == 0 ? mark_of(table, n) : "", html::escaped(cell));
+        }
+        out += "</tr>\n";
+    }
+    return out + "</table>\n";
+}
+
+std::string html_of(const PictureGrid& grid) {
+    std::string out = "<div class=\"two\">\n";
+    for (const render::LabelledPicture& picture : grid.pictures) out += report::html_of(picture);
+    return out + "</div>\n";
+}
+
+}  // namespace
+
+std::string html_of(std::span<const ReportBlock> blocks, std::string_view mark) {
+    std::string out;
+    int number = 0;
+    for (const ReportBlock& block : blocks)
+        out += std::visit(
+            Visit{[](const Heading& h) {
+                      return fmt::format("<h2{}>{}</h2>\n", h.is_warning ? fail : "", html::escaped(h.text));
+                  },
+                  [](const Paragraph& p) {
+                      return fmt::format("<p{}>{}</p>\n", p.is_warning ? fail : "", html::escaped(p.text));
+                  },
+                  [](const ReportList& l) { return html_of(l); }, [](const ReportTable& t) { return html_of(t); },
+                  [&](const Drawing& d) {
+                      const std::string name =
+                          fmt::format("{}{}", mark, std::string(static_cast<std::size_t>(++number), 'x'));
+                      return fmt::format("<figure>{}<figcaption class=\"small\">{}</figcaption></figure>\n",
+                                         html::drawing(d.figure, name), html::escaped(d.caption));
+                  },
+                  [](const render::LabelledPicture& p) { return report::html_of(p); },
+                  [](const PictureGrid& g) { return html_of(g); }},
+            block);
+    return out;
+}
+
+}  // namespace tactus::report

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/figures/axes.hpp"
+
+#include "dsp/core/readable.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::report {
+
+namespace {
+
+constexpr display::Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink = axis_ink, soft = axis_soft;
+
+}  // namespace
+
+double Scale::share(double v) const {
+    const double s = is_log ? std::log(std::max(v, low * 0.5) / low) / std::log(high / low) : (v - low) / (high - low);
+    return std::clamp(s, -0.05, 1.05);
+}
+
+std::vector<double> Scale::ticks() const {
+    std::vector<double> all;
+    if (is_log) {
+        for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high * 1.001; decade *= 10.0)
+            for (const double f : {1.0, 2.0, 5.0})
+                if (decade * f >= low * 0.999 && decade * f <= high * 1.001) all.push_back(decade * f);
+        return all;
+    }
+    const double raw = (high - low) / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
+    const double round = raw / power > 5.0   ? 10.0 * power
+                         : raw / power > 2.0 ? 5.0 * power
+                         : raw / power > 1.0 ? 2.0 * power
+                                             : power;
+    const double apart = step > 0.0 ? step : round;
+    for (double v = std::ceil(low / apart - 1e-9) * apart; v <= high + 1e-9 * apart; v += apart)
+        all.push_back(std::abs(v) < 1e-9 * apart ? 0.0 : v);
+    return all;
+}
+
+display::FigurePoint Axes::at(double a, double b) const {
+    return {x + width * across.share(a), y + height * (1.0 - up.share(b))};
+}
+
+void Axes::draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const {
+    for (const double v : across.ticks()) {
+        figure.line({{at(v, up.low).x, y}, {at(v, up.low).x, y + height}}, grid, 0.8);
+        figure.text({at(v, up.low).x, y + height + 13.0}, axis_number(v), 10.0, ink, display::TextAnchor::middle);
+    }
+    for (const double v : up.ticks()) {
+        figure.line({{x, at(across.low, v).y}, {x + width, at(across.low, v).y}}, grid, 0.8);
+        figure.text({x - 5.0, at(across.low, v).y + 3.5}, axis_number(v), 10.0, ink, display::TextAnchor::end);
+    }
+    figure.line({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}, {x, y}}, frame, 1.0);
+    figure.text({x, y - 6.0}, title, 11.0, ink, display::TextAnchor::start, true);
+    figure.text({x + width, y + height + 26.0}, unit_across, 10.0, soft, display::TextAnchor::end);
+    figure.text({x - 36.0, y + 0.5 * height}, unit_up, 10.0, soft, display::TextAnchor::middle, false, true);
+}
+
+void Axes::curve(const std::vector<display::FigurePoint>& values, display::Colour colour, double dash,
+                 bool dots) const {
+    std::vector<display::FigurePoint> points;
+    for (const display::FigurePoint& v : values) points.push_back(at(v.x, v.y));
+    figure.clip(x - 3.0, y - 3.0, width + 6.0, height + 6.0);
+    if (points.size() > 1) figure.line(points, colour, 1.5, dash);
+    if (dots)
+        for (const display::FigurePoint& p : points) figure.rectangle(p.x - 2.0, p.y - 2.0, 4.0, 4.0, colour);
+    figure.unclip();
+}
+
+void Axes::level(double value, display::Colour colour, const std::string& word, bool below) const {
+    curve({{across.low, value}, {across.high, value}}, colour, 4.0, false);
+    if (word.empty()) return;
+    const double line = at(across.low, value).y;
+    if (below) figure.text({x + 4.0, line + 11.0}, word, 10.0, colour, display::TextAnchor::start);
+    else figure.text({x + width - 4.0, line - 3.0}, word, 10.0, colour, display::TextAnchor::end);
+}
+
+}  // namespace tactus::report

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dialogs for files and values, and what is saved.
+#include "tools/window/desk/desk.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/run/load_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+namespace tactus::window {
+
+namespace fs = std::filesystem;
+
+void Desk::use_layout(Layout wanted) {
+    layout = wanted;
+    memory_.keep_layout(opened_file(), wanted);
+}
+
+void Desk::ask_file(const std::string& title, FileChooser chooser, FileDialog::Done done) {
+    dialog_.open(title, std::move(chooser), std::move(done));
+}
+
+void Desk::ask_open() {
+    std::error_code ignored;
+    const fs::path file = bench_.editor().file();
+    const bool is_own = !file.empty() && !run::is_of_library(file);
+    FileChooser chooser(FileChooser::For::open,
+                        is_own ? fs::absolute(file, ignored).parent_path() : fs::current_path(ignored),
+                        {".toml", ".plan.json"});
+    ask_file("Open a patch, a take or a plan", std::move(chooser),
+             [this](const fs::path& path) { wishes.open = path; });
+}
+
+void Desk::end_typing() {
+    if (take_) return;
+    nodes_.end_typing(patch_.selected);
+    patch_.end_typing();
+}
+
+void Desk::save() {
+    end_typing();
+    bench_.save();
+}
+
+void Desk::ask_save_as() {
+    end_typing();
+    std::error_code ignored;
+    const fs::path file = bench_.editor().file();
+    const bool is_own = !bench_.is_untitled() && !run::is_of_library(file);
+    FileChooser chooser(FileChooser::For::save,
+                        is_own ? fs::absolute(file, ignored).parent_path() : fs::current_path(ignored), {".toml"});
+    chooser.name = bench_.is_untitled() ? "" : bench_.free_file().filename().string();
+    using Existing = Workbench::Existing;
+    const auto save = [this](const fs::path& path, Existing existing) {
+        if (!bench_.save_as(path.string(), existing)) return dialog_.refuse(bench_.messages().back().text);
+        questions.named(true);
+        plan_file.clear();
+        memory_.opened(opened_file());
+        memory_.keep_layout(opened_file(), layout);
+        show_title();
+    };
+    dialog_.open(
+        "Save the patch as", std::move(chooser), [save](const fs::path& path) { save(path, Existing::refuse); },
+        [save](const fs::path& path) { save(path, Existing::replace); });
+}
+
+void Desk::show_title() {
+    window_.set_title(plan_file.empty()
+                          ? fmt::format("{} - Tactus", bench_.title())
+                          : fmt::format("{} - {} - Tactus", plan_file.filename().string(), bench_.title()));
+}
+
+void Desk::ask_part() {
+    FileChooser chooser(FileChooser::For::open, fs::absolute(bench_.editor().file()).parent_path(), {".toml"});
+    ask_file("Add a patch as a node", std::move(chooser), [this](const fs::path& path) {
+        if (const std::string made = bench_.add_part(path, ""); !made.empty()) patch_.selected = made;
+    });
+}
+
+void Desk::ask_scan() {
+    std::error_code ignored;
+    FileChooser chooser(FileChooser::For::open, fs::current_path(ignored),
+                        {".nrrd", ".nhdr", ".nii", ".nii.gz", ".dcm", ".zip", ".inv3"});
+    chooser.takes_folders = true;
+    ask_file("Open a scan: a CT, or a folder of DICOM", std::move(chooser), [this](const fs::path& path) {
+        slices_.open(path);
+        use_layout(Layout::plan);
+    });
+}
+
+void Desk::ask_value(const std::string& node, const std::string& param, const std::string& value) {
+    value_.ask({node + "." + param, value, [this, node, param](const std::string& typed) {
+                    constexpr std::string_view device = "devices.";
+                    if (node.starts_with(device)) bench_.set_device(node.substr(device.size()), param, typed);
+                    else bench_.set(node, param, typed);
+                }});
+}
+
+void Desk::ask_device_setting() {
+    value_.ask({"DEVICE.SETTING VALUE", "", [this](const std::string& typed) {
+                    const std::size_t blank = typed.find(' '), dot = typed.find('.');
+                    if (blank == std::string::npos || dot >= blank)
+                        throw Error("write DEVICE.SETTING VALUE, as simulated.start_z 60 mm");
+                    bench_.set_device(typed.substr(0, dot), typed.substr(dot + 1, blank - dot - 1),
+                                      typed.substr(blank + 1));
+                }});
+}
+
+void Desk::draw_dialogs() {
+    // A patch without a place of its own needs one.
+    if (bench_.wants_name && !dialog_.is_open()) {
+        bench_.wants_name = false;
+        ask_save_as();
+    }
+    dialog_.draw(fonts_);
+    import_.draw(fonts_);
+    if (!dialog_.is_open()) questions.named(false);
+    list_.draw(commands_, fonts_);
+    value_.draw();
+}
+
+}  // namespace tactus::window

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/window/document/case_run.hpp"
+
+#include "assets/plan/plan_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/fit/arrangement/history.hpp"
+#include "tools/window/document/hand_of_patch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::window {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto between_looks = std::chrono::milliseconds(300);
+constexpr auto written_within = std::chrono::milliseconds(1000), longest_missing = std::chrono::milliseconds(10'000);
+
+const char* const figures[] = {"verdict", "fits", "fragment", "partner", "score", "rms", "gap", "penetration"};
+
+/// The node, and its output, that is wired to an input.
+struct Source {
+    const compile::ScheduleNode* node = nullptr;
+    std::string output;
+};
+Source source_of(const compile::Schedule& plan, const compile::ScheduleNode& node, const std::string& input) {
+    for (const compile::ScheduleWire& wire : plan.wires) {
+        if (wire.from_node < 0 || wire.to_input < 0) continue;
+        if (&plan.nodes[static_cast<std::size_t>(wire.to_node)] != &node) continue;
+        if (node.inputs[static_cast<std::size_t>(wire.to_input)].name != input) continue;
+        const compile::ScheduleNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        return {&from, from.outputs[static_cast<std::size_t>(wire.from_output)].name};
+    }
+    return {};
+}
+
+std::string name_in(const plan::CasePlan& plan, int fragment) {
+    return fragment >= 0 && fragment < static_cast<int>(plan.fragments.size())
+               ? plan.fragments[static_cast<std::size_t>(fragment)].name
+               : std::string();
+}
+
+std::string words_of(const plan::CasePlan& plan, const plan::PlanStep& step) {
+    std::string names;
+    for (const int fragment : step.fragments) names += (names.empty() ? "" : ", ") + name_in(plan, fragment);
+    if (step.fit)
+        return fmt::format("{} fits {}: {:.2f} mm rms, score {:.2f}", name_in(plan, step.fragments.front()),
+                           step.fit->partner, step.fit->rms * 1e3, step.fit->score);
+    if (!step.group.empty()) names += fmt::format(" ({})", step.group);
+    return fmt::format("{} {}", plan::name_of(step.kind), names);
+}
+
+}  // namespace
+
+std::vector<StepLine> step_lines(const plan::CasePlan& plan) {
+    std::vector<StepLine> lines;
+    const std::vector<int> before = plan.before();
+    const fit::HistoryPlace place = plan.place();
+    for (const int n : fit::steps_to(before, place.tip))
+        lines.push_back(
+            {n, words_of(plan, plan.steps[static_cast<std::size_t>(n)]), fit::is_on_way(before, n, place.head)});
+    return lines;
+}
+
+fs::path free_plan(const fs::path& folder) {
+    for (int n = 1;; ++n)
+        if (fs::path free = folder / fmt::format("changed-{}.plan.json", n); !fs::exists(free)) return free;
+}
+
+CaseRun::~CaseRun() {
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+}
+
+void CaseRun::follow_patch() {
+    plan_version_ = bench_.plan_version();
+    node_.clear();
+    matcher_.clear();
+    holding_.clear();
+    which_.clear();
+    buttons_.clear();
+    hand_buttons_.clear();
+    if (!bench_.plan()) return;
+    const compile::Schedule& plan = *bench_.plan();
+    const auto hand = hand_of(plan);
+    is_hand_of_person_ = !hand || !hand->moves_by_itself();
+    const auto take_hand = [&](const compile::ScheduleNode& node, const char* input, const char* what) {
+        const Source from = source_of(plan, node, input);
+        if (!from.node || from.node->type->role != NodeRole::hand_source) return;
+        const auto& outputs = from.node->outputs;
+        // The buttons follow each other: trigger, second, third, fourth.
+        const auto first = std::ranges::find(outputs, "trigger", &compile::ScheduleOutput::name),
+                   found = std::ranges::find(outputs, from.output, &compile::ScheduleOutput::name);
+        if (first != outputs.end() && found >= first && found - first < 4)
+            hand_buttons_[what] = static_cast<std::size_t>(found - first);
+    };
+    for (const compile::ScheduleNode& node : plan.nodes) {
+        if (node.type->name == "case_scene") {
+            node_ = node.name;
+            for (const AssetParam* asset : node.assets) asset_ = asset->name;
+            for (const char* input : {"undo", "redo", "join", "split", "lock", "hide", "show", "settle"}) {
+                const Source from = source_of(plan, node, input);
+                if (from.node && from.node->type->name == "button") buttons_[input] = from.node->name;
+            }
+            const auto port_of = [&](const char* input) {
+                const Source from = source_of(plan, node, input);
+                return from.node ? from.node->name + "." + from.output : std::string();
+            };
+            holding_ = port_of("holding");
+            which_ = port_of("which");
+            take_hand(node, "settle", "settle");
+            struct : MemberVisitor {
+                std::string file;
+                void text(std::string_view name, Text& text) override {
+                    if (name == "file") file = text.value;
+                }
+            } texts;
+            node.type->visit(node.instance.get(), texts);
+            file_name_ = texts.file;
+        } else if (node.type->name == "fragment_matcher") {
+            matcher_ = node.name;
+            take_hand(node, "engaged", "snap");
+        } else if (node.type->name == "grasp") take_hand(node, "trigger", "grasp");
+    }
+}
+
+/// The figures of the fit, and what tells that the plan is about to change.
+void CaseRun::watch(const std::shared_ptr<observe::Observer>& observer) {
+    if (observer_)
+        for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+    watched_.clear();
+    observer_ = observer;
+    if (!observer_ || !is_there()) return;
+    if (!matcher_.empty())
+        for (const char* figure : figures) watched_.push_back(matcher_ + "." + figure);
+    for (const std::string& port : {holding_, which_, node_ + ".steps"})
+        if (!port.empty()) watched_.push_back(port);
+    for (const std::string& port : watched_) observer_->watch(port, observe::Watch::latest, this);
+}
+
+void CaseRun::tend(const std::shared_ptr<observe::Observer>& observer) {
+    const bool is_other_patch = plan_version_ != bench_.plan_version(), is_other_run = observer != observer_;
+    if (is_other_patch) follow_patch();
+    if (is_other_patch || is_other_run) watch(observer);
+    if (is_other_run) {
+        if (plan_ && steps_.size() > steps_at_start_ && !bench_.goes_on())
+            bench_.tell(fmt::format("this run begins with the plan of the patch; that of the run before is in {}",
+                                    file_.string()));
+        commands_.clear();
+        plan_.reset();
+        steps_.clear();
+        written_ = unread_ = {};
+        steps_done_ = -1.0;
+    }
+    if (!is_there()) return;
+    commands_.tend();
+    look_for_changes();
+    const auto now = Clock::now();
+    if (now - looked_ > between_looks) {
+        looked_ = now;
+        read_plan();
+    }
+    if (study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        has_numbers_ = studied_ == Study::gaps || studied_ == Study::healthy;
+        try {
+            found_ = study_.get();
+        } catch (const std::exception& error) {
+            found_ = error.what();
+            has_numbers_ = false;
+            bench_.tell(found_, true);
+        }
+    }
+    if (has_numbers_ && study_of_ != written_) {
+        has_numbers_ = false;
+        found_.clear();
+    }
+}
+
+void CaseRun::look_for_changes() {
+    // Also those of the hand's buttons and of commands from elsewhere.
+    const double steps = number(node_ + ".steps", -1.0);
+    const bool is_step = std::exchange(steps_done_, steps) != steps;
+    if (is_step) stepped_ = Clock::now();
+    // A slow disk. What a run could not write never comes.
+    const auto done = static_cast<double>(std::ranges::count(steps_, true, &StepLine::is_done));
+    const bool is_missing = plan_ && steps >= 0.0 && steps != done && Clock::now() - stepped_ < longest_missing;
+    if (is_step || is_missing || commands_.is_under_way() || commands_.is_paused() || is_holding())
+        unsettled_ = Clock::now();
+}
+
+bool CaseRun::is_holding() const {
+    if (!is_live() || !is_hand_of_person_) return false;
+    return holding_.empty() ? !which_.empty() && number(which_, -1.0) >= 0.0 : flag(holding_);
+}
+
+bool CaseRun::may_begin_again() {
+    if (is_holding()) {
+        bench_.tell(
+            "let the fragment go first: the run begins again with this change, and where it is held is no step yet",
+            true);
+        return false;
+    }
+    commands_.tell_pause();
+    return true;
+}
+
+void CaseRun::read_plan() {
+    const fs::path folder = bench_.status()->folder;
+    if (folder.empty() || file_name_.empty()) return;
+    file_ = folder / file_name_;
+    std::error_code none;
+    const fs::file_time_type written = fs::last_write_time(file_, none);
+    if (none || written == unread_ || (plan_ && written == written_)) return;
+    try {
+        const bool is_first = !plan_;
+        plan_ = plan::load_case_plan(file_);
+        steps_ = step_lines(*plan_);
+        if (is_first) steps_at_start_ = steps_.size();
+        written_ = written;
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+        unread_ = written;
+    }
+}
+
+bool CaseRun::can_press(const std::string& input) const {
+    return buttons_.contains(input) && bench_.status()->state != RunStatus::State::over;
+}
+
+void CaseRun::press(const std::string& input, int fragment, int other) {
+    const auto button = buttons_.find(input);
+    if (button == buttons_.end()) return;
+    if (input == "undo" || input == "redo" || input == "show") return commands_.add({{button->second, {}, {}}});
+    commands_.add(
+        {{node_, "choose", std::to_string(fragment)}, {node_, "with", std::to_string(other)}, {button->second, {}, {}}},
+        LiveCommands::Kind::chooses);
+    // A press from elsewhere means the fragment that was held last.
+    commands_.add({{node_, "choose", "-1"}, {node_, "with", "-1"}}, LiveCommands::Kind::tidies);
+}
+
+void CaseRun::join(const std::vector<int>& fragments) {
+    for (std::size_t i = 1; i < fragments.size(); ++i) press("join", fragments.front(), fragments[i]);
+}
+
+bool CaseRun::is_live() const { return is_there() && bench_.status()->state != RunStatus::State::over; }
+
+bool CaseRun::is_settled() const {
+    if (bench_.status()->state == RunStatus::State::over) return true;
+    return !commands_.is_under_way() && Clock::now() - unsettled_ > written_within;
+}
+
+// Only a change counts.
+void CaseRun::go_to_alternative(int place) {
+    commands_.add({{node_, "alternative", "-1"}});
+    commands_.add({{node_, "alternative", std::to_string(place)}});
+}
+
+void CaseRun::drop_alternative(int place) {
+    commands_.add({{node_, "drop", "-1"}});
+    commands_.add({{node_, "drop", std::to_string(place)}});
+}
+
+std::optional<std::size_t> CaseRun::hand_button(const std::string& what) const {
+    const auto found = hand_buttons_.find(what);
+    return found == hand_buttons_.end() ? std::nullopt : std::optional(found->second);
+}
+
+double CaseRun::number(const std::string& port, double otherwise) const {
+    const auto seen = observer_ ? observer_->latest<double>(port) : std::nullopt;
+    return seen && std::isfinite(seen->value) ? seen->value : otherwise;
+}
+
+bool CaseRun::flag(const std::string& port) const {
+    const auto seen = observer_ ? observer_->latest<bool>(port) : std::nullopt;
+    return seen && seen->value;
+}
+
+std::optional<CaseRun::Fit> CaseRun::fit() const {
+    if (matcher_.empty() || !observer_) return std::nullopt;
+    const auto of = [&](const char* figure) { return matcher_ + "." + figure; };
+    const auto place = [&](const char* figure) { return static_cast<int>(std::lround(number(of(figure), -1.0))); };
+    return Fit{
+        place("fragment"),        place("partner"),       place("verdict"),       flag(of("fits")),
+        number(of("score"), 0.0), number(of("rms"), 0.0), number(of("gap"), 0.0), number(of("penetration"), 0.0)};
+}
+
+}  // namespace tactus::window

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nodes that are still being made: a required input has no wire, or a required asset is not named, or what feeds it is
+// unfinished. They stand in the text of the patch, but not in what runs. No user interface.
+#pragma once
+
+#include "graph/compile/schedule.hpp"
+#include "tools/window/document/patch_picture.hpp"
+#include "tools/window/document/part_ports.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::window {
+
+struct UnfinishedNode {
+    std::string name, type, lane;  ///< lane: its rate or group
+    std::vector<PicturePort> inputs, outputs;
+    std::string lacks;  ///< "input 'pose'", "a wire"
+};
+
+struct Unfinished {
+    std::vector<UnfinishedNode> nodes;
+    std::vector<patch::PatchWire> wires;  ///< that begin or end there
+    std::map<std::string, PartPorts> parts;  ///< of all sub-patches, by their types
+
+    bool empty() const { return nodes.empty(); }
+    const UnfinishedNode* find(std::string_view name) const;
+    std::vector<std::string> names() const;
+};
+
+/// Adds to `problems` what is wrong with their wires: no such port, other types, an input with two wires.
+Unfinished unfinished_of(const patch::Patch& patch, patch::Problems& problems);
+
+}  // namespace tactus::window

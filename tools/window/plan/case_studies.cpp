@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Studies of the plan of a run, as its file has it: gaps, distance from the healthy side, page, files for other programs.
+#include "assets/plan/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/counted.hpp"
+#include "tools/report/plan/plan_page.hpp"
+#include "tools/analysis/bone/intact_side.hpp"
+#include "tools/analysis/plan/plan_export.hpp"
+#include "tools/analysis/plan/plan_matching.hpp"
+#include "tools/window/document/case_run.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::window {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string gaps_of(const plan::CasePlan& plan, const fs::path& folder) {
+    std::string text;
+    const auto name = [&](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    for (const analysis::PlanGap& g : analysis::plan_gaps(plan, folder, {}))
+        text += g.gap.facing > 0.0
+                    ? fmt::format("{}, {}: gap {:.2f} mm (95 %: {:.2f} mm), overlap {:.1f} mm³\n", name(g.first),
+                                  name(g.second), analysis::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9)
+                    : fmt::format("{}, {}: overlap {:.1f} mm³\n", name(g.first), name(g.second), g.overlap * 1e9);
+    return text.empty() ? "no two shown fragments face each other within 3 mm" : text;
+}
+
+std::string healthy_of(const plan::CasePlan& plan, const fs::path& folder) {
+    std::string text;
+    const auto residuals = analysis::healthy_residuals(plan::state_of(plan), folder, analysis::load_fragments(plan, folder));
+    for (std::size_t n = 0; n < residuals.size(); ++n)
+        if (residuals[n])
+            text += fmt::format("{}: {:.2f} mm from the mirrored side (median)\n", plan.fragments[n].name,
+                                *residuals[n] * 1e3);
+    return text.empty() ? "the plan has no healthy side; make one by 'tactus plan mirror'" : text;
+}
+
+fs::path free_folder(const fs::path& folder) {
+    for (int i = 1;; ++i)
+        if (fs::path free = folder / fmt::format("export-{}", i); !fs::exists(free)) return free;
+}
+
+std::string made(CaseRun::Study what, const fs::path& file) {
+    const plan::CasePlan plan = plan::load_case_plan(file);
+    const fs::path folder = file.parent_path();
+    switch (what) {
+        case CaseRun::Study::gaps: return gaps_of(plan, folder);
+        case CaseRun::Study::healthy: return healthy_of(plan, folder);
+        case CaseRun::Study::report: {
+            std::vector<analysis::CaseFragment> fragments = analysis::load_fragments(plan, folder);
+            auto residuals = analysis::healthy_residuals(plan::state_of(plan), folder, fragments);
+            const fs::path page = folder / "case.html";
+            const auto healthy = analysis::healthy_side(plan::state_of(plan), folder);
+            file::write_whole_file(
+                page, report::plan_page(plan, analysis::case_warnings(plan, folder).all, std::move(fragments),
+                                         std::move(residuals), healthy ? &*healthy : nullptr));
+            return fmt::format("report: {}", page.string());
+        }
+        case CaseRun::Study::files: {
+            const fs::path out = free_folder(folder);
+            const analysis::ExportedPlan exported = analysis::export_plan(plan, folder, out, "stl");
+            return fmt::format(
+                "{} written to {}{}", counted(exported.written.size(), "fragment"), out.string(),
+                exported.left_out.empty() ? "" : fmt::format("; {} hidden, not written", exported.left_out.size()));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+void CaseRun::begin(Study what) {
+    if (is_busy()) return;
+    if (!plan_) return bench_.tell("the run has not written its plan yet", true);
+    found_ = "...";
+    has_numbers_ = false;
+    studied_ = what;
+    study_of_ = written_;
+    study_ = std::async(std::launch::async, [what, file = file_] { return made(what, file); });
+}
+
+}  // namespace tactus::window
